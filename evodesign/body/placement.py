@@ -1,0 +1,101 @@
+"""Position and orientation of one frame in another.
+
+A placement named `link_from_solid` takes coordinates in the solid's frame to coordinates in the link's.
+Translations may be numbers or symbolic expressions (a resized link moves its children); rotations are
+always numbers. Everything is plain arithmetic on tuples, so that no numerical library is needed here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["Matrix", "Placement", "Scalar", "Vector", "matrix_from_rpy", "rpy_from_matrix"]
+
+Scalar = Any
+"""A float or a CasADi expression."""
+
+Vector = tuple[Scalar, Scalar, Scalar]
+Matrix = tuple[Vector, Vector, Vector]
+
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """A rigid placement: x_outer = rotation x_inner + translation.
+
+    Args:
+        rotation: 3 x 3 rotation matrix by rows, numbers.
+        translation: origin of the inner frame in the outer one [m], numbers or expressions.
+    """
+
+    rotation: Matrix = IDENTITY
+    translation: Vector = ZERO
+
+    def apply(self, point: Vector) -> Vector:
+        """The point's coordinates in the outer frame."""
+        turned = rotate(self.rotation, point)
+        return add(turned, self.translation)
+
+    def __matmul__(self, inner: Placement) -> Placement:
+        """Chain: `a_from_b @ b_from_c` is `a_from_c`."""
+        return Placement(multiply(self.rotation, inner.rotation), self.apply(inner.translation))
+
+    @classmethod
+    def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Placement:
+        """Placement from a URDF origin: xyz [m], rpy [rad]."""
+        return cls(matrix_from_rpy(rpy), (xyz[0], xyz[1], xyz[2]))
+
+
+def add(a: Vector, b: Vector) -> Vector:
+    """Sum of two vectors."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def scale(factor: Scalar, a: Vector) -> Vector:
+    """Product of a scalar and a vector."""
+    return (factor * a[0], factor * a[1], factor * a[2])
+
+
+def dot(a: Vector, b: Vector) -> Scalar:
+    """Scalar product of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def rotate(matrix: Matrix, a: Vector) -> Vector:
+    """Product of a 3 x 3 matrix and a vector."""
+    return (dot(matrix[0], a), dot(matrix[1], a), dot(matrix[2], a))
+
+
+def transpose(matrix: Matrix) -> Matrix:
+    """Transposed 3 x 3 matrix."""
+    columns = tuple(tuple(row[i] for row in matrix) for i in range(3))
+    return columns  # type: ignore[return-value]
+
+
+def multiply(a: Matrix, b: Matrix) -> Matrix:
+    """Product of two 3 x 3 matrices."""
+    columns = transpose(b)
+    return tuple(tuple(dot(row, column) for column in columns) for row in a)  # type: ignore[return-value]
+
+
+def matrix_from_rpy(rpy: Sequence[float]) -> Matrix:
+    """Rotation Rz(yaw) Ry(pitch) Rx(roll) of URDF's roll, pitch and yaw [rad]."""
+    (sr, sp, sy), (cr, cp, cy) = [tuple(f(angle) for angle in rpy) for f in (math.sin, math.cos)]
+    return (
+        (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+        (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+        (-sp, cp * sr, cp * cr),
+    )
+
+
+def rpy_from_matrix(matrix: Matrix) -> tuple[float, float, float]:
+    """Roll, pitch and yaw [rad] of a rotation; at pitch +-90 degrees roll is taken as zero."""
+    pitch = math.atan2(-matrix[2][0], math.hypot(matrix[0][0], matrix[1][0]))
+    if math.hypot(matrix[0][0], matrix[1][0]) < 1e-12:
+        return 0.0, pitch, math.atan2(-matrix[0][1], matrix[1][1])
+    return math.atan2(matrix[2][1], matrix[2][2]), pitch, math.atan2(matrix[1][0], matrix[0][0])

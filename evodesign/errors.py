@@ -1,0 +1,71 @@
+"""Every error that evodesign raises on purpose.
+
+    EvodesignError
+    ├── InputError          a file, a key or an option that the user gave is wrong (exit code 2)
+    │   └── ModelError      a robot or person description that cannot be used
+    ├── RunError            a run directory that cannot be read or written (exit code 2)
+    │   └── ResumeMismatch  a log that this problem and search did not write (exit code 2)
+    └── Interrupted         the user stopped a search; it can be resumed (exit code 3)
+
+A failed solve is not an error: it is a `records.Status` with a reason.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = [
+    "EvodesignError",
+    "InputError",
+    "Interrupted",
+    "ModelError",
+    "ResumeMismatch",
+    "RunError",
+    "nearest_name",
+]
+
+
+class EvodesignError(Exception):
+    """Root of the tree; its text is one sentence that a user can act on."""
+
+
+class InputError(EvodesignError):
+    """Something that the user wrote is wrong.
+
+    Attributes:
+        source: the file or option that holds it.
+        key: where in it, such as `design.length[2].lower`; empty for the whole.
+        wanted: what would be accepted.
+        found: what stands there.
+    """
+
+    def __init__(self, source: str, key: str, wanted: str, found: str) -> None:
+        self.source = source
+        self.key = key
+        self.wanted = wanted
+        self.found = found
+        place = f"{source}: {key}" if key else source
+        super().__init__(f"{place}: wanted {wanted}, found {found}")
+
+
+class ModelError(InputError):
+    """A robot or person description that is not a usable tree of links and joints."""
+
+
+class RunError(EvodesignError):
+    """A run directory that cannot be read, written or continued."""
+
+
+class ResumeMismatch(RunError):
+    """A logged evaluation that the rebuilt search would not have asked for."""
+
+
+class Interrupted(EvodesignError):
+    """A search that was stopped on request and can be resumed."""
+
+
+def nearest_name(name: str, names: Iterable[str]) -> str:
+    """A hint such as `; did you mean 'chest'?`, or an empty string when nothing is near."""
+    match = difflib.get_close_matches(name, list(names), n=1, cutoff=0.5)
+    return f"; did you mean '{match[0]}'?" if match else ""

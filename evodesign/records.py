@@ -1,0 +1,189 @@
+"""What is remembered: the values that cross process borders and reach the disk.
+
+Every record is immutable, refuses unknown fields, and is written as JSON. Units are SI; torque norms
+are Euclidean norms over an agent's moving joints [N m]. A value that does not exist (the torque of a
+height that was not reached) is absent or None, never a large number.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import msgspec
+
+__all__ = [
+    "FORMAT_VERSION",
+    "Assessment",
+    "Evaluation",
+    "Front",
+    "Generation",
+    "Genome",
+    "HeightOutcome",
+    "Objective",
+    "ProblemSource",
+    "ReachOutcome",
+    "RunHeader",
+    "SearchSettings",
+    "Sense",
+    "Status",
+    "worst_status",
+]
+
+FORMAT_VERSION = 1
+"""Version of the records below; a reader refuses a log of a later one."""
+
+Genome = tuple[float, ...]
+"""A point of the unit cube, one coordinate per design parameter."""
+
+
+class Status(StrEnum):
+    """How a computation ended. The order is from best to worst."""
+
+    SOLVED = "solved"
+    INFEASIBLE = "infeasible"
+    ITERATION_LIMIT = "iteration limit"
+    TIME_LIMIT = "time limit"
+    NUMERICAL_FAILURE = "numerical failure"
+    WORKER_LOST = "worker lost"
+
+
+def worst_status(statuses: list[Status]) -> Status:
+    """The last of the given statuses in the order of `Status`; SOLVED for none."""
+    order = list(Status)
+    return max(statuses, key=order.index, default=Status.SOLVED)
+
+
+class Sense(StrEnum):
+    """Direction in which an objective improves."""
+
+    MINIMISE = "minimise"
+    MAXIMISE = "maximise"
+
+
+class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of all records: immutable, strict, keyword-only."""
+
+
+class Objective(Record):
+    """One objective of a problem, in its natural sense and unit."""
+
+    name: str
+    sense: Sense
+    unit: str
+
+
+class ReachOutcome(Record):
+    """Interval of load heights [m] that the robot can hold; bounds are None when not solved."""
+
+    lowest_m: float | None
+    highest_m: float | None
+    status: Status
+    reason: str
+
+
+class HeightOutcome(Record):
+    """One posture problem of one design, in short."""
+
+    height_m: float
+    status: Status
+    reason: str
+    robot_torque_norm: float | None
+    human_torque_norm: float | None
+    iterations: int
+    residual: float | None
+
+
+class Assessment(Record):
+    """What a design is worth: a property of problem and genome alone.
+
+    `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist.
+    `violation` is the sum of constraint violations [m], zero for a feasible design, None when a failure
+    left it unknown.
+    """
+
+    design: dict[str, float]
+    objectives: dict[str, float]
+    violation: float | None
+    status: Status
+    reason: str
+    reach: ReachOutcome | None = None
+    heights: tuple[HeightOutcome, ...] = ()
+
+
+class Evaluation(Record):
+    """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs."""
+
+    number: int
+    generation: int
+    genome: Genome
+    assessment: Assessment
+    seconds: float
+    worker: str
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every constraint holds."""
+        return self.assessment.violation == 0.0
+
+
+class Generation(Record):
+    """State of a run after a generation, as scalars that a plot panel shows.
+
+    `hypervolume` is taken against `reference` (natural values, fixed at the first generation that holds a
+    feasible design); both are None before that.
+    """
+
+    number: int
+    evaluations: int
+    feasible_share: float
+    hypervolume: float | None
+    reference: dict[str, float] | None
+    best: dict[str, float]
+    seconds: float
+
+
+class Front(Record):
+    """Numbers of the non-dominated feasible evaluations after a generation."""
+
+    generation: int
+    evaluations: tuple[int, ...]
+
+
+class SearchSettings(Record):
+    """Everything that determines a search beside the evaluations it is told."""
+
+    algorithm: str
+    dimension: int
+    objectives: int
+    population: int
+    seed: int
+    start: tuple[Genome, ...] = ()
+
+
+class ProblemSource(Record):
+    """A problem and every file that it names, as text: enough to rebuild it on any machine.
+
+    Attributes:
+        path: where the problem file was read, for messages.
+        text: the problem file.
+        files: the files that it names, by the name that it uses.
+    """
+
+    path: str
+    text: str
+    files: dict[str, str]
+
+
+class RunHeader(Record):
+    """First message of every segment of a run's log."""
+
+    format_version: int
+    problem: ProblemSource
+    problem_name: str
+    parameters: tuple[str, ...]
+    objectives: tuple[Objective, ...]
+    search: SearchSettings
+    budget: int
+    versions: dict[str, str]
+    git: str | None
+    started: str

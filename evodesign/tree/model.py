@@ -1,0 +1,198 @@
+"""Links, joints and the tree they form.
+
+A link carries solids (shapes of constant density, which a design may change), or an inertia of its own
+(kept as given), or neither (a bare frame). Dimensions, densities and joint placements may be symbolic;
+names, axes, limits and the tree's form are not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+from evodesign.body.inertia import Inertia, total
+from evodesign.body.placement import Placement, Vector
+from evodesign.body.shape import Shape, Solid
+from evodesign.errors import ModelError, nearest_name
+
+__all__ = ["Joint", "JointKind", "Link", "Look", "Tree"]
+
+
+class JointKind(StrEnum):
+    """Joint types of URDF that evodesign moves or welds."""
+
+    FIXED = "fixed"
+    REVOLUTE = "revolute"
+    CONTINUOUS = "continuous"
+    PRISMATIC = "prismatic"
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A shape that is only seen: it has a place in the link but no mass."""
+
+    shape: Shape
+    link_from_look: Placement
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A rigid body or a bare frame.
+
+    Args:
+        name: unique in the tree.
+        solids: shapes of constant density that make up its mass.
+        own_inertia: inertia beside the solids, in the link's frame; kept by every design.
+        looks: shapes without mass.
+    """
+
+    name: str
+    solids: tuple[Solid, ...] = ()
+    own_inertia: Inertia = Inertia()
+    looks: tuple[Look, ...] = ()
+
+    @property
+    def inertia(self) -> Inertia:
+        """Inertia of the whole link in its frame."""
+        if not self.solids:
+            return self.own_inertia
+        return total([solid.inertia for solid in self.solids])
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint from a parent link to a child link, whose frame is the joint's.
+
+    Args:
+        name: unique in the tree.
+        kind: fixed, revolute, continuous or prismatic.
+        parent, child: link names.
+        parent_from_child: the child's placement at joint position zero.
+        axis: unit vector in the child's frame.
+        lower, upper: limits [rad or m]; infinite for a continuous joint, zero for a fixed one.
+        effort: largest torque or force [N m or N]; infinite when not given.
+        velocity: largest speed [rad/s or m/s]; infinite when not given.
+    """
+
+    name: str
+    kind: JointKind
+    parent: str
+    child: str
+    parent_from_child: Placement
+    axis: Vector = (1.0, 0.0, 0.0)
+    lower: float = 0.0
+    upper: float = 0.0
+    effort: float = float("inf")
+    velocity: float = float("inf")
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A floating-base tree of links and joints, in an order in which parents come before children.
+
+    Args:
+        name: of the robot or person.
+        links: in any order; the constructor's caller need not sort.
+        joints: in any order.
+    Raises:
+        ModelError: names that repeat or miss, no root or several, or a loop.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+
+    def __post_init__(self) -> None:
+        _check_names(self)
+        ordered = _ordered_joints(self)
+        object.__setattr__(self, "joints", ordered)
+
+    @cached_property
+    def link_by_name(self) -> Mapping[str, Link]:
+        """Links by name."""
+        return {link.name: link for link in self.links}
+
+    @cached_property
+    def joint_by_name(self) -> Mapping[str, Joint]:
+        """Joints by name."""
+        return {joint.name: joint for joint in self.joints}
+
+    @cached_property
+    def parent_joint(self) -> Mapping[str, Joint]:
+        """The joint above each link; the root is missing."""
+        return {joint.child: joint for joint in self.joints}
+
+    @cached_property
+    def child_joints(self) -> Mapping[str, tuple[Joint, ...]]:
+        """The joints below each link."""
+        return {
+            link.name: tuple(joint for joint in self.joints if joint.parent == link.name)
+            for link in self.links
+        }
+
+    @property
+    def root(self) -> str:
+        """Name of the link that no joint holds."""
+        return _roots(self)[0]
+
+    @property
+    def actuated(self) -> tuple[str, ...]:
+        """Names of the joints that can move, parents before children."""
+        return tuple(joint.name for joint in self.joints if joint.kind is not JointKind.FIXED)
+
+    def link(self, name: str, asked_by: str) -> Link:
+        """The link of a name.
+
+        Raises:
+            ModelError: no such link; `asked_by` says which key asked for it.
+        """
+        if name not in self.link_by_name:
+            hint = nearest_name(name, self.link_by_name)
+            raise ModelError(self.name, asked_by, "the name of a link", f"'{name}'{hint}")
+        return self.link_by_name[name]
+
+
+def _check_names(tree: Tree) -> None:
+    for noun, names in (
+        ("link", [link.name for link in tree.links]),
+        ("joint", [joint.name for joint in tree.joints]),
+    ):
+        repeated = sorted({name for name in names if names.count(name) > 1})
+        if repeated:
+            raise ModelError(tree.name, f"{noun} {repeated[0]}", "a unique name", "the name twice")
+    known = {link.name for link in tree.links}
+    for joint in tree.joints:
+        for role, name in (("parent", joint.parent), ("child", joint.child)):
+            if name not in known:
+                hint = nearest_name(name, known)
+                key = f"joint {joint.name}.{role}"
+                raise ModelError(tree.name, key, "the name of a link", f"'{name}'{hint}")
+
+
+def _roots(tree: Tree) -> list[str]:
+    held = {joint.child for joint in tree.joints}
+    return [link.name for link in tree.links if link.name not in held]
+
+
+def _ordered_joints(tree: Tree) -> tuple[Joint, ...]:
+    """Joints breadth first from the root, in file order among brothers."""
+    roots = _roots(tree)
+    if len(roots) != 1:
+        found = "none" if not roots else f"{len(roots)}: {', '.join(roots)}"
+        raise ModelError(tree.name, "links", "one root link that no joint holds", found)
+    children = [joint.child for joint in tree.joints]
+    for name in children:
+        if children.count(name) > 1:
+            raise ModelError(tree.name, f"link {name}", "one parent joint", "several")
+    ordered: list[Joint] = []
+    front = [roots[0]]
+    while front:
+        below = [joint for name in front for joint in tree.joints if joint.parent == name]
+        ordered.extend(below)
+        front = [joint.child for joint in below]
+    if len(ordered) != len(tree.joints):
+        lost = next(joint for joint in tree.joints if joint not in ordered)
+        raise ModelError(tree.name, f"joint {lost.name}", "a tree without loops", "a loop")
+    return tuple(ordered)
