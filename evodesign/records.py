@@ -64,7 +64,7 @@ class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Base of all records: immutable, strict, keyword-only."""
 
 
-class Objective(Record):
+class Objective(Record, frozen=True):
     """One objective of a problem, in its natural sense and unit."""
 
     name: str
@@ -72,7 +72,7 @@ class Objective(Record):
     unit: str
 
 
-class ReachOutcome(Record):
+class ReachOutcome(Record, frozen=True):
     """Interval of load heights [m] that the robot can hold; bounds are None when not solved."""
 
     lowest_m: float | None
@@ -81,7 +81,7 @@ class ReachOutcome(Record):
     reason: str
 
 
-class HeightOutcome(Record):
+class HeightOutcome(Record, frozen=True):
     """One posture problem of one design, in short."""
 
     height_m: float
@@ -93,7 +93,7 @@ class HeightOutcome(Record):
     residual: float | None
 
 
-class Assessment(Record):
+class Assessment(Record, frozen=True):
     """What a design is worth: a property of problem and genome alone.
 
     `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist.
@@ -110,7 +110,7 @@ class Assessment(Record):
     heights: tuple[HeightOutcome, ...] = ()
 
 
-class Evaluation(Record):
+class Evaluation(Record, frozen=True):
     """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs."""
 
     number: int
@@ -126,7 +126,7 @@ class Evaluation(Record):
         return self.assessment.violation == 0.0
 
 
-class Generation(Record):
+class Generation(Record, frozen=True):
     """State of a run after a generation, as scalars that a plot panel shows.
 
     `hypervolume` is taken against `reference` (natural values, fixed at the first generation that holds a
@@ -142,14 +142,14 @@ class Generation(Record):
     seconds: float
 
 
-class Front(Record):
+class Front(Record, frozen=True):
     """Numbers of the non-dominated feasible evaluations after a generation."""
 
     generation: int
     evaluations: tuple[int, ...]
 
 
-class SearchSettings(Record):
+class SearchSettings(Record, frozen=True):
     """Everything that determines a search beside the evaluations it is told."""
 
     algorithm: str
@@ -160,7 +160,7 @@ class SearchSettings(Record):
     start: tuple[Genome, ...] = ()
 
 
-class ProblemSource(Record):
+class ProblemSource(Record, frozen=True):
     """A problem and every file that it names, as text: enough to rebuild it on any machine.
 
     Attributes:
@@ -174,7 +174,7 @@ class ProblemSource(Record):
     files: dict[str, str]
 
 
-class RunHeader(Record):
+class RunHeader(Record, frozen=True):
     """First message of every segment of a run's log."""
 
     format_version: int

@@ -1,0 +1,1 @@
+"""Fronts, hypervolumes and histories of runs."""

@@ -1,0 +1,1 @@
+"""Shapes, placements and inertia of rigid bodies."""

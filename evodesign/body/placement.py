@@ -73,8 +73,7 @@ def rotate(matrix: Matrix, a: Vector) -> Vector:
 
 def transpose(matrix: Matrix) -> Matrix:
     """Transposed 3 x 3 matrix."""
-    columns = tuple(tuple(row[i] for row in matrix) for i in range(3))
-    return columns  # type: ignore[return-value]
+    return tuple(tuple(row[i] for row in matrix) for i in range(3))  # type: ignore[return-value]
 
 
 def multiply(a: Matrix, b: Matrix) -> Matrix:

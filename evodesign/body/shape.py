@@ -43,7 +43,7 @@ class Sphere:
     def principal_axis(self, chain_in_solid: Vector) -> Vector:
         """The chain's own direction: a ball has no preferred one."""
         length = math.sqrt(sum(x * x for x in chain_in_solid))
-        return tuple(x / length for x in chain_in_solid)  # type: ignore[return-value]
+        return (chain_in_solid[0] / length, chain_in_solid[1] / length, chain_in_solid[2] / length)
 
     def principal_dimension(self, axis: Vector) -> Scalar:
         """The radius [m] (paper, Section IV)."""

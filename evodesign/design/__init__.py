@@ -1,0 +1,1 @@
+"""Design parameters, the design space, and the robot of a design."""

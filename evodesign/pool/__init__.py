@@ -1,0 +1,1 @@
+"""Where evaluations run; pools know no robots."""

@@ -1,0 +1,1 @@
+"""The inner problems: postures and reach, solved and checked."""

@@ -1,0 +1,1 @@
+"""Ask-and-tell searches; they know no robots."""

@@ -1,0 +1,1 @@
+"""Static equilibrium of robot, person and load."""

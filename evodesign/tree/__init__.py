@@ -1,0 +1,1 @@
+"""Links, joints and the trees they form; URDF; the generated person."""

@@ -8,7 +8,7 @@ names, axes, limits and the tree's form are not.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
@@ -50,7 +50,7 @@ class Link:
 
     name: str
     solids: tuple[Solid, ...] = ()
-    own_inertia: Inertia = Inertia()
+    own_inertia: Inertia = field(default_factory=Inertia)
     looks: tuple[Look, ...] = ()
 
     @property
