@@ -20,12 +20,14 @@ __all__ = [
     "Genome",
     "HeightOutcome",
     "Objective",
+    "Parameter",
     "ProblemSource",
     "ReachOutcome",
     "RunHeader",
     "SearchSettings",
     "Sense",
     "Status",
+    "design_of",
     "worst_status",
 ]
 
@@ -70,6 +72,26 @@ class Objective(Record, frozen=True):
     name: str
     sense: Sense
     unit: str
+
+
+class Parameter(Record, frozen=True):
+    """One design parameter: a length multiplier (unit "1") or a density (unit "kg/m^3").
+
+    A genome's coordinate u in [0, 1] stands for lower + u (upper - lower).
+    """
+
+    name: str
+    lower: float
+    upper: float
+    unit: str
+
+
+def design_of(parameters: tuple[Parameter, ...], genome: Genome) -> dict[str, float]:
+    """Parameter values, by name, of a genome."""
+    return {
+        parameter.name: parameter.lower + coordinate * (parameter.upper - parameter.lower)
+        for parameter, coordinate in zip(parameters, genome, strict=True)
+    }
 
 
 class ReachOutcome(Record, frozen=True):
@@ -180,7 +202,7 @@ class RunHeader(Record, frozen=True):
     format_version: int
     problem: ProblemSource
     problem_name: str
-    parameters: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
     objectives: tuple[Objective, ...]
     search: SearchSettings
     budget: int
