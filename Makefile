@@ -1,0 +1,49 @@
+# `make search` runs the default problem on a fresh machine, `make test` passes the tests: both set up
+# everything they need in .venv. Needed beforehand: Python 3.11 or later, make, git.
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV ?= .venv
+BIN := $(VENV)/bin
+PROBLEM ?= problems/icub_lifting.toml
+RUN ?=
+JOBS ?= 2
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+export OMP_NUM_THREADS = 1
+
+.PHONY: help install search test check bench robot clean
+
+help:  ## what can be made
+	@sed -n 's/^\([a-z]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST)
+
+$(VENV)/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/installed-dev: $(VENV)/installed
+	$(PIP) --editable '.[test,check]'
+	@touch $@
+
+install: $(VENV)/installed  ## the virtual environment with evodesign in it
+
+search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, JOBS=)
+	$(BIN)/evodesign search $(PROBLEM) --jobs $(JOBS) $(if $(RUN),--run $(RUN))
+
+test: $(VENV)/installed-dev  ## the tests
+	$(BIN)/python -m pytest
+
+check: $(VENV)/installed-dev  ## format, lint, types, import contracts
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
+	$(BIN)/python benchmarks/search_quality.py
+
+robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
+	$(BIN)/python problems/robots/write_icub.py
+
+clean:  ## remove the virtual environment and caches
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -1,0 +1,122 @@
+"""The hardware that may change: length multipliers and densities of groups of links.
+
+A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
+so that one posture program serves every design.
+
+Source: Sartore et al. 2022, Section III-A: pi = (l_m1, ..., rho_1, ...).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from evodesign.body.placement import Scalar
+from evodesign.records import Genome, Parameter, design_of
+from evodesign.tree.model import Tree
+from evodesign.tree.resize import growth_of, resize
+
+__all__ = ["DesignParameter", "DesignSpace", "ParameterKind"]
+
+
+class ParameterKind(StrEnum):
+    """What a parameter changes; the value is the word in its full name."""
+
+    LENGTH = "length"
+    DENSITY = "density"
+
+
+UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3"}
+
+
+@dataclass(frozen=True, slots=True)
+class DesignParameter:
+    """One number that a design chooses, for a group of links.
+
+    Args:
+        kind: length multiplier [-] or density [kg/m^3].
+        group: name of the group, unique among the parameters of its kind.
+        links: names of the links that share the value.
+        lower, upper: bounds.
+    """
+
+    kind: ParameterKind
+    group: str
+    links: tuple[str, ...]
+    lower: float
+    upper: float
+
+    @property
+    def name(self) -> str:
+        """Full name, such as `length.upper_arm`."""
+        return f"{self.kind}.{self.group}"
+
+    @property
+    def record(self) -> Parameter:
+        """The parameter as it is remembered."""
+        return Parameter(name=self.name, lower=self.lower, upper=self.upper, unit=UNITS[self.kind])
+
+
+@dataclass(frozen=True, slots=True)
+class DesignSpace:
+    """All parameters of a problem, in the order of the genome's coordinates."""
+
+    parameters: tuple[DesignParameter, ...]
+
+    @property
+    def records(self) -> tuple[Parameter, ...]:
+        """The parameters as they are remembered."""
+        return tuple(parameter.record for parameter in self.parameters)
+
+    def check(self, tree: Tree) -> None:
+        """Refuse parameters that the tree cannot follow.
+
+        Raises:
+            ModelError: naming the link.
+        """
+        self.resized(tree, self.unscaled(tree))
+        for parameter in self.parameters:
+            if parameter.kind is ParameterKind.LENGTH:
+                for link in parameter.links:
+                    growth_of(tree, link)
+
+    def resized(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
+        """The tree of a design.
+
+        Args:
+            tree: unscaled.
+            values: one number or expression per parameter.
+        """
+        by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
+        for parameter, value in zip(self.parameters, values, strict=True):
+            by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
+        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
+
+    def unscaled(self, tree: Tree) -> tuple[float, ...]:
+        """The file's robot as a design: multipliers one, densities averaged over each group."""
+        return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
+
+    def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
+        if parameter.kind is ParameterKind.LENGTH:
+            return 1.0
+        solids = [
+            solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids
+        ]
+        volume = sum(float(solid.shape.volume) for solid in solids)
+        return sum(float(solid.mass) for solid in solids) / volume if volume else 0.0
+
+    def values(self, genome: Genome) -> tuple[float, ...]:
+        """Parameter values of a genome."""
+        return tuple(design_of(self.records, genome).values())
+
+    def genome(self, values: Sequence[float]) -> Genome:
+        """The genome of parameter values; coordinates outside [0, 1] mean values outside the bounds."""
+        return tuple(
+            (value - parameter.lower) / (parameter.upper - parameter.lower)
+            for parameter, value in zip(self.parameters, values, strict=True)
+        )
+
+    def named(self, values: Sequence[float]) -> Mapping[str, float]:
+        """Parameter values by full name."""
+        return {parameter.name: value for parameter, value in zip(self.parameters, values, strict=True)}

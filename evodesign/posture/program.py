@@ -1,0 +1,191 @@
+"""Nonlinear programs: named variables and constraints, solved by IPOPT.
+
+A program is assembled from blocks (an agent, a load) and does not know what they mean. Variables are scaled
+so that IPOPT sees numbers of order one; everything outside is in SI units.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from evodesign.records import Status
+
+__all__ = ["Constraint", "IpoptOptions", "Program", "RawSolution", "Solver", "Variable"]
+
+Array = Any
+Expression = Any
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A named block of decision variables.
+
+    Args:
+        name: such as `robot.joints`.
+        symbol: SX column that the solver varies; the physical value is scale * symbol.
+        scale: size of one unit of the symbol, in SI units.
+        lower, upper, start: bounds and starting values in SI units, one per row.
+    """
+
+    name: str
+    symbol: Expression
+    scale: float
+    lower: Array
+    upper: Array
+    start: Array
+
+    @property
+    def value(self) -> Expression:
+        """The physical quantity as an expression."""
+        return self.scale * self.symbol
+
+    @classmethod
+    def column(
+        cls, name: str, lower: Sequence[float], upper: Sequence[float], start: Sequence[float], scale: float
+    ) -> Variable:
+        """A block with one row per bound; starts are moved inside the bounds."""
+        low, high = np.asarray(lower, float), np.asarray(upper, float)
+        inside = np.clip(np.asarray(start, float), low, high)
+        return cls(name, ca.SX.sym(name, len(low)), scale, low, high, inside)
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """A named block of constraints lower <= expression <= upper."""
+
+    name: str
+    expression: Expression
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True)
+class IpoptOptions:
+    """IPOPT's settings; the values are what measured best on posture problems (DESIGN 3).
+
+    Args:
+        tolerance: of the scaled optimality error.
+        iterations: limit.
+        seconds: limit of wall time per solve [s].
+    """
+
+    tolerance: float = 1e-8
+    iterations: int = 300
+    seconds: float = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """Minimise a cost over variables, subject to constraints, with numbers given as parameters."""
+
+    name: str
+    variables: tuple[Variable, ...]
+    constraints: tuple[Constraint, ...]
+    cost: Expression
+    parameters: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class RawSolution:
+    """What IPOPT returned.
+
+    Args:
+        values: value by variable name, SI units.
+        status: solved, or why not.
+        reason: IPOPT's word for it.
+        iterations: number of iterations.
+        seconds: wall time [s].
+        cost: of the last iterate.
+    """
+
+    values: Mapping[str, Array]
+    status: Status
+    reason: str
+    iterations: int
+    seconds: float
+    cost: float
+
+
+_STATUS = {
+    "Solve_Succeeded": Status.SOLVED,
+    "Solved_To_Acceptable_Level": Status.SOLVED,
+    "Infeasible_Problem_Detected": Status.INFEASIBLE,
+    "Maximum_Iterations_Exceeded": Status.ITERATION_LIMIT,
+    "Maximum_CpuTime_Exceeded": Status.TIME_LIMIT,
+    "Maximum_WallTime_Exceeded": Status.TIME_LIMIT,
+}
+
+
+class Solver:
+    """A program made ready once; solved any number of times for other parameters and starts."""
+
+    def __init__(self, program: Program, options: IpoptOptions) -> None:
+        self.program = program
+        symbols = ca.vertcat(*[variable.symbol for variable in program.variables])
+        constraints = ca.vertcat(*[constraint.expression for constraint in program.constraints])
+        rows = [(c.lower, c.upper, c.expression.numel()) for c in program.constraints]
+        self._lower = np.concatenate([np.full(count, low) for low, _, count in rows])
+        self._upper = np.concatenate([np.full(count, high) for _, high, count in rows])
+        self._lower_x = np.concatenate([v.lower / v.scale for v in program.variables])
+        self._upper_x = np.concatenate([v.upper / v.scale for v in program.variables])
+        problem = {"x": symbols, "p": program.parameters, "f": program.cost, "g": constraints}
+        self._solve = ca.nlpsol(program.name, "ipopt", problem, _casadi_options(options))
+
+    @property
+    def start(self) -> dict[str, Array]:
+        """The program's own starting values, SI units."""
+        return {variable.name: variable.start for variable in self.program.variables}
+
+    def solve(self, parameters: Sequence[float], start: Mapping[str, Array]) -> RawSolution:
+        """Solve from a start (variables left out begin at the program's own values)."""
+        blocks = [(v, start.get(v.name, v.start)) for v in self.program.variables]
+        began = time.perf_counter()
+        result = self._solve(
+            x0=np.concatenate([np.asarray(value) / v.scale for v, value in blocks]),
+            p=np.asarray(parameters, float),
+            lbx=self._lower_x,
+            ubx=self._upper_x,
+            lbg=self._lower,
+            ubg=self._upper,
+        )
+        seconds = time.perf_counter() - began
+        stats = self._solve.stats()
+        word = str(stats["return_status"])
+        return RawSolution(
+            values=self._unpack(np.asarray(result["x"]).ravel()),
+            status=_STATUS.get(word, Status.NUMERICAL_FAILURE),
+            reason=word,
+            iterations=int(stats["iter_count"]),
+            seconds=seconds,
+            cost=float(result["f"]),
+        )
+
+    def _unpack(self, x: Array) -> dict[str, Array]:
+        values, first = {}, 0
+        for variable in self.program.variables:
+            last = first + variable.symbol.numel()
+            values[variable.name] = variable.scale * x[first:last]
+            first = last
+        return values
+
+
+def _casadi_options(options: IpoptOptions) -> dict[str, Any]:
+    return {
+        "print_time": False,
+        "error_on_fail": False,
+        "ipopt": {
+            "print_level": 0,
+            "sb": "yes",
+            "tol": options.tolerance,
+            "max_iter": options.iterations,
+            "max_wall_time": options.seconds,
+            "fast_step_computation": "yes",
+            "nlp_scaling_method": "none",
+        },
+    }

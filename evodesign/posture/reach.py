@@ -1,0 +1,102 @@
+"""The reach problem: the highest and lowest load that the robot can hold.
+
+    maximise (minimise) h subject to the robot's constraints and the load's balance,
+
+with the person's hands free to push as they must: the robot's side alone decides. It is an order of
+magnitude cheaper than a posture, so it is solved first and spares the heights that are out of reach.
+
+Source: DESIGN 3 (reach); feasibility constraints of Sartore et al. 2022, Eq. 14.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from evodesign.design.space import DesignSpace
+from evodesign.posture.agent import HAND_UNIT, agent_block
+from evodesign.posture.load import load_constraints
+from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.records import Status, worst_status
+from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Scene
+
+__all__ = ["Reach", "ReachProblem"]
+
+COMFORT = 1e-4
+"""Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
+
+START_HEIGHTS = (1.0, 0.6)
+"""Heights [m] at which a solve begins; the best result counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """The interval of load heights that a robot can hold.
+
+    Args:
+        lowest, highest: of the load's centre [m]; None when not solved.
+        status: solved, or why not.
+        reason: a sentence.
+    """
+
+    lowest: float | None
+    highest: float | None
+    status: Status
+    reason: str
+
+    def distance(self, height: float) -> float | None:
+        """How far a height [m] lies outside the interval [m]; None when the interval is not known."""
+        if self.lowest is None or self.highest is None:
+            return None
+        return max(height - self.highest, self.lowest - height, 0.0)
+
+
+class ReachProblem:
+    """One reach program for all designs of a scene."""
+
+    def __init__(self, scene: Scene, space: DesignSpace, options: IpoptOptions) -> None:
+        self._solver = Solver(_program(scene, space), options)
+
+    def solve(self, values: Sequence[float]) -> Reach:
+        """The interval of a design, given as one number per design parameter."""
+        highest, high = self._extreme(values, -1.0)
+        lowest, low = self._extreme(values, 1.0)
+        status = worst_status([high.status, low.status])
+        if status is not Status.SOLVED:
+            which = "highest" if high.status is not Status.SOLVED else "lowest"
+            reason = high.reason if high.status is not Status.SOLVED else low.reason
+            return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
+        return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
+
+    def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
+        """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
+        solves = [self._solver.solve([*values, sense], {"height": [start]}) for start in START_HEIGHTS]
+        solved = [raw for raw in solves if raw.status is Status.SOLVED]
+        if not solved:
+            return None, solves[0]
+        best = min(solved, key=lambda raw: sense * float(raw.values["height"][0]))
+        return float(best.values["height"][0]), best
+
+
+def _program(scene: Scene, space: DesignSpace) -> Program:
+    design = ca.SX.sym("design", len(space.parameters))
+    sense = ca.SX.sym("sense")
+    floor = scene.payload.size[2] / 2.0
+    height = Variable.column("height", [floor], [5.0], [START_HEIGHTS[0]], 1.0)
+    tree = space.resized(scene.robot.tree, ca.vertsplit(design))
+    robot = agent_block(scene.robot, tree, scene, height.value)
+    limit = [300.0] * 3
+    helping = {
+        side: Variable.column(f"helper.{side}_hand", [-x for x in limit], limit, [0.0] * 3, HAND_UNIT)
+        for side in SIDES
+    }
+    hands = {ROBOT: robot.hand_forces, HUMAN: {side: helping[side].value for side in SIDES}}
+    return Program(
+        name="reach",
+        variables=(height, *robot.variables, *helping.values()),
+        constraints=(*robot.constraints, *load_constraints(scene, hands)),
+        cost=sense * height.value + COMFORT * robot.comfort,
+        parameters=ca.vertcat(design, sense),
+    )

@@ -1,0 +1,93 @@
+"""What a posture problem gives: postures, or the reason why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.posture.program import RawSolution
+from evodesign.records import Status
+from evodesign.statics.scene import SIDES, Agent
+
+__all__ = ["AgentPosture", "Attempt", "HeightSolution", "posture_of"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class AgentPosture:
+    """How one agent stands, and what it bears. The agent's frame looks along +x at the load.
+
+    Args:
+        base_position: origin of the root link in the agent's frame [m], shape (3,).
+        base_angles: roll, pitch, yaw of the root link in the agent's frame [rad], shape (3,).
+        joints: position [rad] of each joint that moves.
+        torques: torque [N m] of each joint that moves.
+        hand_forces: force on the hand, by side, in the agent's frame [N], shape (3,).
+        foot_wrenches: force [N] and moment [N m] on the foot, by side, in the sole frame, shape (6,).
+    """
+
+    base_position: Array
+    base_angles: Array
+    joints: Mapping[str, float]
+    torques: Mapping[str, float]
+    hand_forces: Mapping[str, Array]
+    foot_wrenches: Mapping[str, Array]
+
+    @property
+    def torque_norm(self) -> float:
+        """Euclidean norm of the joint torques [N m]."""
+        return float(np.linalg.norm(list(self.torques.values())))
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One start of a posture problem and how it ended."""
+
+    status: Status
+    reason: str
+    iterations: int
+    seconds: float
+    cost: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeightSolution:
+    """The best checked posture at one height, or why there is none.
+
+    Args:
+        height: of the load's centre [m].
+        status: solved, or why not.
+        reason: a sentence.
+        postures: by agent name; empty unless solved.
+        residuals: what the independent check found, by name (SI units); empty unless solved.
+        attempts: every start tried, in order.
+    """
+
+    height: float
+    status: Status
+    reason: str
+    postures: Mapping[str, AgentPosture]
+    residuals: Mapping[str, float]
+    attempts: tuple[Attempt, ...]
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is a checked posture."""
+        return self.status is Status.SOLVED
+
+
+def posture_of(agent: Agent, solution: RawSolution) -> AgentPosture:
+    """One agent's part of a solved program."""
+    values = {name.split(".", 1)[1]: v for name, v in solution.values.items() if name.startswith(agent.name)}
+    return AgentPosture(
+        base_position=values["base_position"],
+        base_angles=values["base_angles"],
+        joints=dict(zip(agent.joints, values["joints"].tolist(), strict=True)),
+        torques=dict(zip(agent.joints, values["torques"].tolist(), strict=True)),
+        hand_forces={side: values[f"{side}_hand"] for side in SIDES},
+        foot_wrenches={side: values[f"{side}_foot"] for side in SIDES},
+    )

@@ -1,0 +1,94 @@
+"""The answer of `evodesign evaluate`: everything about one design, in one JSON object.
+
+Its shape is a promise. Units: heights and positions [m], angles [rad], torques [N m], forces [N], times [s].
+Positions and hand forces (on the hand) are in the agent's own frame, which looks along +x at the load above
+its origin; foot wrenches
+(force, then moment about the sole's origin) act on the foot and are in the sole frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from evodesign.posture.solution import AgentPosture, HeightSolution
+from evodesign.problem.build import Problem
+from evodesign.problem.objectives import DesignResult
+from evodesign.records import Assessment
+from evodesign.statics.scene import SIDES
+
+__all__ = ["answer"]
+
+
+def answer(
+    problem: Problem, values: Sequence[float], result: DesignResult, assessment: Assessment
+) -> dict[str, Any]:
+    """The JSON object of one design."""
+    return {
+        "problem": problem.name,
+        "design": dict(problem.space.named(values)),
+        "status": str(assessment.status),
+        "objectives": assessment.objectives,
+        "units": {objective.name: objective.unit for objective in problem.objectives},
+        "violation": assessment.violation,
+        "reach": {
+            "lowest_m": result.reach.lowest,
+            "highest_m": result.reach.highest,
+            "status": str(result.reach.status),
+            "reason": result.reach.reason,
+        },
+        "heights": [_height(height) for height in result.heights],
+    }
+
+
+def _height(height: HeightSolution) -> dict[str, Any]:
+    shown: dict[str, Any] = {
+        "height_m": height.height,
+        "status": str(height.status),
+        "reason": height.reason,
+        "solver": _solver(height),
+    }
+    if height.solved:
+        shown.update({name: _agent(posture) for name, posture in height.postures.items()})
+        shown["wrenches"] = {
+            f"{name}.{contact}": wrench
+            for name, posture in height.postures.items()
+            for contact, wrench in _wrenches(posture).items()
+        }
+        shown["residuals"] = dict(height.residuals)
+    return shown
+
+
+def _agent(posture: AgentPosture) -> dict[str, Any]:
+    return {
+        "torque_norm": posture.torque_norm,
+        "torques": dict(posture.torques),
+        "base": {
+            "position_m": posture.base_position.tolist(),
+            "rpy_rad": posture.base_angles.tolist(),
+        },
+        "joints": dict(posture.joints),
+    }
+
+
+def _wrenches(posture: AgentPosture) -> dict[str, list[float]]:
+    hands = {f"{side}_hand": [*posture.hand_forces[side].tolist(), 0.0, 0.0, 0.0] for side in SIDES}
+    feet = {f"{side}_foot": posture.foot_wrenches[side].tolist() for side in SIDES}
+    return {**hands, **feet}
+
+
+def _solver(height: HeightSolution) -> dict[str, Any]:
+    return {
+        "iterations": sum(attempt.iterations for attempt in height.attempts),
+        "seconds": sum(attempt.seconds for attempt in height.attempts),
+        "attempts": [
+            {
+                "status": str(attempt.status),
+                "reason": attempt.reason,
+                "iterations": attempt.iterations,
+                "seconds": attempt.seconds,
+                "cost": attempt.cost,
+            }
+            for attempt in height.attempts
+        ],
+    }

@@ -1,0 +1,191 @@
+"""From a problem's text to a problem: every name resolved, every number checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.errors import InputError, nearest_name
+from evodesign.posture.posture import EffortWeights
+from evodesign.posture.program import IpoptOptions
+from evodesign.problem.agents import human_agent, refuse_unknown, robot_agent
+from evodesign.problem.decode import decode_toml
+from evodesign.problem.designs import read_designs, start_genomes
+from evodesign.problem.file import ProblemFile, SearchTable
+from evodesign.problem.objectives import OBJECTIVES
+from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
+from evodesign.statics.contact import Ground
+from evodesign.statics.scene import Payload, Scene, StanceLimits
+from evodesign.tree.model import Tree
+
+__all__ = ["Problem", "build_problem"]
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A robot, a person, a load, the heights, and the hardware that may change.
+
+    Args:
+        name: of the problem.
+        source: its files, from which any worker builds it again.
+        scene: agents, load, ground and stance.
+        space: design parameters.
+        heights: required load heights [m].
+        weights: of the agents' efforts in the posture problem.
+        objectives: in the file's order, minimised ones first.
+        options: of the inner solver.
+        search: the file's `[search]` table.
+        start: genomes that a search begins with.
+    """
+
+    name: str
+    source: ProblemSource
+    scene: Scene
+    space: DesignSpace
+    heights: tuple[float, ...]
+    weights: EffortWeights
+    objectives: tuple[Objective, ...]
+    options: IpoptOptions
+    search: SearchTable
+    start: tuple[Genome, ...]
+
+    def settings(self, algorithm: str, population: int, seed: int) -> SearchSettings:
+        """Settings of a search over this problem."""
+        return SearchSettings(
+            algorithm=algorithm,
+            dimension=len(self.space.parameters),
+            objectives=len(self.objectives),
+            population=population,
+            seed=seed,
+            start=self.start,
+        )
+
+
+def build_problem(source: ProblemSource) -> Problem:
+    """The problem of a source.
+
+    Raises:
+        InputError: naming file, key, what was wanted and what was found.
+    """
+    tables = decode_toml(source.text, source.path, ProblemFile)
+    scene = Scene(
+        robot=robot_agent(tables, source),
+        human=human_agent(tables, source),
+        payload=Payload(tables.payload.size_m, tables.payload.mass_kg),
+        ground=_ground(tables),
+        stance=_stance(tables, source),
+    )
+    space = _space(tables, source, scene.robot.tree)
+    start: tuple[Genome, ...] = ()
+    if tables.search.start is not None:
+        name = tables.search.start
+        designs = read_designs(source.files[name], name, space, scene.robot.tree)
+        start = start_genomes(designs, space, name)
+    return Problem(
+        name=tables.name,
+        source=source,
+        scene=scene,
+        space=space,
+        heights=_heights(tables, source),
+        weights=EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human),
+        objectives=_objectives(tables, source),
+        options=IpoptOptions(iterations=tables.solver.iterations, seconds=tables.solver.seconds),
+        search=tables.search,
+        start=start,
+    )
+
+
+def _ground(tables: ProblemFile) -> Ground:
+    limits = tables.limits
+    return Ground(limits.friction, limits.torsional_friction_m, limits.least_foot_force_n)
+
+
+def _stance(tables: ProblemFile, source: ProblemSource) -> StanceLimits:
+    limits = tables.limits
+    least, most = limits.feet_apart_m
+    if least >= most:
+        raise InputError(source.path, "limits.feet_apart_m", "a rising pair", f"[{least:g}, {most:g}]")
+    return StanceLimits(
+        trunk_clearance=limits.trunk_clearance_m,
+        feet_apart=limits.feet_apart_m,
+        feet_stagger=limits.feet_stagger_m,
+        foot_yaw=limits.foot_yaw_rad,
+        base_tilt=limits.base_tilt_rad,
+        push=limits.push_n,
+    )
+
+
+def _heights(tables: ProblemFile, source: ProblemSource) -> tuple[float, ...]:
+    heights = tables.task.heights_m
+    for position, height in enumerate(heights):
+        if height in heights[:position]:
+            raise InputError(
+                source.path, f"task.heights_m[{position}]", "each height once", f"{height:g} twice"
+            )
+    return heights
+
+
+def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpace:
+    parameters = [
+        DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
+    ]
+    parameters += [
+        DesignParameter(ParameterKind.DENSITY, t.name, t.links, t.lower_kg_per_m3, t.upper_kg_per_m3)
+        for t in tables.design.density
+    ]
+    if not parameters:
+        raise InputError(source.path, "design", "a length or density parameter", "none")
+    seen: dict[tuple[ParameterKind, str], str] = {}
+    positions = dict.fromkeys(ParameterKind, 0)
+    for parameter in parameters:
+        key = f"design.{parameter.kind}[{positions[parameter.kind]}]"
+        positions[parameter.kind] += 1
+        _check_parameter(parameter, key, source, tree, seen)
+    space = DesignSpace(tuple(parameters))
+    try:
+        space.check(tree)
+    except InputError as error:
+        raise InputError(source.path, f"design ({error.key})", error.wanted, error.found) from error
+    return space
+
+
+def _check_parameter(
+    parameter: DesignParameter,
+    key: str,
+    source: ProblemSource,
+    tree: Tree,
+    seen: dict[tuple[ParameterKind, str], str],
+) -> None:
+    if parameter.lower >= parameter.upper:
+        wanted = f"less than upper ({parameter.upper:g})"
+        raise InputError(source.path, f"{key}.lower", wanted, f"{parameter.lower:g}")
+    for position, link in enumerate(parameter.links):
+        where = f"{key}.links[{position}]"
+        refuse_unknown(source, where, "link", link, tree.link_by_name, tree.name)
+        if (parameter.kind, link) in seen:
+            found = f"'{link}' also in {seen[parameter.kind, link]}"
+            raise InputError(source.path, where, "a link in one parameter of a kind", found)
+        seen[parameter.kind, link] = key
+    if (parameter.kind, f"name {parameter.group}") in seen:
+        raise InputError(source.path, f"{key}.name", "a unique name", f"'{parameter.group}' twice")
+    seen[parameter.kind, f"name {parameter.group}"] = key
+
+
+def _objectives(tables: ProblemFile, source: ProblemSource) -> tuple[Objective, ...]:
+    chosen = [
+        *((Sense.MINIMISE, position, name) for position, name in enumerate(tables.objectives.minimise)),
+        *((Sense.MAXIMISE, position, name) for position, name in enumerate(tables.objectives.maximise)),
+    ]
+    if not chosen:
+        raise InputError(source.path, "objectives", "at least one objective", "none")
+    names = [name for _, _, name in chosen]
+    objectives = []
+    for sense, position, name in chosen:
+        key = f"objectives.{sense}[{position}]"
+        if name not in OBJECTIVES:
+            wanted = f"one of {', '.join(OBJECTIVES)}"
+            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, OBJECTIVES)}")
+        if names.count(name) > 1:
+            raise InputError(source.path, key, "each objective once", f"'{name}' twice")
+        objectives.append(Objective(name=name, sense=sense, unit=OBJECTIVES[name].unit))
+    return tuple(objectives)

@@ -1,0 +1,125 @@
+"""One design's worth: reach first, then a posture per height, then the objectives.
+
+An evaluation depends on problem and design alone: no state is carried from one to the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.posture import PostureProblem
+from evodesign.posture.reach import Reach, ReachProblem
+from evodesign.posture.solution import HeightSolution
+from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.objectives import OBJECTIVES, DesignResult
+from evodesign.records import (
+    Assessment,
+    Genome,
+    HeightOutcome,
+    ProblemSource,
+    ReachOutcome,
+    Status,
+    worst_status,
+)
+from evodesign.statics.scene import HUMAN, ROBOT
+
+__all__ = ["AssessmentFactory", "Evaluator"]
+
+
+class Evaluator:
+    """The inner problems of a problem, built once and solved for any number of designs."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        self._reach = ReachProblem(problem.scene, problem.space, problem.options)
+        self._posture = PostureProblem(problem.scene, problem.space, problem.weights, problem.options)
+        self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
+
+    def solve(self, values: Sequence[float]) -> DesignResult:
+        """Reach and postures of a design given as one number per parameter."""
+        scene = self.problem.scene
+        tree = self.problem.space.resized(scene.robot.tree, values)
+        checker = Checker(scene, tree, self._human)
+        reach = self._reach.solve(values)
+        heights = tuple(self._at_height(values, height, reach, checker) for height in self.problem.heights)
+        return DesignResult(scene.robot, tree, reach, heights)
+
+    def assess(self, genome: Genome) -> Assessment:
+        """What a genome is worth."""
+        values = self.problem.space.values(genome)
+        return self.assessment(values, self.solve(values))
+
+    def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
+        """A design's results in short, as they are logged."""
+        found = {
+            objective.name: OBJECTIVES[objective.name].value(result) for objective in self.problem.objectives
+        }
+        heights = tuple(_outcome(height) for height in result.heights)
+        failed = [height for height in result.heights if not height.solved]
+        return Assessment(
+            design=dict(self.problem.space.named(values)),
+            objectives={name: value for name, value in found.items() if value is not None},
+            violation=_violation(result),
+            status=worst_status([result.reach.status, *(height.status for height in result.heights)]),
+            reason=failed[0].reason if failed else "solved",
+            reach=ReachOutcome(
+                lowest_m=result.reach.lowest,
+                highest_m=result.reach.highest,
+                status=result.reach.status,
+                reason=result.reach.reason,
+            ),
+            heights=heights,
+        )
+
+    def _at_height(
+        self, values: Sequence[float], height: float, reach: Reach, checker: Checker
+    ) -> HeightSolution:
+        distance = reach.distance(height)
+        if distance is None:
+            return HeightSolution(height, reach.status, reach.reason, {}, {}, ())
+        if distance > 0.0:
+            reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
+            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, ())
+        return self._posture.solve(values, height, checker)
+
+
+def _violation(result: DesignResult) -> float | None:
+    """Sum over heights of the distance to the reachable interval [m]; None when a failure hides it."""
+    distances = [result.reach.distance(height.height) for height in result.heights]
+    total = 0.0
+    for distance, height in zip(distances, result.heights, strict=True):
+        if distance is None or (distance == 0.0 and not height.solved):
+            return None
+        total += distance
+    return total
+
+
+def _outcome(height: HeightSolution) -> HeightOutcome:
+    return HeightOutcome(
+        height_m=height.height,
+        status=height.status,
+        reason=height.reason,
+        robot_torque_norm=height.postures[ROBOT].torque_norm if height.solved else None,
+        human_torque_norm=height.postures[HUMAN].torque_norm if height.solved else None,
+        iterations=sum(attempt.iterations for attempt in height.attempts),
+        residual=max(height.residuals.values()) if height.solved else None,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AssessmentFactory:
+    """Builds the evaluation of a problem in whichever process it is called.
+
+    Args:
+        digest: of the source; two factories of equal digest build the same evaluation.
+        source: the problem's text and files.
+    """
+
+    digest: str
+    source: ProblemSource = field(compare=False)
+
+    def __call__(self) -> Callable[[Genome], Assessment]:
+        """Build the inner problems and return the function from genome to assessment."""
+        return Evaluator(build_problem(self.source)).assess

@@ -1,0 +1,177 @@
+"""The problem file: its tables, keys, units and defaults, exactly as a user writes them.
+
+Every key carries its unit. Decoding is strict: unknown keys, wrong types and values out of range are errors
+that name file, key, what was wanted and what was found.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from evodesign.tree.anthropometry import Sex
+
+__all__ = ["HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
+
+Positive = Annotated[float, Meta(gt=0.0)]
+NotNegative = Annotated[float, Meta(ge=0.0)]
+Name = Annotated[str, Meta(min_length=1)]
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of all tables."""
+
+
+class HandsTable(Table, frozen=True):
+    """Frames that meet the load."""
+
+    left: Name = "l_hand_frame"
+    right: Name = "r_hand_frame"
+
+
+class SolesTable(Table, frozen=True):
+    """Frames under the feet and the size of a sole (length, width)."""
+
+    left: Name = "l_sole"
+    right: Name = "r_sole"
+    size_m: tuple[Positive, Positive] = (0.236, 0.100)
+
+
+class RobotTable(Table, frozen=True):
+    """`[robot]`: a URDF with primitive shapes, and the parts of it that matter."""
+
+    urdf: Name
+    hands: HandsTable = HandsTable()
+    soles: SolesTable = SolesTable()
+    trunk: tuple[Name, ...] = ("root_link", "chest")
+    joints: tuple[Name, ...] = ()
+
+
+class HumanTable(Table, frozen=True):
+    """`[human]`: a person by stature, mass and sex, or a URDF with the names of its parts."""
+
+    stature_m: Positive | None = None
+    mass_kg: Positive | None = None
+    sex: Sex | None = None
+    urdf: Name | None = None
+    hands: HandsTable | None = None
+    soles: SolesTable | None = None
+    trunk: tuple[Name, ...] = ()
+    joints: tuple[Name, ...] = ()
+
+
+class PayloadTable(Table, frozen=True):
+    """`[payload]`: a box; size is depth (robot to person), width, height."""
+
+    size_m: tuple[Positive, Positive, Positive]
+    mass_kg: Positive
+    grasp: Literal["point"] = "point"
+
+
+class WeightsTable(Table, frozen=True):
+    """Weights of the squared torques in the posture problem."""
+
+    robot: NotNegative = 1.0
+    human: NotNegative = 1.0
+
+
+class TaskTable(Table, frozen=True):
+    """`[task]`: the heights at which the load must be held."""
+
+    heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)]
+    effort_weights: WeightsTable = WeightsTable()
+
+
+class LimitsTable(Table, frozen=True):
+    """`[limits]`: ground and stance; see `StanceLimits` and `Ground` for each."""
+
+    friction: Positive = 0.5
+    torsional_friction_m: NotNegative = 0.02
+    least_foot_force_n: NotNegative = 0.0
+    trunk_clearance_m: NotNegative = 0.15
+    feet_apart_m: tuple[NotNegative, Positive] = (0.12, 0.50)
+    feet_stagger_m: NotNegative = 0.30
+    foot_yaw_rad: NotNegative = 0.35
+    base_tilt_rad: Positive = 0.60
+    push_n: NotNegative = 5.0
+
+
+class LengthTable(Table, frozen=True):
+    """`[[design.length]]`: a length multiplier shared by links."""
+
+    name: Name
+    links: Annotated[tuple[Name, ...], Meta(min_length=1)]
+    lower: Positive
+    upper: Positive
+
+
+class DensityTable(Table, frozen=True):
+    """`[[design.density]]`: a density shared by links."""
+
+    name: Name
+    links: Annotated[tuple[Name, ...], Meta(min_length=1)]
+    lower_kg_per_m3: Positive
+    upper_kg_per_m3: Positive
+
+
+class DesignTable(Table, frozen=True):
+    """`[design]`: what may change."""
+
+    length: tuple[LengthTable, ...] = ()
+    density: tuple[DensityTable, ...] = ()
+
+
+class ObjectivesTable(Table, frozen=True):
+    """`[objectives]`: names from the registry of objectives."""
+
+    minimise: tuple[Name, ...] = ()
+    maximise: tuple[Name, ...] = ()
+
+
+class SearchTable(Table, frozen=True):
+    """`[search]`: how the design space is searched; `start` names a file of designs to begin with."""
+
+    algorithm: Name = "nsga2"
+    population: Annotated[int, Meta(ge=2)] = 48
+    evaluations: Annotated[int, Meta(ge=1)] = 1920
+    seed: Annotated[int, Meta(ge=0)] = 1
+    start: Name | None = None
+
+
+class SolverTable(Table, frozen=True):
+    """`[solver]`: limits of one inner solve."""
+
+    iterations: Annotated[int, Meta(ge=1)] = 300
+    seconds: Positive = 20.0
+
+
+class ProblemFile(Table, frozen=True):
+    """A whole problem file."""
+
+    name: Name
+    robot: RobotTable
+    human: HumanTable
+    payload: PayloadTable
+    task: TaskTable
+    design: DesignTable
+    objectives: ObjectivesTable
+    limits: LimitsTable = LimitsTable()
+    search: SearchTable = SearchTable()
+    solver: SolverTable = SolverTable()
+
+
+class DesignEntry(Table, frozen=True):
+    """`[[design]]` of a population file: values by group; what is left out stays unscaled."""
+
+    name: Name
+    length: dict[str, Positive] = {}
+    density_kg_per_m3: dict[str, Positive] = {}
+
+
+class PopulationFile(Table, frozen=True):
+    """A whole population file."""
+
+    name: Name
+    design: Annotated[tuple[DesignEntry, ...], Meta(min_length=1)]

@@ -1,0 +1,108 @@
+"""Objectives: pure functions of a design's results.
+
+Adding one is a function here and a line in `OBJECTIVES`; the problem file then knows its name. A function
+gives None where its value does not exist (no posture, no reach): absent, never large.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from evodesign.posture.reach import Reach
+from evodesign.posture.solution import HeightSolution
+from evodesign.statics.balance import standing_height_of_mass
+from evodesign.statics.scene import HUMAN, ROBOT, Agent
+from evodesign.tree.model import Tree
+
+__all__ = ["OBJECTIVES", "DesignResult", "ObjectiveKind"]
+
+
+@dataclass(frozen=True, slots=True)
+class DesignResult:
+    """Everything that was computed of one design.
+
+    Args:
+        robot: the agent as the file describes it.
+        tree: the robot of the design.
+        reach: interval of load heights that it can hold.
+        heights: one solution per required height.
+    """
+
+    robot: Agent
+    tree: Tree
+    reach: Reach
+    heights: tuple[HeightSolution, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectiveKind:
+    """An objective's unit and formula."""
+
+    unit: str
+    value: Callable[[DesignResult], float | None]
+
+
+def _torque_norms(result: DesignResult, agent: str) -> list[float] | None:
+    """Torque norm of an agent per required height [N m]; None unless all are solved."""
+    if not all(height.solved for height in result.heights):
+        return None
+    return [height.postures[agent].torque_norm for height in result.heights]
+
+
+def _mean_torque(result: DesignResult, agent: str) -> float | None:
+    norms = _torque_norms(result, agent)
+    return None if norms is None else float(np.mean(norms))
+
+
+def _worst_torque(result: DesignResult, agent: str) -> float | None:
+    norms = _torque_norms(result, agent)
+    return None if norms is None else max(norms)
+
+
+def robot_torque(result: DesignResult) -> float | None:
+    """Mean over the required heights of the robot's |tau|_2 [N m] (paper, task t1)."""
+    return _mean_torque(result, ROBOT)
+
+
+def human_torque(result: DesignResult) -> float | None:
+    """Mean over the required heights of the person's |tau|_2 [N m] (paper, task t1)."""
+    return _mean_torque(result, HUMAN)
+
+
+def worst_robot_torque(result: DesignResult) -> float | None:
+    """Largest over the required heights of the robot's |tau|_2 [N m]."""
+    return _worst_torque(result, ROBOT)
+
+
+def worst_human_torque(result: DesignResult) -> float | None:
+    """Largest over the required heights of the person's |tau|_2 [N m]."""
+    return _worst_torque(result, HUMAN)
+
+
+def reach_height(result: DesignResult) -> float | None:
+    """Highest load that the robot can hold [m]."""
+    return result.reach.highest
+
+
+def mass(result: DesignResult) -> float:
+    """Mass of the robot [kg]."""
+    return float(sum(link.inertia.mass for link in result.tree.links))
+
+
+def com_height(result: DesignResult) -> float:
+    """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
+    return standing_height_of_mass(result.tree, tuple(result.robot.soles.values()))
+
+
+OBJECTIVES: Mapping[str, ObjectiveKind] = {
+    "robot_torque": ObjectiveKind("N m", robot_torque),
+    "human_torque": ObjectiveKind("N m", human_torque),
+    "worst_robot_torque": ObjectiveKind("N m", worst_robot_torque),
+    "worst_human_torque": ObjectiveKind("N m", worst_human_torque),
+    "reach_height": ObjectiveKind("m", reach_height),
+    "mass": ObjectiveKind("kg", mass),
+    "com_height": ObjectiveKind("m", com_height),
+}

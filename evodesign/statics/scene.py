@@ -1,0 +1,115 @@
+"""The scene: a robot and a person facing each other, holding a level load.
+
+World frame: origin on the ground under the load, x from the robot towards the person, z up. Each agent also
+has a frame of its own, the world turned about z so that the agent looks along +x at the load; in it, robot
+and person obey the same constraints.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Vector
+from evodesign.body.shape import Box
+from evodesign.statics.contact import Ground, SoleSize
+from evodesign.tree.model import Tree
+
+__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Payload", "Scene", "StanceLimits"]
+
+ROBOT, HUMAN = "robot", "human"
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True, slots=True)
+class Payload:
+    """A box held level by four hands.
+
+    Args:
+        size: depth along x (robot to person), width along y, height along z [m].
+        mass: [kg].
+    """
+
+    size: Vector
+    mass: float
+
+    @property
+    def inertia(self) -> Inertia:
+        """Inertia about the box's centre, consistent with its mass."""
+        a, b, c = Box(*self.size).moments(self.mass)
+        return Inertia(self.mass, (0.0, 0.0, 0.0), ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c)))
+
+    def grasp(self, side: str) -> Vector:
+        """Grasp point of an agent's hand, from the load's centre in that agent's frame [m].
+
+        It lies on the top edge that faces the agent, at 0.4 of the width to its left or right.
+        """
+        depth, width, height = self.size
+        return (-depth / 2.0, 0.4 * width * (1.0 if side == "left" else -1.0), height / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class StanceLimits:
+    """Bounds that keep a posture one that a robot or person would take.
+
+    Args:
+        trunk_clearance: least distance of the trunk's frames from the load's near edge, along x [m].
+        feet_apart: least and largest sideways distance of the soles' origins [m].
+        feet_stagger: largest difference of the soles' origins along x [m].
+        foot_yaw: largest turn of a foot against the agent's x [rad].
+        base_tilt: largest roll, pitch and yaw of the root link [rad].
+        push: largest horizontal force between the agents [N].
+    """
+
+    trunk_clearance: float = 0.15
+    feet_apart: tuple[float, float] = (0.12, 0.50)
+    feet_stagger: float = 0.30
+    foot_yaw: float = 0.35
+    base_tilt: float = 0.60
+    push: float = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Agent:
+    """A robot or person and the parts of it that matter for the task.
+
+    Args:
+        name: `robot` or `human`.
+        tree: links and joints.
+        joints: names of the joints that move; the others are held at zero.
+        hands: frame that meets the load, by side.
+        soles: frame under the foot, by side.
+        sole_size: of each foot.
+        trunk: frames that keep clear of the load.
+    """
+
+    name: str
+    tree: Tree
+    joints: tuple[str, ...]
+    hands: Mapping[str, str]
+    soles: Mapping[str, str]
+    sole_size: SoleSize
+    trunk: tuple[str, ...]
+
+    @property
+    def facing(self) -> float:
+        """Rotation about z that takes the agent's frame to the world [rad]."""
+        return math.pi if self.name == HUMAN else 0.0
+
+    @property
+    def sign(self) -> float:
+        """cos(facing): horizontal components change sign between the person's frame and the world."""
+        return -1.0 if self.name == HUMAN else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Robot, person and load, and the limits under which they stand."""
+
+    robot: Agent
+    human: Agent
+    payload: Payload
+    ground: Ground = field(default_factory=Ground)
+    stance: StanceLimits = field(default_factory=StanceLimits)
