@@ -77,7 +77,7 @@ class Objective(Record, frozen=True):
 class Parameter(Record, frozen=True):
     """One design parameter: a length multiplier (unit "1") or a density (unit "kg/m^3").
 
-    A genome's coordinate u in [0, 1] stands for lower + u (upper - lower).
+    A genome's coordinate u in [0, 1] stands for (1 - u) lower + u upper.
     """
 
     name: str
@@ -89,9 +89,14 @@ class Parameter(Record, frozen=True):
 def design_of(parameters: tuple[Parameter, ...], genome: Genome) -> dict[str, float]:
     """Parameter values, by name, of a genome."""
     return {
-        parameter.name: parameter.lower + coordinate * (parameter.upper - parameter.lower)
+        parameter.name: _between(parameter.lower, parameter.upper, coordinate)
         for parameter, coordinate in zip(parameters, genome, strict=True)
     }
+
+
+def _between(lower: float, upper: float, share: float) -> float:
+    """The number at a share of the way from lower to upper, never past them by rounding."""
+    return min(max(lower * (1.0 - share) + upper * share, lower), upper)
 
 
 class ReachOutcome(Record, frozen=True):

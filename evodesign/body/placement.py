@@ -93,8 +93,16 @@ def matrix_from_rpy(rpy: Sequence[float]) -> Matrix:
 
 
 def rpy_from_matrix(matrix: Matrix) -> tuple[float, float, float]:
-    """Roll, pitch and yaw [rad] of a rotation; at pitch +-90 degrees roll is taken as zero."""
+    """Roll, pitch and yaw [rad] of a rotation m = Rz(yaw) Ry(pitch) Rx(roll), pitch from -90 to 90 degrees.
+
+        yaw = atan2(m_10, m_00)        pitch = atan2(-m_20, sqrt(m_00^2 + m_10^2))
+        (0, cos roll, -sin roll) = second row of Rz(-yaw) m = Ry(pitch) Rx(roll)
+
+    At pitch +-90 degrees m tells only roll -+ yaw, and rounding picks the yaw. The second row, unlike the
+    third, does not vanish there, so that roll makes up for whatever yaw was picked.
+    """
+    yaw = math.atan2(matrix[1][0], matrix[0][0])
     pitch = math.atan2(-matrix[2][0], math.hypot(matrix[0][0], matrix[1][0]))
-    if math.hypot(matrix[0][0], matrix[1][0]) < 1e-12:
-        return 0.0, pitch, math.atan2(-matrix[0][1], matrix[1][1])
-    return math.atan2(matrix[2][1], matrix[2][2]), pitch, math.atan2(matrix[1][0], matrix[0][0])
+    s, c = math.sin(yaw), math.cos(yaw)
+    roll = math.atan2(s * matrix[0][2] - c * matrix[1][2], c * matrix[1][1] - s * matrix[0][1])
+    return roll, pitch, yaw

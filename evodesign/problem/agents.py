@@ -44,11 +44,11 @@ def _generated(table: HumanTable, source: ProblemSource) -> Agent:
     if table.stature_m is None or table.mass_kg is None or table.sex is None:
         missing = next(key for key, value in figures.items() if value is None)
         raise InputError(source.path, f"human.{missing}", "this key, or urdf", "nothing")
-    someone = Person(table.stature_m, table.mass_kg, table.sex)
     try:
-        tree = human_tree(someone)
+        someone = Person(table.stature_m, table.mass_kg, table.sex)
     except InputError as error:
         raise InputError(source.path, f"human.{error.key}", error.wanted, error.found) from error
+    tree = human_tree(someone)
     hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
     soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
     joints = table.joints or DEFAULT_JOINTS

@@ -83,6 +83,7 @@ def _explained(error: msgspec.ValidationError, raw: Any, source: str) -> InputEr
     text = str(error)
     match = re.fullmatch(r"(.*?)(?: - at `(?:key in )?\$\.?(.*)`)?", text, re.DOTALL)
     message, key = (match.group(1), match.group(2) or "") if match else (text, "")
+    key = key.replace("[...]", "")  # a value under some key of a free table
     missing = re.fullmatch(r"Object missing required field `(.*)`", message)
     if missing:
         where = f"{key}.{missing.group(1)}" if key else missing.group(1)

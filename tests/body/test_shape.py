@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -10,11 +11,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evodesign.body.inertia import Inertia, total
-from evodesign.body.placement import Placement, matrix_from_rpy, rpy_from_matrix
+from evodesign.body.placement import Placement, matrix_from_rpy, multiply, rpy_from_matrix, transpose
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 
 sizes = st.floats(0.05, 2.0)
 angles = st.floats(-3.0, 3.0)
+upright = st.sampled_from([-math.pi / 2, math.pi / 2])
+nearly_upright = st.builds(
+    lambda pitch, side, exponent: pitch + side * 10.0**exponent,
+    upright,
+    st.sampled_from([-1.0, 1.0]),
+    st.floats(-17.0, -2.0),
+)
+pitches = st.floats(-1.5, 1.5) | upright | nearly_upright
 coordinates = st.floats(-1.0, 1.0)
 shapes = st.one_of(
     st.builds(Sphere, sizes), st.builds(Cylinder, sizes, sizes), st.builds(Box, sizes, sizes, sizes)
@@ -110,16 +119,29 @@ def test_massless_total_stays_at_the_origin() -> None:
     assert total([]) == Inertia()
 
 
-@given(st.tuples(angles, st.floats(-1.5, 1.5), angles))
+@given(st.tuples(angles, pitches, angles))
 def test_roll_pitch_and_yaw_survive_the_round_trip(rpy: tuple[float, float, float]) -> None:
     again = matrix_from_rpy(rpy_from_matrix(matrix_from_rpy(rpy)))
-    assert np.allclose(again, matrix_from_rpy(rpy), atol=1e-12)
+    assert np.allclose(again, matrix_from_rpy(rpy), rtol=0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2])
-def test_vertical_pitch_keeps_the_rotation(pitch: float) -> None:
-    matrix = matrix_from_rpy((0.3, pitch, 0.8))
-    assert np.allclose(matrix_from_rpy(rpy_from_matrix(matrix)), matrix, atol=1e-9)
+@given(st.tuples(angles, pitches, angles), st.tuples(angles, angles, angles))
+def test_a_rotation_that_carries_rounding_keeps_its_place_when_upright(
+    rpy: tuple[float, float, float], detour: tuple[float, float, float]
+) -> None:
+    there = matrix_from_rpy(detour)
+    matrix = multiply(there, multiply(transpose(there), matrix_from_rpy(rpy)))
+    assert np.allclose(matrix_from_rpy(rpy_from_matrix(matrix)), matrix, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(3))))
+@pytest.mark.parametrize("signs", list(itertools.product((1.0, -1.0), repeat=2)))
+def test_an_exact_quarter_turn_survives_the_round_trip(
+    order: tuple[int, ...], signs: tuple[float, ...]
+) -> None:
+    first, second = (sign * np.eye(3)[i] for sign, i in zip(signs, order[:2], strict=True))
+    turn = np.array([first, second, np.cross(first, second)])
+    assert np.allclose(matrix_from_rpy(rpy_from_matrix(turn.tolist())), turn, rtol=0.0, atol=1e-12)
 
 
 @given(placements, placements, placements)

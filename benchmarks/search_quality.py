@@ -1,0 +1,93 @@
+"""Does a search find a better front than random sampling with the same budget?
+
+Every algorithm searches the default problem with every seed; hypervolumes are taken against one reference
+point, the worst of all feasible evaluations of all runs made worse by a tenth of the range. Results go to
+benchmarks/results/search_quality.json and are printed as a Markdown table.
+
+    python benchmarks/search_quality.py [--evaluations 320] [--population 32] [--seeds 3] [--jobs 2]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from evodesign.analysis.hypervolume import hypervolume, reference_point
+from evodesign.runlog.run import Run, read_run
+
+HERE = Path(__file__).parent
+PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
+ALGORITHMS = ("random", "nsga2", "cma-es")
+
+
+def main() -> None:
+    """Run all searches, compare, write and print."""
+    options = _options()
+    with tempfile.TemporaryDirectory() as folder:
+        runs = {
+            (algorithm, seed): _search(Path(folder), algorithm, seed, options)
+            for algorithm in ALGORITHMS
+            for seed in range(1, options.seeds + 1)
+        }
+    objectives = next(iter(runs.values())).header.objectives
+    reference = reference_point(objectives, [e for run in runs.values() for e in run.evaluations])
+    if reference is None:
+        sys.exit("no run found a feasible design")
+    volumes = {key: hypervolume(objectives, run.evaluations, reference) for key, run in runs.items()}
+    rows = [
+        {
+            "algorithm": algorithm,
+            "seed": seed,
+            "hypervolume": volume,
+            "ratio_to_random": volume / volumes["random", seed],
+        }
+        for (algorithm, seed), volume in volumes.items()
+    ]
+    result = {
+        "problem": PROBLEM.name,
+        "evaluations": options.evaluations,
+        "population": options.population,
+        "reference": reference,
+        "rows": rows,
+    }
+    target = HERE / "results" / "search_quality.json"
+    target.parent.mkdir(exist_ok=True)
+    target.write_text(json.dumps(result, indent=2) + "\n")
+    print(f"| algorithm | seed | hypervolume | ratio to random |\n|---|---|---|---|\n{_table(rows)}")
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Searches against random sampling.")
+    for name, default in (("evaluations", 320), ("population", 32), ("seeds", 3), ("jobs", 2)):
+        parser.add_argument(f"--{name}", type=int, default=default)
+    return parser.parse_args()
+
+
+def _search(folder: Path, algorithm: str, seed: int, options: argparse.Namespace) -> Run:
+    run = folder / f"{algorithm}-{seed}"
+    numbers = {
+        "--seed": seed,
+        "--evaluations": options.evaluations,
+        "--population": options.population,
+        "--jobs": options.jobs,
+    }
+    command = [sys.executable, "-c", "from evodesign.cli import main; main()", "search", str(PROBLEM)]
+    command += ["--run", str(run), "--algorithm", algorithm, "--json"]
+    command += [str(part) for pair in numbers.items() for part in pair]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return read_run(run)
+
+
+def _table(rows: list[dict[str, str | int | float]]) -> str:
+    return "\n".join(
+        f"| {row['algorithm']} | {row['seed']} | {row['hypervolume']:.3f} | {row['ratio_to_random']:.2f} |"
+        for row in rows
+    )
+
+
+if __name__ == "__main__":
+    main()

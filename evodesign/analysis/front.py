@@ -1,0 +1,50 @@
+"""Which evaluations no other one beats: the front of a run.
+
+A design dominates another when it is nowhere worse and somewhere better. Only feasible designs whose
+objectives all exist take part. moocore compares; maximised objectives are negated for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import moocore
+import numpy as np
+
+from evodesign.records import Assessment, Evaluation, Objective, Sense
+
+__all__ = ["comparable", "front", "minimised", "to_minimise"]
+
+
+def to_minimise(objective: Objective, value: float) -> float:
+    """A natural value turned so that less is better; applied twice, the natural value again."""
+    return -value if objective.sense is Sense.MAXIMISE else value
+
+
+def minimised(objectives: Sequence[Objective], assessment: Assessment) -> tuple[float, ...] | None:
+    """The assessment's objectives in the given order, maximised ones negated; None if one is absent."""
+    values = assessment.objectives
+    if any(objective.name not in values for objective in objectives):
+        return None
+    return tuple(to_minimise(objective, values[objective.name]) for objective in objectives)
+
+
+def comparable(
+    objectives: Sequence[Objective], evaluations: Iterable[Evaluation]
+) -> list[tuple[Evaluation, tuple[float, ...]]]:
+    """Feasible evaluations with all objectives, in order of number, each with its minimised values."""
+    found = [
+        (evaluation, values)
+        for evaluation in evaluations
+        if evaluation.feasible and (values := minimised(objectives, evaluation.assessment)) is not None
+    ]
+    return sorted(found, key=lambda pair: pair[0].number)
+
+
+def front(objectives: Sequence[Objective], evaluations: Iterable[Evaluation]) -> tuple[Evaluation, ...]:
+    """Feasible evaluations that none dominates, in order of number; of equal ones the earliest."""
+    candidates = comparable(objectives, evaluations)
+    if not candidates:
+        return ()
+    kept = moocore.is_nondominated(np.array([values for _, values in candidates]))
+    return tuple(evaluation for (evaluation, _), keep in zip(candidates, kept, strict=True) if keep)

@@ -1,0 +1,105 @@
+"""The commands' names, arguments and options.
+
+What a command needs is imported when it is called: showing a front must not wait for CasADi to load.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["COMMANDS"]
+
+ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
+RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+Evaluations = Annotated[
+    int | None, typer.Option(min=1, help="Total evaluations of the run.", show_default="as in the problem")
+]
+Jobs = Annotated[int, typer.Option(min=1, help="Evaluations that run at the same time.")]
+PoolName = Annotated[str, typer.Option("--pool", help="Where evaluations run: serial or joblib.")]
+
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def search(
+    problem: ProblemPath,
+    run: Annotated[
+        Path | None, typer.Option(help="Directory of the new run.", show_default="runs/NAME-TIME")
+    ] = None,
+    algorithm: Annotated[
+        str | None, typer.Option(help="nsga2, cma-es or random.", show_default="as in the problem")
+    ] = None,
+    evaluations: Evaluations = None,
+    population: Annotated[
+        int | None,
+        typer.Option(min=2, help="Evaluations of a generation.", show_default="as in the problem"),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Of the search.", show_default="as in the problem")
+    ] = None,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
+    from evodesign.cli.searching import Wishes, start
+
+    start(problem, run, Wishes(algorithm, evaluations, population, seed), jobs, pool, json)
+
+
+def resume(
+    run: RunPath,
+    evaluations: Evaluations = None,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """Go on with a run that was stopped or killed, or give a finished one a larger budget."""
+    from evodesign.cli.searching import go_on
+
+    go_on(run, evaluations, jobs, pool, json)
+
+
+def front(
+    run: RunPath,
+    json: Json = False,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write a figure of the front (HTML).")
+    ] = None,
+) -> None:
+    """The designs of a run that no other design beats in every objective."""
+    from evodesign.cli.fronts import show
+
+    show(run, json, plot)
+
+
+def evaluate(
+    problem: ProblemPath,
+    design: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="File of named designs.", show_default="the unscaled robot"),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(help="Which design of the file.", show_default="the file's only one"),
+    ] = None,
+    json: Json = False,
+) -> None:
+    """One design in full: reach, postures, torques, wrenches, residuals."""
+    from evodesign.cli.designs import evaluate_design
+
+    evaluate_design(problem, design, name, json)
+
+
+def check(problem: ProblemPath, json: Json = False) -> None:
+    """Read a problem and show what was understood: agents, load, task, and what each parameter changes."""
+    from evodesign.cli.designs import check_problem
+
+    check_problem(problem, json)
+
+
+COMMANDS = (search, resume, front, evaluate, check)

@@ -1,0 +1,61 @@
+"""`evaluate` and `check`: one design in full, one problem as it was understood."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from evodesign.cli.design_tables import assessment_tables
+from evodesign.cli.model_table import model_json, model_tables
+from evodesign.cli.output import console, print_json
+from evodesign.errors import InputError, nearest_name
+from evodesign.problem.answer import answer
+from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.designs import read_designs
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.source import read_source, read_text
+
+__all__ = ["check_problem", "evaluate_design"]
+
+UNSCALED = "unscaled"
+
+
+def evaluate_design(problem: Path, design: Path | None, name: str | None, json: bool) -> None:
+    """Solve one design and print everything about it."""
+    built = build_problem(read_source(problem))
+    chosen, values = _chosen(built, design, name)
+    evaluator = Evaluator(built)
+    result = evaluator.solve(values)
+    assessment = evaluator.assessment(values, result)
+    if json:
+        print_json(answer(built, values, result, assessment))
+        return
+    for table in assessment_tables(built, chosen, result, assessment):
+        console().print(table)
+
+
+def check_problem(problem: Path, json: bool) -> None:
+    """Read a problem and print what was understood."""
+    built = build_problem(read_source(problem))
+    if json:
+        print_json(model_json(built))
+        return
+    for table in model_tables(built):
+        console().print(table)
+
+
+def _chosen(problem: Problem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:
+    """Name and parameter values of the design that the options ask for."""
+    tree = problem.scene.robot.tree
+    if file is None:
+        if name is not None and name != UNSCALED:
+            raise InputError("--name", "", "a --design FILE that holds it", "no file")
+        return UNSCALED, problem.space.unscaled(tree)
+    designs = read_designs(read_text(file, "--design", ""), str(file), problem.space, tree)
+    if name is None and len(designs) == 1:
+        name = next(iter(designs))
+    if name is None:
+        raise InputError("--name", "", f"one of the designs {', '.join(designs)} of '{file}'", "nothing")
+    if name not in designs:
+        wanted = f"one of the designs {', '.join(designs)} of '{file}'"
+        raise InputError("--name", "", wanted, f"'{name}'{nearest_name(name, designs)}")
+    return name, designs[name]

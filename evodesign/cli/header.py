@@ -1,0 +1,66 @@
+"""The header of a run, and the evaluation that a header describes."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+import subprocess
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+import msgspec
+
+from evodesign.problem.build import Problem
+from evodesign.problem.evaluate import AssessmentFactory
+from evodesign.records import FORMAT_VERSION, RunHeader, SearchSettings
+
+__all__ = ["header_of", "problem_factory", "renewed"]
+
+PACKAGES = ("evodesign", "casadi", "pin", "numpy", "pymoo", "cma", "moocore", "joblib", "mcap")
+
+
+def header_of(problem: Problem, settings: SearchSettings, budget: int) -> RunHeader:
+    """The header of a new run."""
+    return RunHeader(
+        format_version=FORMAT_VERSION,
+        problem=problem.source,
+        problem_name=problem.name,
+        parameters=problem.space.records,
+        objectives=problem.objectives,
+        search=settings,
+        budget=budget,
+        versions=_versions(),
+        git=_git_state(),
+        started=_now(),
+    )
+
+
+def renewed(header: RunHeader) -> RunHeader:
+    """The header of a later session of the same run."""
+    return msgspec.structs.replace(header, versions=_versions(), git=_git_state(), started=_now())
+
+
+def problem_factory(header: RunHeader) -> AssessmentFactory:
+    """The evaluation of a header's problem, as a worker builds it."""
+    digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
+    return AssessmentFactory(digest, header.problem)
+
+
+def _versions() -> dict[str, str]:
+    return {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}}
+
+
+def _git_state() -> str | None:
+    """Commit of the checkout that evodesign runs from, with `-dirty` if it was changed; None outside one."""
+    here = Path(__file__).parent
+    command = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=5.0, check=True)  # noqa: S603
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip() or None
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -1,0 +1,30 @@
+"""Where text goes."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import msgspec
+from rich.console import Console
+
+__all__ = ["console", "figure", "print_json"]
+
+PLAIN_WIDTH = 110
+"""Columns of a table that is not shown on a terminal."""
+
+
+def console(*, stderr: bool = False) -> Console:
+    """A console on standard output or error; tables keep their width when piped."""
+    stream = sys.stderr if stderr else sys.stdout
+    return Console(file=stream, width=None if stream.isatty() else PLAIN_WIDTH)
+
+
+def figure(value: float | None) -> str:
+    """A number with four significant figures, or a dash for none."""
+    return "-" if value is None else f"{value:.4g}"
+
+
+def print_json(value: Any) -> None:
+    """One JSON document on standard output."""
+    sys.stdout.write(msgspec.json.format(msgspec.json.encode(value), indent=2).decode() + "\n")

@@ -1,0 +1,199 @@
+"""Progress of a search: a live panel on a terminal, one plain line per generation elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TextIO
+
+from rich.console import Group
+from rich.live import Live
+from rich.markup import escape
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+
+from evodesign.cli.output import console, figure
+from evodesign.cli.tables import heading
+from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
+from evodesign.runlog.observer import Observer
+from evodesign.runlog.run import Run
+
+__all__ = ["LivePanel", "PlainLines", "observer"]
+
+
+@contextmanager
+def observer() -> Iterator[Observer]:
+    """The observer that suits standard error; the terminal is given back however the search ends."""
+    if not sys.stderr.isatty():
+        yield PlainLines(sys.stderr)
+        return
+    panel = LivePanel()
+    try:
+        yield panel
+    finally:
+        panel.close()
+
+
+class PlainLines:
+    """One line when a session starts and one per generation."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._clock = _Clock()
+        self._budget = 0
+
+    def _write(self, line: str) -> None:
+        self._stream.write(line + "\n")
+        self._stream.flush()
+
+    def started(self, header: RunHeader, evaluations_done: int) -> None:
+        """Say what begins."""
+        self._budget = header.budget
+        self._clock.start(evaluations_done, header.budget)
+        search = header.search
+        known = f", {evaluations_done} known" if evaluations_done else ""
+        self._write(
+            f"{header.problem_name}: {search.algorithm}, population {search.population}, seed {search.seed}, "
+            f"{header.budget} evaluations{known}"
+        )
+
+    def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
+        """Only count."""
+        self._clock.tick(done)
+
+    def generation_done(self, generation: Generation) -> None:
+        """Say where the search stands."""
+        best_values = " ".join(f"{name} {figure(value)}" for name, value in generation.best.items())
+        self._write(
+            f"generation {generation.number}: {generation.evaluations}/{self._budget} evaluations, "
+            f"feasible {generation.feasible_share:.0%}, hypervolume {figure(generation.hypervolume)}, "
+            f"best {best_values or '-'}, {self._clock.left()} left"
+        )
+
+    def finished(self, run: Run) -> None:
+        """Nothing: the result follows."""
+
+
+class LivePanel:
+    """A bar and the state of the search, redrawn in place."""
+
+    def __init__(self) -> None:
+        self._console = console(stderr=True)
+        self._progress = Progress(
+            TextColumn("[bold]{task.description}"),
+            BarColumn(bar_width=None),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            console=self._console,
+            expand=True,
+        )
+        self._live = Live(console=self._console, refresh_per_second=4, transient=False)
+        self._task = self._progress.add_task("search", total=None)
+        self._tally = _Tally(())
+        self._generation: Generation | None = None
+
+    def started(self, header: RunHeader, evaluations_done: int) -> None:
+        """Draw the panel."""
+        self._tally = _Tally(header.objectives)
+        description = f"{escape(header.problem_name)} {escape(header.search.algorithm)}"
+        self._progress.update(
+            self._task, description=description, total=header.budget, completed=evaluations_done
+        )
+        self._live.start()
+        self._draw()
+
+    def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
+        """Move the bar."""
+        self._tally.count(evaluation)
+        self._progress.update(self._task, completed=done, total=budget)
+        self._draw()
+
+    def generation_done(self, generation: Generation) -> None:
+        """Show the new hypervolume and best values."""
+        self._generation = generation
+        self._tally.learn(generation.best)
+        self._draw()
+
+    def finished(self, run: Run) -> None:
+        """Leave the last state on the screen."""
+        self._draw()
+
+    def close(self) -> None:
+        """Give the terminal back, also after a stop."""
+        self._live.stop()
+
+    def _draw(self) -> None:
+        self._live.update(Group(self._progress, self._state()))
+
+    def _state(self) -> Table:
+        tally, generation = self._tally, self._generation
+        table = Table(box=None, show_header=False, padding=(0, 2))
+        table.add_row("feasible", tally.feasible_share, "failed", str(tally.failed))
+        number = "-" if generation is None else str(generation.number)
+        volume = figure(None if generation is None else generation.hypervolume)
+        table.add_row("generation", number, "hypervolume", volume)
+        for objective in tally.objectives:
+            table.add_row("best", figure(tally.best.get(objective.name)), escape(heading(objective)), "")
+        return table
+
+
+class _Tally:
+    """Counts and best values of a session, kept up to date one evaluation at a time."""
+
+    def __init__(self, objectives: Sequence[Objective]) -> None:
+        self.objectives = tuple(objectives)
+        self.best: dict[str, float] = {}
+        self.failed = 0
+        self._seen = 0
+        self._feasible = 0
+
+    @property
+    def feasible_share(self) -> str:
+        return f"{self._feasible / self._seen:.0%}" if self._seen else "-"
+
+    def count(self, evaluation: Evaluation) -> None:
+        self._seen += 1
+        self.failed += evaluation.assessment.status not in (Status.SOLVED, Status.INFEASIBLE)
+        if evaluation.feasible:
+            self._feasible += 1
+            self.learn(evaluation.assessment.objectives)
+
+    def learn(self, values: Mapping[str, float]) -> None:
+        for objective in self.objectives:
+            if objective.name in values:
+                better = min if objective.sense == Sense.MINIMISE else max
+                value = values[objective.name]
+                self.best[objective.name] = better(value, self.best.get(objective.name, value))
+
+
+class _Clock:
+    """Time left, from the pace of this session."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+        self._first = self._done = self._budget = 0
+
+    def start(self, done: int, budget: int) -> None:
+        self._began, self._first, self._done, self._budget = time.monotonic(), done, done, budget
+
+    def tick(self, done: int) -> None:
+        self._done = done
+
+    def left(self) -> str:
+        made = self._done - self._first
+        if made == 0:
+            return "unknown time"
+        seconds = (time.monotonic() - self._began) / made * (self._budget - self._done)
+        minutes, rest = divmod(round(seconds), 60)
+        return f"{minutes} min {rest} s" if minutes else f"{rest} s"

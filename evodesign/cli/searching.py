@@ -1,0 +1,65 @@
+"""`search` and `resume`: the loop with its pool, its log and someone who watches."""
+
+from __future__ import annotations
+
+import signal
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from types import FrameType
+from typing import NoReturn
+
+from evodesign import evolve
+from evodesign.cli.fronts import show_run
+from evodesign.cli.header import header_of, problem_factory, renewed
+from evodesign.cli.progress import observer
+from evodesign.pool.registry import make_pool
+from evodesign.problem.build import build_problem
+from evodesign.problem.source import read_source
+
+__all__ = ["Wishes", "go_on", "start"]
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What the command line says about a search; None leaves it to the problem file."""
+
+    algorithm: str | None
+    evaluations: int | None
+    population: int | None
+    seed: int | None
+
+
+def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, json: bool) -> None:
+    """Search a problem in a new run directory and print the front."""
+    problem = build_problem(read_source(path))
+    table = problem.search
+    settings = problem.settings(
+        table.algorithm if wishes.algorithm is None else wishes.algorithm,
+        table.population if wishes.population is None else wishes.population,
+        table.seed if wishes.seed is None else wishes.seed,
+    )
+    budget = table.evaluations if wishes.evaluations is None else wishes.evaluations
+    header = header_of(problem, settings, budget)
+    directory = Path("runs") / f"{problem.name}-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
+    _stop_on_terminate()
+    with make_pool(pool, jobs) as workers, observer() as watching:
+        done = evolve.start(directory, header, problem_factory(header), workers, watching)
+    show_run(done, json)
+
+
+def go_on(run: Path, evaluations: int | None, jobs: int, pool: str, json: bool) -> None:
+    """Resume a run and print the front."""
+    _stop_on_terminate()
+    with make_pool(pool, jobs) as workers, observer() as watching:
+        done = evolve.resume(run, problem_factory, workers, watching, evaluations, renew=renewed)
+    show_run(done, json)
+
+
+def _stop_on_terminate() -> None:
+    """Let SIGTERM end a search as Ctrl-C does: logged, and resumable."""
+
+    def stop(signum: int, frame: FrameType | None) -> NoReturn:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)

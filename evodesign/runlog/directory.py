@@ -1,0 +1,84 @@
+"""A run's directory: its segments `000.mcap`, `001.mcap`, ... and the lock of the process that writes.
+
+The lock is the operating system's (`flock` on the file `lock`): it ends with its process, however that
+ends, so a crash leaves none behind.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from evodesign.errors import RunError
+
+__all__ = ["locked", "make_directory", "run_segments", "segment_path", "segments"]
+
+LOCK = "lock"
+SEGMENT = re.compile(r"(\d{3,})\.mcap")
+
+
+def segment_path(directory: Path, number: int) -> Path:
+    """Where the segment of a number, counted from zero, lies."""
+    return directory / f"{number:03d}.mcap"
+
+
+def segments(directory: Path) -> dict[int, Path]:
+    """The segments in a directory, by number, in order; none when there is no such directory."""
+    if not directory.is_dir():
+        return {}
+    found = {int(name[1]): path for path in directory.iterdir() if (name := SEGMENT.fullmatch(path.name))}
+    return dict(sorted(found.items()))
+
+
+def run_segments(directory: Path) -> dict[int, Path]:
+    """The segments of a run, at least one.
+
+    Raises:
+        RunError: the directory is missing, is a file, or holds no run.
+    """
+    if not directory.exists():
+        raise RunError(f"{directory}: there is no such run directory")
+    if not directory.is_dir():
+        raise RunError(f"{directory}: wanted the directory of a run, found a file")
+    found = segments(directory)
+    if not found:
+        raise RunError(f"{directory}: is not a run, for it holds no 000.mcap")
+    return found
+
+
+def make_directory(directory: Path) -> None:
+    """Make a directory, and those above it, where they are missing.
+
+    Raises:
+        RunError: a file is in the way, or the place cannot be written.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RunError(f"{directory}: cannot be made a run directory: {error.strerror}") from error
+
+
+@contextmanager
+def locked(directory: Path) -> Iterator[None]:
+    """Hold an existing directory against every other writer.
+
+    Raises:
+        RunError: another process holds it, or it cannot be written.
+    """
+    try:
+        file = (directory / LOCK).open("ab")
+    except OSError as error:
+        raise RunError(f"{directory}: cannot be locked: {error.strerror}") from error
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise RunError(
+                f"{directory}: another evodesign is writing this run; let it end, or stop it first"
+            ) from error
+        except OSError as error:
+            raise RunError(f"{directory}: cannot be locked: {error.strerror}") from error
+        yield

@@ -1,0 +1,112 @@
+"""Opening a run: all its segments as one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from evodesign.errors import RunError
+from evodesign.records import Evaluation, Front, Generation, RunHeader
+from evodesign.runlog.directory import run_segments
+from evodesign.runlog.reader import Segment, read_segment
+
+__all__ = ["Run", "read_run"]
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What a run's directory holds.
+
+    Args:
+        directory: of the run.
+        header: of the last segment, whose budget holds.
+        evaluations: in order of number, each number once.
+        generations: in order of number, each number once.
+        fronts: in order of generation, each once.
+        complete: whether every segment is whole.
+        notes: a sentence for everything that is missing or strange.
+    """
+
+    directory: Path
+    header: RunHeader
+    evaluations: tuple[Evaluation, ...]
+    generations: tuple[Generation, ...]
+    fronts: tuple[Front, ...]
+    complete: bool
+    notes: tuple[str, ...]
+
+
+def read_run(directory: Path) -> Run:
+    """Everything that can be read of a run, also of one that was killed or is still being written.
+
+    Raises:
+        RunError: the directory is missing or is not a run, the header of its first segment cannot be read,
+            a later version of evodesign wrote it, or its segments come from different runs.
+    """
+    segments = [read_segment(path) for path in run_segments(directory).values()]
+    headers = _headers(directory, segments)
+    evaluations, contradictions = _by_number(segments)
+    generations = _first_of_each(
+        (generation.number, generation) for segment in segments for generation in segment.generations
+    )
+    fronts = _first_of_each((front.generation, front) for segment in segments for front in segment.fronts)
+    return Run(
+        directory=directory,
+        header=headers[-1],
+        evaluations=evaluations,
+        generations=generations,
+        fronts=fronts,
+        complete=all(segment.complete for segment in segments),
+        notes=(*(segment.note for segment in segments if segment.note), *contradictions),
+    )
+
+
+def _headers(directory: Path, segments: list[Segment]) -> list[RunHeader]:
+    """Headers of the segments that have one, all of the same problem and search."""
+    first = segments[0]
+    if first.header is None:
+        raise RunError(
+            f"{directory}: the header of {first.path.name} cannot be read, so nothing of this run can; "
+            "remove the directory, or choose another one with --run"
+        )
+    for segment in segments:
+        if segment.header is not None and _identity(segment.header) != _identity(first.header):
+            raise RunError(
+                f"{directory}: {segment.path.name} is of another problem or search than {first.path.name}; "
+                "take it out of the directory"
+            )
+    return [segment.header for segment in segments if segment.header is not None]
+
+
+def _identity(header: RunHeader) -> RunHeader:
+    """A header without what may change from session to session."""
+    problem = msgspec.structs.replace(header.problem, path="")
+    return msgspec.structs.replace(header, problem=problem, budget=0, versions={}, git=None, started="")
+
+
+def _by_number(segments: list[Segment]) -> tuple[tuple[Evaluation, ...], list[str]]:
+    """Evaluations in order of number, and a note for each number that came back with another content."""
+    kept: dict[int, Evaluation] = {}
+    notes = []
+    for segment in segments:
+        for evaluation in segment.evaluations:
+            first = kept.setdefault(evaluation.number, evaluation)
+            if (first.genome, first.assessment) != (evaluation.genome, evaluation.assessment):
+                notes.append(
+                    f"evaluation {evaluation.number} stands again in {segment.path.name} "
+                    "with another content; the first one holds"
+                )
+    return tuple(kept[number] for number in sorted(kept)), notes
+
+
+def _first_of_each(numbered: Iterable[tuple[int, R]]) -> tuple[R, ...]:
+    kept: dict[int, R] = {}
+    for number, record in numbered:
+        kept.setdefault(number, record)
+    return tuple(kept[number] for number in sorted(kept))

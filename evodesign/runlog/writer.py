@@ -1,0 +1,160 @@
+"""Writing one segment of a run's log, so that nothing believed is ever lost.
+
+Every evaluation is a chunk of its own, handed to the operating system at once: it survives the death of
+this process. `commit` also reaches the disk: what came before survives a power cut. The price is a log of
+about 1.0 kB instead of 0.5 kB per evaluation of 16 parameters and 3 heights (1.8 kB as JSON).
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO, Self
+
+import msgspec
+from mcap.writer import CompressionType, Writer
+
+from evodesign.errors import RunError
+from evodesign.records import Evaluation, Front, Generation, RunHeader
+from evodesign.runlog.channels import (
+    EVALUATION,
+    FRONT,
+    GENERATION,
+    MESSAGE_ENCODING,
+    RECORDS,
+    RUN,
+    SCHEMA_ENCODING,
+    described,
+)
+from evodesign.runlog.directory import make_directory, segment_path, segments
+
+__all__ = ["RunWriter"]
+
+
+class RunWriter:
+    """Writes a new segment; a context manager that ends it.
+
+    A write that fails or is broken off spoils the segment: it then ends without a footer, after its last
+    whole chunk, and the reader takes it so.
+
+    Args:
+        directory: of the run; made when missing.
+        header: first message of the segment; on the disk when the writer is ready.
+        segment: number of the segment.
+    Raises:
+        RunError: the first segment is asked for and the directory holds a run, or nothing can be written.
+    """
+
+    def __init__(self, directory: Path, header: RunHeader, segment: int = 0) -> None:
+        if segment == 0 and segments(directory):
+            raise RunError(
+                f"{directory}: holds a run already; choose another directory with --run, "
+                f"or go on with: evodesign resume {directory}"
+            )
+        make_directory(directory)
+        self.path = segment_path(directory, segment)
+        self._spoilt = False
+        self._closed = False
+        with self._writing():
+            self._file = self.path.open("xb")
+            self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
+            self._mcap.start(profile="", library="evodesign")
+            self._channels = _register(self._mcap, header)
+            self._add(RUN, header, sequence=segment)
+            _to_disk(self._file)
+            _entries_to_disk(directory, directory.parent)
+
+    @classmethod
+    def next_segment(cls, directory: Path, header: RunHeader) -> RunWriter:
+        """The segment after those that a run has."""
+        return cls(directory, header, 1 + max(segments(directory), default=-1))
+
+    def evaluation(self, evaluation: Evaluation) -> None:
+        """Append an evaluation."""
+        with self._writing():
+            self._add(EVALUATION, evaluation, evaluation.number)
+
+    def generation(self, generation: Generation) -> None:
+        """Append the state after a generation."""
+        with self._writing():
+            self._add(GENERATION, generation, generation.number)
+
+    def front(self, front: Front) -> None:
+        """Append the front after a generation."""
+        with self._writing():
+            self._add(FRONT, front, front.generation)
+
+    def commit(self) -> None:
+        """Return when all that was appended is on the disk."""
+        with self._writing():
+            _to_disk(self._file)
+
+    def close(self) -> None:
+        """End the segment with its index and footer, unless it is spoilt; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            if not self._spoilt:
+                with self._writing():
+                    self._mcap.finish()  # type: ignore[no-untyped-call]
+                    _to_disk(self._file)
+        finally:
+            with suppress(OSError):
+                self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        where: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _add(self, topic: str, record: msgspec.Struct, sequence: int) -> None:
+        """A chunk with one message, handed to the operating system."""
+        now = time.time_ns()
+        self._mcap.add_message(self._channels[topic], now, msgspec.json.encode(record), now, sequence)
+        self._mcap.flush()  # type: ignore[no-untyped-call]
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        if self._spoilt:
+            raise RunError(f"{self.path}: an earlier write was broken off, so nothing can follow it")
+        self._spoilt = True
+        try:
+            yield
+        except OSError as error:
+            raise RunError(f"{self.path}: cannot be written: {error.strerror}") from error
+        self._spoilt = False
+
+
+def _register(writer: Writer, header: RunHeader) -> dict[str, int]:
+    """Channel numbers by topic."""
+    channels = {}
+    for topic, schema in described(header).items():
+        number = writer.register_schema(RECORDS[topic].__name__, SCHEMA_ENCODING, schema)
+        channels[topic] = writer.register_channel(topic, MESSAGE_ENCODING, number)
+    return channels
+
+
+def _to_disk(file: BinaryIO) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def _entries_to_disk(*directories: Path) -> None:
+    """Make new names in directories durable: syncing a file does not sync its name."""
+    for directory in directories:
+        descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

@@ -1,0 +1,76 @@
+"""Quasi-random sampling: the honest baseline, and the first generation of every search.
+
+Points are those of a Sobol sequence, scrambled by the seed: they fill the cube more evenly than random
+ones. SciPy, which pymoo requires, computes them.
+
+Source: Sobol 1967; Owen, Scrambling Sobol and Niederreiter-Xing points, 1998 (as in `scipy.stats.qmc`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import qmc  # type: ignore[import-untyped]
+
+from evodesign.records import Genome, SearchSettings
+from evodesign.search.base import Outcome
+from evodesign.search.ranking import check_outcomes
+
+__all__ = ["QuasiRandom", "SobolStream", "first_generation"]
+
+BLOCK = 64
+"""Points computed at a time; a power of two, as the sequence's balance asks for."""
+
+
+class SobolStream:
+    """An endless scrambled Sobol sequence.
+
+    Args:
+        dimension: number of coordinates.
+        seed: everything that determines the scrambling.
+    """
+
+    def __init__(self, dimension: int, seed: np.random.SeedSequence) -> None:
+        self._engine = qmc.Sobol(dimension, scramble=True, rng=np.random.default_rng(seed))
+        self._waiting: list[Genome] = []
+
+    def take(self, count: int) -> tuple[Genome, ...]:
+        """The next points of the sequence."""
+        while len(self._waiting) < count:
+            self._waiting.extend(tuple(row) for row in self._engine.random(BLOCK).tolist())
+        taken, self._waiting = self._waiting[:count], self._waiting[count:]
+        return tuple(taken)
+
+
+def first_generation(settings: SearchSettings, stream: SobolStream) -> tuple[Genome, ...]:
+    """The start genomes, each once and at most a population of them, filled up from the stream."""
+    start = tuple(dict.fromkeys(settings.start))[: settings.population]
+    return start + stream.take(settings.population - len(start))
+
+
+class QuasiRandom:
+    """Asks for the points of a Sobol sequence, whatever it is told.
+
+    Args:
+        settings: dimension, population, seed and start genomes.
+    """
+
+    def __init__(self, settings: SearchSettings) -> None:
+        (seed,) = np.random.SeedSequence(settings.seed).spawn(1)
+        self._settings = settings
+        self._stream = SobolStream(settings.dimension, seed)
+        self._asked = first_generation(settings, self._stream)
+
+    def ask(self) -> tuple[Genome, ...]:
+        """The next points; the same ones until their outcomes are told."""
+        return self._asked
+
+    def tell(self, outcomes: Sequence[Outcome]) -> None:
+        """Take note that the points were evaluated.
+
+        Raises:
+            ValueError: outcomes that do not fit the genomes asked.
+        """
+        check_outcomes(self._asked, outcomes, self._settings.objectives)
+        self._asked = self._stream.take(self._settings.population)

@@ -1,0 +1,48 @@
+"""The searches by name; a new one is a file and a line here, and enters the conformance tests by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from evodesign.errors import InputError, nearest_name
+from evodesign.records import SearchSettings
+from evodesign.search.base import Search
+from evodesign.search.cma_es import CmaEs
+from evodesign.search.nsga2 import Nsga2
+from evodesign.search.quasi_random import QuasiRandom
+
+__all__ = ["SEARCHES", "make_search"]
+
+SEARCHES: dict[str, Callable[[SearchSettings], Search]] = {
+    "cma-es": CmaEs,
+    "nsga2": Nsga2,
+    "random": QuasiRandom,
+}
+
+
+def make_search(settings: SearchSettings) -> Search:
+    """The search that the settings describe, ready to ask.
+
+    Raises:
+        InputError: an unknown algorithm, or settings that no search can use.
+    """
+    if settings.algorithm not in SEARCHES:
+        hint = nearest_name(settings.algorithm, SEARCHES)
+        wanted = f"one of {', '.join(SEARCHES)}"
+        raise InputError("search", "algorithm", wanted, f"'{settings.algorithm}'{hint}")
+    _check(settings)
+    return SEARCHES[settings.algorithm](settings)
+
+
+def _check(settings: SearchSettings) -> None:
+    for key, least in (("dimension", 1), ("objectives", 1), ("population", 1), ("seed", 0)):
+        value = getattr(settings, key)
+        if value < least:
+            raise InputError("search", key, f"at least {least}", str(value))
+    for index, genome in enumerate(settings.start):
+        if len(genome) != settings.dimension:
+            wanted = f"{settings.dimension} coordinates"
+            raise InputError("search", f"start[{index}]", wanted, str(len(genome)))
+        for coordinate in genome:
+            if not 0.0 <= coordinate <= 1.0:
+                raise InputError("search", f"start[{index}]", "coordinates in [0, 1]", str(coordinate))

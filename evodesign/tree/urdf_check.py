@@ -1,0 +1,203 @@
+"""URDF text vetted element by element, so that every complaint is a sentence that names file and element.
+
+What passes holds nothing but links and joints, and of these only what a tree is made of: places, masses,
+shapes, axes and limits, all figures finite and within bounds. Colours, sensors, simulator tags, and the axes
+and limits of fixed joints are stripped. Nothing is fetched: documents with a DTD (and so entities) are
+refused.
+
+Source: wiki.ros.org/urdf/XML (link, joint).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from lxml import etree
+
+from evodesign.errors import ModelError
+from evodesign.tree.model import JointKind
+
+__all__ = ["checked_urdf"]
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """What an attribute may hold: so many finite numbers within bounds."""
+
+    count: int = 1
+    low: float = -math.inf
+    high: float = math.inf
+    required: bool = True
+
+    def __str__(self) -> str:
+        noun = "a finite number" if self.count == 1 else f"{self.count} finite numbers"
+        low = f" from {self.low:g}" if math.isfinite(self.low) else ""
+        high = f" to {self.high:g}" if math.isfinite(self.high) else ""
+        return noun + low + high
+
+
+SIZE = Figures(low=1e-6, high=1e3)
+"""A dimension [m]: beyond a micrometre and a kilometre lies a mistaken unit, and a volume of zero."""
+ANY, OPTIONAL, NOT_NEGATIVE = Figures(), Figures(required=False), Figures(low=0.0, required=False)
+THREE = Figures(count=3, required=False)
+
+ATTRIBUTES: Mapping[str, Mapping[str, Figures]] = {
+    "origin": {"xyz": THREE, "rpy": THREE},
+    "mass": {"value": Figures(low=0.0)},
+    "inertia": {"ixx": ANY, "ixy": ANY, "ixz": ANY, "iyy": ANY, "iyz": ANY, "izz": ANY},
+    "box": {"size": Figures(3, SIZE.low, SIZE.high)},
+    "cylinder": {"radius": SIZE, "length": SIZE},
+    "sphere": {"radius": SIZE},
+    "axis": {"xyz": THREE},
+    "limit": {"lower": OPTIONAL, "upper": OPTIONAL, "effort": NOT_NEGATIVE, "velocity": NOT_NEGATIVE},
+}
+PRIMITIVES = ("box", "cylinder", "sphere")
+
+
+def checked_urdf(text: str, source: str) -> etree._Element:
+    """The <robot> element of a URDF, with only such elements left as were checked.
+
+    Args:
+        text: the URDF.
+        source: the file's name, for messages.
+    Returns:
+        Links and joints in file order, their numbers as the shortest text that reads back to the same
+        double. A mesh may stand where a shape does; its own attributes are not looked at.
+    Raises:
+        ModelError: the text is not XML or not a URDF; says where and why. Whether the links form a tree is
+            for `model.Tree` to say.
+    """
+    root = _parsed(text, source)
+    _check(root, source)
+    return root
+
+
+def _parsed(text: str, source: str) -> etree._Element:
+    parser = etree.XMLParser(
+        encoding="utf-8",  # whatever the declaration said: the text is decoded already
+        resolve_entities=False,
+        no_network=True,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+    )
+    try:
+        root = etree.fromstring(text.encode("utf-8", "surrogatepass"), parser)
+    except etree.XMLSyntaxError as error:
+        raise ModelError(source, "", "a URDF file", f"text that is not XML: {error.msg}") from error
+    if root.getroottree().docinfo.doctype:
+        raise ModelError(source, "", "a URDF file without a DTD", "a DOCTYPE declaration")
+    return root
+
+
+def _check(root: etree._Element, source: str) -> None:
+    """Refuse what cannot be read, and strip what is not, so that only checked elements remain."""
+    if root.tag != "robot":
+        raise ModelError(source, "", "<robot> as the outermost element", f"<{root.tag}>")
+    if not root.get("name"):
+        raise ModelError(source, "robot.name", "a name", "nothing")
+    if root.find("link") is None:
+        raise ModelError(source, "robot", "links", "none")
+    _strip(root, ("link", "joint"))
+    for element in root:
+        if not element.get("name"):
+            raise ModelError(source, f"{_indexed(element)}.name", "a name", "nothing")
+        check = _check_link if element.tag == "link" else _check_joint
+        check(element, source)
+        for part in element.iter(*ATTRIBUTES):
+            _check_figures(part, source)
+    for joint in root.findall("joint"):
+        _check_motion(joint, source)
+
+
+def _check_link(link: etree._Element, source: str) -> None:
+    _strip(link, ("inertial", "visual", "collision"))
+    for inertial in link.findall("inertial"):
+        for tag in ("mass", "inertia"):
+            if inertial.find(tag) is None:
+                raise ModelError(source, f"{_key(inertial)}.{tag}", f"<{tag}>", "nothing")
+        _strip(inertial, ("origin", "mass", "inertia"))
+    for look in [*link.findall("visual"), *link.findall("collision")]:
+        shapes = [shape.tag for geometry in look.findall("geometry") for shape in geometry]
+        if len(shapes) != 1 or shapes[0] not in (*PRIMITIVES, "mesh"):
+            found = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
+            wanted = "one <box>, <cylinder>, <sphere> or <mesh>"
+            raise ModelError(source, f"{_key(look)}.geometry", wanted, found)
+        _strip(look, ("origin", "geometry"))
+
+
+def _check_joint(joint: etree._Element, source: str) -> None:
+    kind = joint.get("type")
+    if kind not in list(JointKind):
+        found = f"'{kind}'" if kind else "nothing"
+        raise ModelError(source, f"{_key(joint)}.type", "fixed, revolute, continuous or prismatic", found)
+    mimic = joint.find("mimic")
+    if mimic is not None:
+        found = f"a copy of joint '{mimic.get('joint')}'"
+        raise ModelError(source, f"{_key(joint)}.mimic", "a joint that moves by itself", found)
+    for role in ("parent", "child"):
+        element = joint.find(role)
+        if element is None or not element.get("link"):
+            raise ModelError(source, f"{_key(joint)}.{role}", "the name of a link", "nothing")
+    moves = kind != JointKind.FIXED
+    _strip(joint, ("origin", "parent", "child", "axis", "limit") if moves else ("origin", "parent", "child"))
+
+
+def _check_figures(element: etree._Element, source: str) -> None:
+    for name, figures in ATTRIBUTES[element.tag].items():
+        text = element.get(name)
+        if text is None and not figures.required:
+            continue
+        numbers = _numbers(text or "")
+        fits = len(numbers) == figures.count and all(
+            figures.low <= number <= figures.high for number in numbers
+        )
+        if not fits or not all(map(math.isfinite, numbers)):
+            found = "nothing" if text is None else f"'{text}'"
+            raise ModelError(source, f"{_key(element)}.{name}", str(figures), found)
+        element.set(name, " ".join(map(repr, numbers)))
+
+
+def _check_motion(joint: etree._Element, source: str) -> None:
+    """Axis and limits of a joint whose figures are known to be numbers."""
+    axis, limit = joint.find("axis"), joint.find("limit")
+    if axis is not None and not any(_numbers(axis.get("xyz", "1 0 0"))):
+        raise ModelError(source, f"{_key(axis)}.xyz", "a direction", f"'{axis.get('xyz')}'")
+    if joint.get("type") not in (JointKind.REVOLUTE, JointKind.PRISMATIC):
+        return
+    for name in ("lower", "upper"):
+        if limit is None or limit.get(name) is None:
+            raise ModelError(source, f"{_key(joint)}.limit.{name}", "a finite number", "nothing")
+    lower, upper = float(limit.get("lower")), float(limit.get("upper"))
+    if lower > upper:
+        raise ModelError(source, f"{_key(limit)}.lower", f"at most the upper limit {upper!r}", repr(lower))
+
+
+def _numbers(text: str) -> list[float]:
+    """The numbers of an attribute; none when a word is not a number."""
+    try:
+        return [float(word) for word in text.split()]
+    except ValueError:
+        return []
+
+
+def _strip(element: etree._Element, tags: Iterable[str]) -> None:
+    for child in list(element):
+        if child.tag not in tags:
+            element.remove(child)
+
+
+def _key(element: etree._Element) -> str:
+    """Where an element stands, such as `link chest.visual[2].box`."""
+    if element.getparent().tag == "robot":
+        return f"{element.tag} {element.get('name')}"
+    if element.tag == "geometry":
+        return _key(element.getparent())
+    return f"{_key(element.getparent())}.{_indexed(element)}"
+
+
+def _indexed(element: etree._Element) -> str:
+    brothers = element.getparent().findall(element.tag)
+    return f"{element.tag}[{brothers.index(element) + 1}]" if len(brothers) > 1 else str(element.tag)

@@ -1,0 +1,118 @@
+"""A tree as URDF text: what a viewer, a simulator or another library can open.
+
+    link    <inertial> at the centre of mass, in the link's axes, when there is mass
+            <visual> and <collision> for each solid, <visual> alone for a look
+    joint   <origin>, <parent>, <child>; <axis> and <limit> when it moves
+
+The text is a function of the tree: names in its order, numbers as the shortest text that reads back to the
+same double. `read_urdf` gives the tree back as long as URDF can tell: solids of one link share a density, and
+a link with an inertia of its own beside looks is a person's (`MassRule.FILE`).
+
+Source: wiki.ros.org/urdf/XML (link, joint).
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterable
+
+from lxml import etree
+
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Placement, Scalar, rpy_from_matrix
+from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.tree.model import Joint, JointKind, Link, Tree
+
+__all__ = ["UNLIMITED", "urdf_text"]
+
+UNLIMITED = sys.float_info.max
+"""An infinite limit as URDF text. Effort and velocity must be given, and urdfdom (pinocchio's parser) refuses
+`inf`; the largest double passes urdfdom, MuJoCo and yourdfpy, and is no joint's limit."""
+
+
+def urdf_text(tree: Tree) -> str:
+    """The tree as indented XML.
+
+    Raises:
+        TypeError: the tree holds an expression where URDF needs a number.
+        ValueError: it holds a number that is not finite (beside a limit).
+    """
+    robot = etree.Element("robot", name=tree.name)
+    for link in tree.links:
+        _add_link(robot, link)
+    for joint in tree.joints:
+        _add_joint(robot, joint)
+    text: bytes = etree.tostring(robot, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    return text.decode("utf-8")
+
+
+def _add_link(robot: etree._Element, link: Link) -> None:
+    element = etree.SubElement(robot, "link", name=link.name)
+    _add_inertial(element, link.inertia)
+    for solid in link.solids:
+        _add_shape(element, "visual", solid.shape, solid.link_from_solid)
+    for look in link.looks:
+        _add_shape(element, "visual", look.shape, look.link_from_look)
+    for solid in link.solids:
+        _add_shape(element, "collision", solid.shape, solid.link_from_solid)
+
+
+def _add_inertial(link: etree._Element, inertia: Inertia) -> None:
+    mass = _text([inertia.mass])
+    if float(mass) == 0.0:
+        return
+    element = etree.SubElement(link, "inertial")
+    _add_origin(element, Placement(translation=inertia.center))
+    etree.SubElement(element, "mass", value=mass)
+    upper = {f"i{'xyz'[i]}{'xyz'[j]}": inertia.about_center[i][j] for i in range(3) for j in range(i, 3)}
+    etree.SubElement(element, "inertia", {name: _text([moment]) for name, moment in upper.items()})
+
+
+def _add_shape(link: etree._Element, role: str, shape: Shape, link_from_shape: Placement) -> None:
+    element = etree.SubElement(link, role)
+    _add_origin(element, link_from_shape)
+    geometry = etree.SubElement(element, "geometry")
+    match shape:
+        case Sphere(radius):
+            etree.SubElement(geometry, "sphere", radius=_text([radius]))
+        case Cylinder(radius, length):
+            etree.SubElement(geometry, "cylinder", radius=_text([radius]), length=_text([length]))
+        case Box():
+            etree.SubElement(geometry, "box", size=_text(shape.sides))
+
+
+def _add_joint(robot: etree._Element, joint: Joint) -> None:
+    element = etree.SubElement(robot, "joint", name=joint.name, type=joint.kind.value)
+    _add_origin(element, joint.parent_from_child)
+    etree.SubElement(element, "parent", link=joint.parent)
+    etree.SubElement(element, "child", link=joint.child)
+    if joint.kind is JointKind.FIXED:
+        return
+    etree.SubElement(element, "axis", xyz=_text(joint.axis))
+    limits = {"effort": joint.effort, "velocity": joint.velocity}
+    if joint.kind is not JointKind.CONTINUOUS:
+        limits = {"lower": joint.lower, "upper": joint.upper} | limits
+    etree.SubElement(element, "limit", {name: _text([_bounded(limit)]) for name, limit in limits.items()})
+
+
+def _add_origin(element: etree._Element, placement: Placement) -> None:
+    rpy = rpy_from_matrix(placement.rotation)
+    etree.SubElement(element, "origin", xyz=_text(placement.translation), rpy=_text(rpy))
+
+
+def _bounded(limit: float) -> float:
+    return math.copysign(UNLIMITED, limit) if math.isinf(limit) else limit
+
+
+def _text(numbers: Iterable[Scalar]) -> str:
+    return " ".join(_number(number) for number in numbers)
+
+
+def _number(number: Scalar) -> str:
+    if not isinstance(number, int | float):
+        raise TypeError(f"a URDF holds numbers, not {type(number).__name__}: give the tree numbers first")
+    if not math.isfinite(number):
+        raise ValueError(f"a URDF holds finite numbers, not {number}")
+    without_negative_zero = float(number) + 0.0
+    return repr(without_negative_zero)

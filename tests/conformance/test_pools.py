@@ -1,0 +1,109 @@
+"""What every pool of the registry promises."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from evodesign.errors import InputError
+from evodesign.pool.base import Pool
+from evodesign.pool.registry import POOLS, make_pool
+from tests.pool.tasks import Broken, Counted, picky, square, squares
+
+JOBS = 2
+
+
+@pytest.fixture(scope="module", params=sorted(POOLS))
+def pool(request: pytest.FixtureRequest) -> Iterator[Pool]:
+    with make_pool(request.param, JOBS) as made:
+        yield made
+
+
+def test_every_argument_ends_once_with_the_value_of_a_plain_call(pool: Pool) -> None:
+    numbers = list(range(30))
+    ends = list(pool.run(squares, numbers))
+    assert sorted(end.index for end in ends) == numbers
+    assert {end.index: end.value for end in ends} == {number: square(number) for number in numbers}
+    assert all(end.failure is None and not end.worker_lost for end in ends)
+
+
+def test_seconds_are_those_of_the_task(pool: Pool) -> None:
+    assert all(0.002 <= end.seconds < 5.0 for end in pool.run(squares, range(4)))
+
+
+def test_workers_have_short_names(pool: Pool) -> None:
+    names = {end.worker for end in pool.run(squares, range(6))}
+    assert 1 <= len(names) <= JOBS
+    assert all(0 < len(name) < 60 and name.isprintable() for name in names)
+
+
+def test_nothing_to_do_ends_at_once(pool: Pool) -> None:
+    assert list(pool.run(squares, [])) == []
+
+
+def test_a_task_is_built_once_per_worker_and_kept_between_runs(pool: Pool, tmp_path: Path) -> None:
+    workers = set()
+    for _ in range(3):
+        equal_factory = Counted(str(tmp_path))
+        workers |= {end.worker for end in pool.run(equal_factory, range(10))}
+    built = [path.name.split("-")[0] for path in tmp_path.iterdir()]
+    assert sorted(f"local-{pid}" for pid in built) == sorted(workers)
+    assert 1 <= len(built) <= JOBS
+
+
+def test_another_factory_builds_another_task(pool: Pool) -> None:
+    assert sorted(end.value for end in pool.run(picky, [1, 2])) == [1, 2]
+    assert sorted(end.value for end in pool.run(squares, [3, 4])) == [9, 16]
+
+
+def test_an_exception_is_a_failure_that_says_kind_text_and_line(pool: Pool) -> None:
+    ends = {end.index: end for end in pool.run(picky, range(8))}
+    assert len(ends) == 8
+    refused = ends.pop(3)
+    assert refused.value is None
+    assert not refused.worker_lost
+    assert refused.failure is not None
+    assert refused.failure.startswith("ValueError: three is refused (tasks.py:")
+    assert refused.failure.endswith(" in task)")
+    exited = ends.pop(5)
+    assert exited.failure is not None
+    assert exited.failure.startswith("SystemExit: 1")
+    assert [ends[index].value for index in sorted(ends)] == [0, 1, 2, 4, 6, 7]
+
+
+def test_a_factory_that_raises_fails_every_argument_and_is_tried_once(pool: Pool, tmp_path: Path) -> None:
+    ends = list(pool.run(Broken(str(tmp_path)), range(9)))
+    assert sorted(end.index for end in ends) == list(range(9))
+    for end in ends:
+        assert end.value is None
+        assert not end.worker_lost
+        assert end.failure is not None
+        assert end.failure.startswith("the task could not be built: OSError: no such robot (tasks.py:")
+    assert len(list(tmp_path.iterdir())) == len({end.worker for end in ends})
+
+
+def test_a_run_left_early_does_not_disturb_the_next(pool: Pool) -> None:
+    unfinished = pool.run(squares, range(50))
+    next(unfinished)
+    assert sorted(end.value for end in pool.run(picky, [0, 1, 2])) == [0, 1, 2]
+
+
+def test_a_closed_pool_starts_again(pool: Pool) -> None:
+    pool.close()
+    pool.close()
+    assert [end.value for end in pool.run(squares, [5])] == [25]
+
+
+def test_an_unknown_pool_names_the_nearest() -> None:
+    with pytest.raises(
+        InputError, match=r"wanted one of joblib, serial, found 'jobli'; did you mean 'joblib'"
+    ):
+        make_pool("jobli", 1)
+
+
+@pytest.mark.parametrize("jobs", [0, -1])
+def test_fewer_than_one_job_is_refused(jobs: int) -> None:
+    with pytest.raises(InputError, match=f"--jobs: wanted a whole number from 1, found {jobs}"):
+        make_pool("joblib", jobs)

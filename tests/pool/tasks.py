@@ -1,0 +1,109 @@
+"""Factories of an importable module, as workers need them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Counted:
+    """Builds a task that squares; every building leaves a file in the folder."""
+
+    folder: str
+
+    def __call__(self) -> Callable[[int], int]:
+        stamp = time.monotonic_ns()
+        (Path(self.folder) / f"{os.getpid()}-{stamp}").touch()
+        return square
+
+
+def square(number: int) -> int:
+    time.sleep(0.002)
+    return number * number
+
+
+def squares() -> Callable[[int], int]:
+    return square
+
+
+def picky() -> Callable[[int], int]:
+    def task(number: int) -> int:
+        if number == 3:
+            raise ValueError("three\nis refused")
+        if number == 5:
+            raise SystemExit(1)
+        return number
+
+    return task
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A factory that cannot build its task; every try leaves a file in the folder."""
+
+    folder: str
+
+    def __call__(self) -> Callable[[int], int]:
+        (Path(self.folder) / f"{os.getpid()}-{time.monotonic_ns()}").touch()
+        raise OSError("no such robot")
+
+
+def deadly() -> Callable[[str], str]:
+    """A task that loses its worker in the way that its argument names."""
+
+    def task(word: str) -> str:
+        if word == "kill":
+            os.kill(os.getpid(), signal.SIGKILL)
+        if word == "exit":
+            os._exit(7)
+        time.sleep(0.01)
+        return word.upper()
+
+    return task
+
+
+@dataclass(frozen=True)
+class KillsOnce:
+    """A task that kills its worker the first time that it meets the culprit."""
+
+    folder: str
+    culprit: int
+
+    def __call__(self) -> Callable[[int], int]:
+        mark = Path(self.folder) / "killed"
+
+        def task(number: int) -> int:
+            if number == self.culprit and not mark.exists():
+                mark.touch()
+                os.kill(os.getpid(), signal.SIGKILL)
+            return number
+
+        return task
+
+
+def unsendable() -> Callable[[int], object]:
+    """A task whose result for 2 does not pickle."""
+
+    def task(number: int) -> object:
+        return (x for x in ()) if number == 2 else number
+
+    return task
+
+
+def environment() -> Callable[[str], str | None]:
+    return os.environ.get
+
+
+def process() -> Callable[[float], int]:
+    """A task that sleeps for its argument [s] and gives its process."""
+
+    def task(seconds: float) -> int:
+        time.sleep(seconds)
+        return os.getpid()
+
+    return task

@@ -1,0 +1,213 @@
+"""Worker processes: they live on, die, are replaced, and never outlive their parent."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from evodesign.pool.joblib_pool import JoblibPool
+from tests.pool.tasks import KillsOnce, deadly, environment, process, unsendable
+
+ROOT = Path(__file__).parents[2]
+PATIENCE = 10.0
+"""Longest wait [s] for a process to end; without a watch, workers stay for minutes."""
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[JoblibPool]:
+    with JoblibPool(2) as made:
+        yield made
+
+
+def is_alive(pid: int | None) -> bool:
+    """Whether a process runs (a zombie does not)."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state != "Z"
+
+
+def wait_until_all_end(pids: set[int | None]) -> None:
+    start = time.monotonic()
+    while still := [pid for pid in pids if is_alive(pid)]:
+        assert time.monotonic() - start < PATIENCE, f"{still} still run"
+        time.sleep(0.02)
+
+
+def test_work_runs_in_two_other_processes(pool: JoblibPool) -> None:
+    pids = {end.value for end in pool.run(process, [0.02] * 10)}
+    assert len(pids) == 2
+    assert os.getpid() not in pids
+
+
+def test_a_second_run_has_the_same_workers(pool: JoblibPool) -> None:
+    first = {end.value for end in pool.run(process, [0.02] * 10)}
+    time.sleep(0.5)
+    second = {end.value for end in pool.run(process, [0.02] * 10)}
+    assert first == second
+
+
+def test_results_come_as_they_end_and_not_in_order(pool: JoblibPool) -> None:
+    assert [end.index for end in pool.run(process, [0.3, 0.01, 0.01])] == [1, 2, 0]
+
+
+@pytest.mark.parametrize("name", ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"])
+def test_numerical_libraries_have_one_thread_in_a_worker(
+    pool: JoblibPool, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(name, "3")
+    assert [end.value for end in pool.run(environment, [name])] == ["1"]
+
+
+@pytest.mark.parametrize(("word", "manner"), [("kill", "signal 9"), ("exit", "exit code 7")])
+def test_one_deadly_argument_among_many_is_lost_and_no_other(
+    pool: JoblibPool, word: str, manner: str
+) -> None:
+    words = [f"word {number}" for number in range(20)]
+    words[6] = word
+    ends = list(pool.run(deadly, words))
+    assert sorted(end.index for end in ends) == list(range(20))
+    (lost,) = [end for end in ends if end.worker_lost]
+    assert lost.index == 6
+    assert lost.value is None
+    assert lost.failure == f"the worker process died ({manner}), also when retried alone"
+    assert all(end.value == words[end.index].upper() for end in ends if end is not lost)
+
+
+def test_when_every_argument_is_deadly_every_one_is_lost() -> None:
+    with JoblibPool(3) as pool:
+        ends = list(pool.run(deadly, ["kill"] * 5))
+        assert sorted(end.index for end in ends) == list(range(5))
+        assert all(end.worker_lost for end in ends)
+        assert [end.value for end in pool.run(deadly, ["after"])] == ["AFTER"]
+
+
+def test_an_argument_that_dies_once_has_its_value_from_the_retry(pool: JoblibPool, tmp_path: Path) -> None:
+    ends = list(pool.run(KillsOnce(str(tmp_path), culprit=4), range(9)))
+    assert (tmp_path / "killed").exists()
+    assert sorted((end.index, end.value, end.failure) for end in ends) == [(i, i, None) for i in range(9)]
+
+
+def test_workers_killed_from_outside_are_replaced(pool: JoblibPool) -> None:
+    pids = {end.value for end in pool.run(process, [0.02] * 10)}
+    ends = pool.run(process, [0.05] * 20)
+    first = next(ends)
+    for pid in pids:
+        assert pid is not None
+        os.kill(pid, signal.SIGKILL)
+    rest = list(ends)
+    assert sorted(end.index for end in [first, *rest]) == list(range(20))
+    assert not any(end.worker_lost for end in rest)
+    assert pids.isdisjoint(end.value for end in rest[-10:])
+
+
+def test_idle_workers_killed_between_runs_are_replaced(pool: JoblibPool) -> None:
+    pids = {end.value for end in pool.run(process, [0.02] * 10)}
+    for pid in pids:
+        assert pid is not None
+        os.kill(pid, signal.SIGKILL)
+    ends = list(pool.run(process, [0.01] * 10))
+    assert sorted(end.index for end in ends) == list(range(10))
+    assert not any(end.worker_lost for end in ends)
+
+
+def test_one_job_runs_one_argument_at_a_time_and_survives_a_death() -> None:
+    with JoblibPool(1) as pool:
+        list(pool.run(deadly, ["warm"] * 4))
+        ends = list(pool.run(deadly, ["one", "kill", "two"]))
+        start = time.perf_counter()
+        pids = {end.value for end in pool.run(process, [0.1] * 4)}
+        assert time.perf_counter() - start > 0.4
+    assert os.getpid() not in pids
+    assert {end.index: end.value for end in ends} == {0: "ONE", 1: None, 2: "TWO"}
+
+
+def test_a_result_that_does_not_pickle_is_a_failure_of_its_argument(pool: JoblibPool) -> None:
+    ends = {end.index: end for end in pool.run(unsendable, range(5))}
+    assert sorted(ends) == list(range(5))
+    failure = ends.pop(2).failure
+    assert failure is not None
+    assert failure.startswith("no result came back: TypeError: cannot pickle 'generator' object")
+    assert all(end.value == index for index, end in ends.items())
+
+
+def test_closing_a_run_early_ends_its_work_and_warns_nobody(pool: JoblibPool) -> None:
+    pids = {end.value for end in pool.run(process, [0.02] * 10)}
+    ends = pool.run(process, [0.01, 60.0, 60.0, 60.0])
+    next(ends)
+    ends.close()  # type: ignore[attr-defined]
+    wait_until_all_end(pids)
+
+
+def test_close_ends_workers_at_work() -> None:
+    pool = JoblibPool(2)
+    pids = {end.value for end in pool.run(process, [0.02] * 10)}
+    unfinished = pool.run(process, [0.01, 60.0, 60.0])
+    next(unfinished)
+    pool.close()
+    wait_until_all_end(pids)
+    assert list(unfinished) == []
+
+
+LONG_RUN = """
+from evodesign.pool.joblib_pool import JoblibPool
+from tests.pool.tasks import process
+with JoblibPool(2) as pool:
+    print(*{end.value for end in pool.run(process, [0.05] * 6)}, flush=True)
+    for end in pool.run(process, [PAUSE] * 1000):
+        pass
+"""
+
+
+@pytest.mark.parametrize("pause", [0.05, 60.0])
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_no_worker_outlives_its_parent(how: signal.Signals, pause: float) -> None:
+    script = LONG_RUN.replace("PAUSE", str(pause))
+    parent = subprocess.Popen(
+        [sys.executable, "-c", script],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    with parent:
+        assert parent.stdout is not None
+        pids = {int(word) for word in parent.stdout.readline().split()}
+        assert len(pids) == 2
+        time.sleep(0.2)
+        if how is signal.SIGINT:
+            os.killpg(parent.pid, how)  # as a terminal does
+        else:
+            parent.send_signal(how)
+        wait_until_all_end(pids)
+        if how is signal.SIGINT:
+            assert parent.stderr is not None
+            assert parent.stderr.read().count("Traceback") == 1  # the parent's own
+
+
+def test_ordinary_use_writes_nothing_to_stderr_and_leaves_nothing_behind(tmp_path: Path) -> None:
+    script = """
+import os
+from evodesign.pool.joblib_pool import JoblibPool
+from tests.pool.tasks import squares
+before = len(os.listdir("/dev/shm"))
+with JoblibPool(2) as pool:
+    for _ in range(3):
+        assert len(list(pool.run(squares, range(10)))) == 10
+assert len(os.listdir("/dev/shm")) <= before, os.listdir("/dev/shm")
+JoblibPool(2).close()
+print("done")
+"""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", script], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")

@@ -1,0 +1,65 @@
+"""The reach problem's interval is where postures exist."""
+
+from __future__ import annotations
+
+import pytest
+
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.problem.build import Problem
+from evodesign.problem.designs import read_designs
+from evodesign.problem.evaluate import Evaluator
+from evodesign.records import Status
+
+
+def design(problem: Problem, name: str) -> tuple[float, ...]:
+    (text,) = (text for file, text in problem.source.files.items() if file.endswith("icub.toml"))
+    return read_designs(text, "icub.toml", problem.space, problem.scene.robot.tree)[name]
+
+
+@pytest.mark.parametrize(("name", "highest"), [("unscaled", 1.27), ("paper_start", 1.51)])
+def test_highest_load_is_the_papers(
+    name: str, highest: float, problem: Problem, evaluator: Evaluator
+) -> None:
+    """The paper: the original robot reaches 1.2 m and not 1.5 m, the optimised one 1.5 m."""
+    result = evaluator.solve(design(problem, name))
+    assert result.reach.status is Status.SOLVED
+    assert result.reach.highest == pytest.approx(highest, abs=0.03)
+
+
+def test_postures_end_where_reach_ends(problem: Problem, evaluator: Evaluator) -> None:
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    result = evaluator.solve(values)
+    scene = problem.scene
+    checker = Checker(scene, result.tree, AgentModel.of(scene.human, scene.human.tree))
+    assert result.reach.highest is not None
+    below = evaluator._posture.solve(values, result.reach.highest - 0.005, checker)
+    above = evaluator._posture.solve(values, result.reach.highest + 0.02, checker)
+    assert below.status is Status.SOLVED
+    assert above.status is not Status.SOLVED
+    assert above.postures == {}
+    assert "no posture found" in above.reason
+
+
+def test_height_out_of_reach_is_a_violation_and_has_no_torque(problem: Problem, evaluator: Evaluator) -> None:
+    shortest = tuple(0.0 if p.kind == "length" else 0.5 for p in problem.space.parameters)
+    found = evaluator.assess(shortest)
+    assert found.reach is not None
+    assert found.reach.highest_m is not None
+    expected = sum(max(0.0, height - found.reach.highest_m) for height in problem.heights)
+    assert expected > 0.0
+    assert found.violation == pytest.approx(expected)
+    assert found.status is Status.INFEASIBLE
+    assert "robot_torque" not in found.objectives
+    assert "out of reach" in found.reason
+    assert found.objectives["reach_height"] == found.reach.highest_m
+
+
+def test_longer_arms_reach_higher(problem: Problem, evaluator: Evaluator) -> None:
+    values = list(problem.space.unscaled(problem.scene.robot.tree))
+    names = [parameter.name for parameter in problem.space.parameters]
+    longer = list(values)
+    longer[names.index("length.forearm")] = 1.5
+    before, after = (evaluator.solve(v).reach.highest for v in (values, longer))
+    assert before is not None
+    assert after is not None
+    assert after > before + 0.03

@@ -1,0 +1,53 @@
+"""Strict decoding names file, key, what was wanted and what was found."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evodesign.errors import InputError
+from evodesign.problem.decode import decode_toml
+from evodesign.problem.file import PopulationFile, ProblemFile
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "wanted", "found"),
+    [
+        ("name = 3", "name", "str", "3"),
+        ("nam = 'a'", "nam", "one of the keys name, design", "'nam'; did you mean 'name'?"),
+        ("name = 'a'", "design", "this key", "nothing"),
+        ("name = 'a'\ndesign = []", "design", "array of length >= 1", "[]"),
+        ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = -1}", "design[0].length", "> 0", "'arm': -1"),
+        ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = inf}", "design[0].length.arm", "finite", "inf"),
+        ("name = 'a'\n[[design]]\nname = 'b'\nlenght = {}", "design[0].lenght", "keys name", "'length'?"),
+    ],
+)
+def test_errors_say_where_and_what(text: str, key: str, wanted: str, found: str) -> None:
+    with pytest.raises(InputError) as caught:
+        decode_toml(text, "file.toml", PopulationFile)
+    error = caught.value
+    assert error.source == "file.toml"
+    assert key in error.key
+    assert wanted in error.wanted
+    assert found in error.found
+    assert "\n" not in str(error)
+
+
+def test_value_under_a_dictionary_key_is_found() -> None:
+    text = "name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = 'long'}"
+    with pytest.raises(InputError) as caught:
+        decode_toml(text, "file.toml", PopulationFile)
+    assert "design[0].length" in caught.value.key
+
+
+@given(st.text(max_size=200))
+def test_any_text_decodes_or_is_explained_in_one_sentence(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        decode_toml(text, "file.toml", ProblemFile)
+    assert str(caught.value).startswith("file.toml")
+
+
+def test_nesting_without_end_is_refused() -> None:
+    with pytest.raises(InputError):
+        decode_toml("a = " + "[" * 100_000, "file.toml", ProblemFile)

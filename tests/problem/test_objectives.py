@@ -1,0 +1,58 @@
+"""Objectives against their definitions, recomputed from a design's results."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from evodesign.posture.solution import HeightSolution
+from evodesign.problem.build import Problem
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.objectives import OBJECTIVES, DesignResult
+from evodesign.records import Status
+from evodesign.tree.urdf_write import urdf_text
+
+
+@pytest.fixture(scope="module")
+def result(problem: Problem, evaluator: Evaluator) -> DesignResult:
+    return evaluator.solve(problem.space.values(tuple(0.4 for _ in problem.space.parameters)))
+
+
+def norms(result: DesignResult, agent: str) -> list[float]:
+    return [
+        float(np.sqrt(sum(t**2 for t in height.postures[agent].torques.values())))
+        for height in result.heights
+    ]
+
+
+@pytest.mark.parametrize("agent", ["robot", "human"])
+def test_torques_are_mean_and_worst_norms(agent: str, result: DesignResult) -> None:
+    assert OBJECTIVES[f"{agent}_torque"].value(result) == pytest.approx(sum(norms(result, agent)) / 3)
+    assert OBJECTIVES[f"worst_{agent}_torque"].value(result) == pytest.approx(max(norms(result, agent)))
+
+
+def test_mass_and_its_height_agree_with_pinocchio(result: DesignResult) -> None:
+    model = pin.buildModelFromXML(urdf_text(result.tree), pin.JointModelFreeFlyer())
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    center = pin.centerOfMass(model, data, pin.neutral(model))
+    sole = data.oMf[model.getFrameId("l_sole")].translation
+    assert OBJECTIVES["mass"].value(result) == pytest.approx(pin.computeTotalMass(model))
+    assert OBJECTIVES["com_height"].value(result) == pytest.approx(center[2] - sole[2])
+
+
+def test_torques_of_a_design_that_misses_a_height_are_absent(result: DesignResult) -> None:
+    missed = HeightSolution(1.2, Status.INFEASIBLE, "out of reach", {}, {}, ())
+    broken = replace(result, heights=(*result.heights[:2], missed))
+    for name in ("robot_torque", "human_torque", "worst_robot_torque", "worst_human_torque"):
+        assert OBJECTIVES[name].value(broken) is None
+    assert OBJECTIVES["reach_height"].value(broken) == result.reach.highest
+
+
+def test_every_objective_has_a_unit_and_a_value(result: DesignResult) -> None:
+    for kind in OBJECTIVES.values():
+        assert kind.unit
+        assert kind.value(result) is not None

@@ -1,0 +1,30 @@
+"""Reading a run or testing a search loads no solver and no robot library."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ("casadi", "pinocchio")
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "evodesign.analysis.front",
+        "evodesign.analysis.hypervolume",
+        "evodesign.runlog.run",
+        "evodesign.runlog.writer",
+        "evodesign.search.registry",
+        "evodesign.pool.registry",
+        "evodesign.evolve",
+        "evodesign.cli.fronts",
+        "evodesign.report.front_figure",
+    ],
+)
+def test_module_loads_without_casadi(module: str) -> None:
+    code = f"import sys, {module}; print([name for name in {HEAVY} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,281 @@
+from __future__ import annotations
+
+import copy
+import math
+import time
+
+import numpy as np
+import pytest
+from lxml import etree
+
+from evodesign.body.shape import Box, Cylinder, Sphere
+from evodesign.errors import ModelError
+from evodesign.tree.model import JointKind, Tree
+from evodesign.tree.urdf_read import MassRule, read_urdf
+from tests.oracles.pinocchio_model import floating_model
+
+TENSOR = '<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/>'
+BOX = '<visual><origin xyz="0 0 0.1" rpy="0 0 0"/><geometry><box size="0.1 0.2 0.3"/></geometry></visual>'
+ARM = f"""<?xml version="1.0" encoding="ISO-8859-1"?>
+<!-- a comment -->
+<robot name="arm">
+  <material name="red"><color rgba="1 0 0 1"/></material>
+  <link name="chest">
+    <inertial><origin xyz="0 0 0.4" rpy="0 0 0.5"/><mass value="12.0"/>{TENSOR}</inertial>
+    {BOX}
+    <collision><!-- the same --><geometry><!-- shape --><box size="0.1 0.2 0.3"/></geometry></collision>
+  </link>
+  <link name="upper"/>
+  <link name="hand"/>
+  <joint name="shoulder" type="revolute">
+    <origin xyz="0 0.2 0.3" rpy="0.1 0.2 0.3"/><parent link="chest"/><child link="upper"/>
+    <axis xyz="0 2 0"/><limit lower="-1" upper="2.5" effort="80" velocity="3"/><dynamics damping="a lot"/>
+  </joint>
+  <joint name="weld" type="fixed">
+    <parent link="upper"/><child link="hand"/><axis xyz="nan nan nan"/><limit lower="3" upper="inf"/>
+  </joint>
+  <gazebo reference="chest"><sensor name="eye"><pose>anything</pose></sensor></gazebo>
+</robot>"""
+
+ONE_LINK = '<robot name="r"><link name="body">{}</link></robot>'
+
+
+def read(text: str, masses: MassRule = MassRule.SHAPES) -> Tree:
+    return read_urdf(text, "arm.urdf", masses)
+
+
+def one_link(inside: str, masses: MassRule = MassRule.SHAPES):
+    return read(ONE_LINK.format(inside), masses).links[0]
+
+
+def inertial(mass: float) -> str:
+    return f'<inertial><mass value="{mass}"/>{TENSOR}</inertial>'
+
+
+def look(shape: str, role: str = "visual") -> str:
+    return f"<{role}><geometry>{shape}</geometry></{role}>"
+
+
+def test_links_and_joints_keep_names_and_places():
+    tree = read(ARM)
+    assert (tree.name, tree.root, tree.actuated) == ("arm", "chest", ("shoulder",))
+    shoulder = tree.joint_by_name["shoulder"]
+    assert (shoulder.parent, shoulder.child) == ("chest", "upper")
+    assert shoulder.parent_from_child.translation == (0.0, 0.2, 0.3)
+    assert (shoulder.lower, shoulder.upper, shoulder.effort, shoulder.velocity) == (-1.0, 2.5, 80.0, 3.0)
+
+
+def test_an_axis_is_normalised():
+    assert read(ARM).joint_by_name["shoulder"].axis == (0.0, 1.0, 0.0)
+    slanted = read(ARM.replace("0 2 0", "1 -2 2")).joint_by_name["shoulder"].axis
+    assert slanted == pytest.approx((1 / 3, -2 / 3, 2 / 3), rel=1e-15)
+
+
+def test_an_axis_that_is_left_out_is_x():
+    assert read(ARM.replace('<axis xyz="0 2 0"/>', "")).joint_by_name["shoulder"].axis == (1.0, 0.0, 0.0)
+
+
+def test_axis_and_limit_of_a_weld_do_not_matter():
+    weld = read(ARM).joint_by_name["weld"]
+    assert weld.kind is JointKind.FIXED
+    assert (weld.lower, weld.upper, weld.axis) == (0.0, 0.0, (1.0, 0.0, 0.0))
+
+
+def test_a_continuous_joint_has_no_limits():
+    text = ARM.replace('type="revolute"', 'type="continuous"')
+    for given in (text, text.replace('<limit lower="-1" upper="2.5" effort="80" velocity="3"/>', "")):
+        shoulder = read(given).joint_by_name["shoulder"]
+        assert (shoulder.lower, shoulder.upper) == (-math.inf, math.inf)
+
+
+def test_effort_and_velocity_that_are_left_out_are_infinite():
+    shoulder = read(ARM.replace('effort="80" velocity="3"', "")).joint_by_name["shoulder"]
+    assert shoulder.effort == shoulder.velocity == math.inf
+
+
+def test_a_shape_with_mass_overrides_centre_and_tensor():
+    chest = read(ARM).link_by_name["chest"]
+    (solid,) = chest.solids
+    assert solid.shape == Box(0.1, 0.2, 0.3)
+    assert solid.density == pytest.approx(12.0 / 0.006, rel=1e-14)
+    assert chest.inertia.mass == pytest.approx(12.0, rel=1e-14)
+    assert chest.inertia.center == (0.0, 0.0, 0.1)
+    assert chest.inertia.about_center[0][0] == pytest.approx(0.04 + 0.09, rel=1e-12)
+
+
+def test_the_same_shape_seen_and_touched_counts_once():
+    assert len(read(ARM).link_by_name["chest"].solids) == 1
+
+
+def test_a_person_keeps_the_inertia_of_the_file():
+    turned = f'<inertial><origin xyz="0 1 0.4" rpy="0.3 0.2 0.5"/><mass value="12"/>{TENSOR}</inertial>'
+    body = one_link(turned + BOX, MassRule.FILE)
+    assert not body.solids
+    assert [item.shape for item in body.looks] == [Box(0.1, 0.2, 0.3)]
+    found = floating_model(ONE_LINK.format(turned)).inertias[1]
+    assert body.inertia.mass == found.mass
+    np.testing.assert_allclose(body.inertia.center, found.lever, atol=1e-15)
+    np.testing.assert_allclose(body.inertia.about_center, found.inertia, atol=1e-15)
+
+
+def test_a_link_without_shapes_keeps_its_inertia():
+    body = one_link(inertial(3.0))
+    assert (body.solids, body.looks, body.inertia.mass) == ((), (), 3.0)
+    assert body.inertia.about_center[2][2] == 0.03
+
+
+def test_a_shape_without_mass_is_a_look():
+    for inside in (look('<sphere radius="0.2"/>'), inertial(0.0) + look('<sphere radius="0.2"/>')):
+        body = one_link(inside)
+        assert [item.shape for item in body.looks] == [Sphere(0.2)]
+        assert (body.solids, body.inertia.mass) == ((), 0.0)
+
+
+def test_several_shapes_share_one_density_and_keep_the_mass():
+    body = one_link(inertial(3.0) + look('<sphere radius="0.2"/>') + look('<box size="1 1 1"/>'))
+    assert body.solids[0].density == body.solids[1].density
+    assert body.inertia.mass == pytest.approx(3.0, rel=1e-14)
+
+
+def test_collision_shapes_stand_in_for_a_mesh():
+    mesh, rod = '<mesh filename="a.stl" scale="x"/>', '<cylinder radius="0.1" length="0.5"/>'
+    body = one_link(inertial(3.0) + look(mesh) + look(rod, "collision"))
+    assert [solid.shape for solid in body.solids] == [Cylinder(0.1, 0.5)]
+    assert not one_link(inertial(3.0) + look(mesh)).solids
+
+
+FAULTS = [
+    ("0.1 0.2 0.3", "0.1 0.2", "link chest.visual.box.size", "3 finite numbers", "'0.1 0.2'"),
+    ("0.1 0.2 0.3", "0.1 -0.2 0.3", "link chest.visual.box.size", "3 finite numbers", "'0.1 -0.2 0.3'"),
+    ("0.1 0.2 0.3", "0.1 0 0.3", "link chest.visual.box.size", "from 1e-06 to 1000", "'0.1 0 0.3'"),
+    ('size="0.1 0.2 0.3"', "", "link chest.visual.box.size", "3 finite numbers", "nothing"),
+    ("<box ", "<capsule ", "link chest.visual.geometry", "<cylinder>", "<capsule>"),
+    ('<box size="0.1 0.2 0.3"/>', "", "link chest.visual.geometry", "one <box>", "nothing"),
+    ('value="12.0"', 'value="-12.0"', "link chest.inertial.mass.value", "from 0", "'-12.0'"),
+    ('value="12.0"', 'value="heavy"', "link chest.inertial.mass.value", "a finite number", "'heavy'"),
+    ('value="12.0"', "", "link chest.inertial.mass.value", "a finite number", "nothing"),
+    ('<mass value="12.0"/>', "", "link chest.inertial.mass", "<mass>", "nothing"),
+    (TENSOR, "", "link chest.inertial.inertia", "<inertia>", "nothing"),
+    ('iyy="0.02"', 'iyy="nan"', "link chest.inertial.inertia.iyy", "a finite number", "'nan'"),
+    ("0 0 0.4", "0 0 1e999", "link chest.inertial.origin.xyz", "3 finite numbers", "'0 0 1e999'"),
+    ("0 0.2 0.3", "0 0.2 inf", "joint shoulder.origin.xyz", "3 finite numbers", "'0 0.2 inf'"),
+    ("0 2 0", "0 0 0", "joint shoulder.axis.xyz", "a direction", "'0.0 0.0 0.0'"),
+    ("0 2 0", "nan nan nan", "joint shoulder.axis.xyz", "3 finite numbers", "'nan nan nan'"),
+    ('lower="-1"', 'lower="3"', "joint shoulder.limit.lower", "at most the upper limit 2.5", "3.0"),
+    ('lower="-1"', "", "joint shoulder.limit.lower", "a finite number", "nothing"),
+    ('effort="80"', 'effort="-80"', "joint shoulder.limit.effort", "from 0", "'-80'"),
+    ('velocity="3"', 'velocity="inf"', "joint shoulder.limit.velocity", "a finite number", "'inf'"),
+    ('type="revolute"', 'type="floating"', "joint shoulder.type", "continuous or prismatic", "'floating'"),
+    ('type="revolute"', "", "joint shoulder.type", "continuous or prismatic", "nothing"),
+    ('<dynamics damping="a lot"/>', '<mimic joint="weld"/>', "joint shoulder.mimic", "itself", "'weld'"),
+    ('<parent link="chest"/>', "", "joint shoulder.parent", "the name of a link", "nothing"),
+    ('<child link="upper"/>', "<child/>", "joint shoulder.child", "the name of a link", "nothing"),
+    ('<child link="upper"/>', '<child link="uper"/>', "joint shoulder.child", "link", "did you mean 'upper'"),
+    ('<link name="hand"/>', '<link name="hand"/><link/>', "link[4].name", "a name", "nothing"),
+    ('<link name="hand"/>', '<link name="hand"/><link name="upper"/>', "link upper", "unique", "twice"),
+    ('<link name="hand"/>', '<link name="hand"/><link name="foot"/>', "links", "one root", "chest, foot"),
+    ('<parent link="upper"/>', '<parent link="hand"/>', "joint weld", "without loops", "a loop"),
+    ('<parent link="chest"/>', '<parent link="hand"/>', "joint shoulder", "without loops", "a loop"),
+    ('name="weld"', 'name="shoulder"', "joint shoulder", "a unique name", "twice"),
+    ('name="weld"', "", "joint[2].name", "a name", "nothing"),
+    ('<robot name="arm">', "<robot>", "robot.name", "a name", "nothing"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "key", "wanted", "found"), FAULTS)
+def test_a_fault_is_one_sentence_that_names_file_and_element(old, new, key, wanted, found):
+    assert old in ARM
+    with pytest.raises(ModelError) as caught:
+        read(ARM.replace(old, new, 1))
+    error = caught.value
+    assert (error.source, error.key) == ("arm.urdf", key)
+    assert wanted in error.wanted
+    assert found in error.found
+    assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("", "text that is not XML"),
+        ("wheels and gears", "text that is not XML"),
+        ("<robot name='r'><link name='a'/>", "text that is not XML"),
+        ("\udcff", "text that is not XML"),
+        ("<sdf/>", "<sdf>"),
+        ("<robot name='r'/>", "none"),
+        ("<robot name='r'><joint name='j' type='fixed'/></robot>", "none"),
+        ("<!DOCTYPE robot><robot name='r'><link name='a'/></robot>", "a DOCTYPE declaration"),
+    ],
+)
+def test_a_text_that_is_no_urdf_is_refused(text, found):
+    with pytest.raises(ModelError, match=r"^arm\.urdf: ") as caught:
+        read(text)
+    assert caught.value.found.startswith(found)
+
+
+def test_a_ring_of_links_is_refused():
+    weld = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
+    links = '<link name="a"/><link name="b"/>'
+    ring = weld.format("ab", "a", "b") + weld.format("ba", "b", "a")
+    with pytest.raises(ModelError, match=r"^arm\.urdf: links: wanted one root link .* found none"):
+        read(f'<robot name="r">{links}{ring}</robot>')
+
+
+def test_the_second_of_two_shapes_is_named():
+    with pytest.raises(ModelError) as caught:
+        one_link(look('<mesh filename="a.stl"/>') + look('<sphere radius="-1"/>'))
+    assert caught.value.key == "link body.visual[2].sphere.radius"
+
+
+LAUGHS = "".join(f"<!ENTITY a{i + 1} '{f'&a{i};' * 10}'>" for i in range(12))
+BOMB = f"<!DOCTYPE robot [<!ENTITY a0 'ha'>{LAUGHS}]>"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{BOMB}<robot name='r'><link name='a'/>&a12;</robot>",
+        f"{BOMB}<robot name='&a12;'><link name='a'/></robot>",
+        "<!DOCTYPE r [<!ENTITY a0 SYSTEM 'file:///dev/zero'>]><robot name='r'><link name='a'/>&a0;</robot>",
+        "<!DOCTYPE robot SYSTEM 'http://localhost:1/robot.dtd'><robot name='r'><link name='a'/></robot>",
+    ],
+    ids=["in the text", "in an attribute", "a file", "a DTD elsewhere"],
+)
+def test_entities_are_refused_quickly(text):
+    start = time.perf_counter()
+    with pytest.raises(ModelError):
+        read(text)
+    assert time.perf_counter() - start < 1.0
+
+
+def damaged_copies(text: str):
+    """The document with one element or attribute taken away, doubled, or replaced by nonsense."""
+    root = etree.fromstring(text.encode())
+    for number, element in enumerate(root.iter(etree.Element)):
+        for change in (None, "", "x", "nan", "1e999", "-1", "0 0 0", "1e300 1e300 1e300"):
+            for name in element.attrib:
+                damaged = copy.deepcopy(root)
+                victim = list(damaged.iter(etree.Element))[number]
+                victim.attrib.pop(name) if change is None else victim.set(name, change)
+                yield damaged
+        if element is not root:
+            for double in (False, True):
+                damaged = copy.deepcopy(root)
+                victim = list(damaged.iter(etree.Element))[number]
+                parent = victim.getparent()
+                parent.append(copy.deepcopy(victim)) if double else parent.remove(victim)
+                yield damaged
+
+
+def test_any_single_damage_is_read_or_refused_with_a_sentence():
+    read_well, sentences = 0, []
+    for damaged in damaged_copies(ARM):
+        try:
+            tree = read(etree.tostring(damaged, encoding="unicode"))
+        except ModelError as error:
+            sentences.append(str(error))
+        else:
+            read_well += math.isfinite(sum(link.inertia.mass for link in tree.links))
+    assert read_well > 50
+    assert len(sentences) > 50
+    assert not [sentence for sentence in sentences if "yourdfpy" in sentence or "\n" in sentence]
