@@ -17,7 +17,7 @@ __all__ = ["front_json", "front_table", "heading"]
 
 def heading(objective: Objective) -> str:
     """A column's heading: name, sense and unit."""
-    arrow = "v" if objective.sense == "minimise" else "^"
+    arrow = "↓" if objective.sense == "minimise" else "↑"
     return f"{objective.name} [{objective.unit}] {arrow}"
 
 

@@ -24,17 +24,20 @@ import numpy as np
 from evodesign.posture.program import Constraint, Variable
 from evodesign.statics.balance import AppliedWrench, cut
 from evodesign.statics.contact import foot_margins
-from evodesign.statics.scene import SIDES, Agent, Scene
+from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Tree
 
-__all__ = ["AgentBlock", "agent_block"]
+__all__ = ["GRASP_ROWS", "AgentBlock", "agent_block", "hand_wrench"]
 
 Expression = Any
 
 TORQUE_UNIT = 10.0  # [N m] per unit of a lifted torque
 FORCE_UNIT = 100.0  # [N] per unit of a foot wrench
-HAND_UNIT = 10.0  # [N] per unit of a hand force
+HAND_UNIT = 10.0  # [N] per unit of a hand force, [N m] per unit of a hand moment
+
+GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}
+"""Numbers of a hand's wrench that are free: a force, or a force and a moment."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +47,15 @@ class AgentBlock:
     Args:
         variables: base, joints, wrenches and torques.
         constraints: everything that binds the agent alone, given the grasp points.
-        hand_forces: force on the hand by side, agent's frame [N]; the load feels its negative.
+        hand_wrenches: force [N] and moment about the grasp point [N m] on the hand by side, agent's frame;
+            the load feels their negative.
         torques: lifted joint torques [N m], in the order of the agent's joints.
         comfort: small convex cost that makes the posture unique where torques do not.
     """
 
     variables: tuple[Variable, ...]
     constraints: tuple[Constraint, ...]
-    hand_forces: Mapping[str, Expression]
+    hand_wrenches: Mapping[str, Expression]
     torques: Expression
     comfort: Expression
 
@@ -70,9 +74,9 @@ def agent_block(agent: Agent, tree: Tree, scene: Scene, height: Expression) -> A
     base = Pose(euler_rotation(values["base_angles"]), values["base_position"])
     positions = {name: values["joints"][i] for i, name in enumerate(agent.joints)}
     poses = forward(tree, base, positions)
-    hand_forces = {side: values[f"{side}_hand"] for side in SIDES}
+    hands = {side: hand_wrench(values[f"{side}_hand"]) for side in SIDES}
     feet = {side: values[f"{side}_foot"] for side in SIDES}
-    balance = cut(tree, poses, _applied(agent, poses, hand_forces, feet))
+    balance = cut(tree, poses, _applied(agent, poses, hands, feet))
     statics = ca.vertcat(*[balance.torques[name] for name in agent.joints])
     constraints = [
         *_hands(agent, poses, scene, height),
@@ -82,8 +86,8 @@ def agent_block(agent: Agent, tree: Tree, scene: Scene, height: Expression) -> A
         _equal(f"{agent.name}.force", balance.force / FORCE_UNIT),
         _equal(f"{agent.name}.moment", balance.moment / TORQUE_UNIT),
     ]
-    comfort = _comfort(agent, values, hand_forces, feet)
-    return AgentBlock(tuple(variables), tuple(constraints), hand_forces, values["torques"], comfort)
+    comfort = _comfort(agent, values, hands, feet)
+    return AgentBlock(tuple(variables), tuple(constraints), hands, values["torques"], comfort)
 
 
 def _variables(agent: Agent, scene: Scene) -> list[Variable]:
@@ -102,10 +106,10 @@ def _variables(agent: Agent, scene: Scene) -> list[Variable]:
             1.0,
         ),
     ]
-    hand, foot, torque = [300.0] * 3, [5000.0] * 6, [1000.0] * len(joints)  # beyond any holding posture
+    hand, foot, torque = [300.0] * GRASP_ROWS[scene.payload.grasp], [5000.0] * 6, [1000.0] * len(joints)
     rest = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
     bounded = [
-        *((f"{side}_hand", hand, [0.0] * 3, HAND_UNIT) for side in SIDES),
+        *((f"{side}_hand", hand, [0.0] * len(hand), HAND_UNIT) for side in SIDES),
         *((f"{side}_foot", foot, rest, FORCE_UNIT) for side in SIDES),
         ("torques", torque, [0.0] * len(joints), TORQUE_UNIT),
     ]
@@ -125,13 +129,18 @@ def start_posture(agent: Agent, scene: Scene) -> tuple[list[float], list[float]]
     return [-back, 0.0, -lowest], [0.0] * len(agent.joints)
 
 
+def hand_wrench(free: Expression) -> Expression:
+    """Six rows from the free numbers of a grasp: a point grasp passes no moment."""
+    return ca.vertcat(free, ca.DM.zeros(6 - free.numel()))
+
+
 def _applied(
     agent: Agent, poses: Mapping[str, Pose], hands: Mapping[str, Expression], feet: Mapping[str, Expression]
 ) -> list[AppliedWrench]:
     applied = []
     for side in SIDES:
         hand, sole = poses[agent.hands[side]], poses[agent.soles[side]]
-        applied.append(AppliedWrench(agent.hands[side], hand.position, hands[side], ca.DM.zeros(3)))
+        applied.append(AppliedWrench(agent.hands[side], hand.position, hands[side][:3], hands[side][3:]))
         force, moment = sole.rotation @ feet[side][:3], sole.rotation @ feet[side][3:]
         applied.append(AppliedWrench(agent.soles[side], sole.position, force, moment))
     return applied
@@ -142,7 +151,7 @@ def _hands(agent: Agent, poses: Mapping[str, Pose], scene: Scene, height: Expres
     return [
         _equal(
             f"{agent.name}.{side}_hand_on_load",
-            poses[agent.hands[side]].position - vector(scene.payload.grasp(side)) - lift,
+            poses[agent.hands[side]].position - vector(scene.payload.grasp_point(agent, side)) - lift,
         )
         for side in SIDES
     ]
@@ -187,7 +196,7 @@ def _comfort(
     joints = [agent.tree.joint_by_name[name] for name in agent.joints]
     ranges = [min(j.upper, math.pi) - max(j.lower, -math.pi) for j in joints]
     bent = values["joints"] / ca.DM(ranges)
-    lateral = sum(ca.sumsqr(force[:2]) for force in hands.values()) / HAND_UNIT**2
+    lateral = sum(ca.sumsqr(wrench[:2]) + ca.sumsqr(wrench[3:]) for wrench in hands.values()) / HAND_UNIT**2
     split = ca.sumsqr(feet["left"] - feet["right"]) / FORCE_UNIT**2
     return 1e-2 * (ca.sumsqr(bent) + ca.sumsqr(values["base_angles"]) + lateral + split)
 

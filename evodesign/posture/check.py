@@ -20,7 +20,7 @@ import pinocchio as pin
 from evodesign.posture.solution import AgentPosture, Array
 from evodesign.statics.balance import GRAVITY
 from evodesign.statics.contact import foot_margins
-from evodesign.statics.scene import SIDES, Agent, Scene
+from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
@@ -74,8 +74,7 @@ class AgentModel:
         rows = np.array(self.data.g)
         for side in SIDES:
             hand, sole = self.agent.hands[side], self.agent.soles[side]
-            force = np.concatenate([posture.hand_forces[side], np.zeros(3)])
-            rows -= self._jacobian(hand, pin.LOCAL_WORLD_ALIGNED).T @ force
+            rows -= self._jacobian(hand, pin.LOCAL_WORLD_ALIGNED).T @ posture.hand_wrenches[side]
             rows -= self._jacobian(sole, pin.LOCAL).T @ posture.foot_wrenches[side]
         return rows
 
@@ -128,7 +127,7 @@ def _contacts(model: AgentModel, posture: AgentPosture, scene: Scene, height: fl
     agent = model.agent
     hands, heights, slants, margins = [], [], [], []
     for side in SIDES:
-        grasp = np.array(scene.payload.grasp(side)) + np.array([0.0, 0.0, height])
+        grasp = np.array(scene.payload.grasp_point(agent, side)) + np.array([0.0, 0.0, height])
         hands.append(float(np.abs(model.frame(agent.hands[side]).translation - grasp).max()))
         sole = model.frame(agent.soles[side])
         heights.append(abs(float(sole.translation[2])))
@@ -164,18 +163,22 @@ def _limits(model: AgentModel, posture: AgentPosture, scene: Scene) -> dict[str,
 
 
 def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float]:
-    force = np.array([0.0, 0.0, -GRAVITY * scene.payload.mass])
-    moment = np.zeros(3)
-    push = 0.0
+    weight = np.array([0.0, 0.0, -GRAVITY * scene.payload.mass])
+    force, moment = weight, np.cross(scene.payload.center_of_mass, weight)
+    push, passed = 0.0, 0.0
     for agent in (scene.robot, scene.human):
         world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
         for side in SIDES:
-            on_load = -world_from_agent @ postures[agent.name].hand_forces[side]
+            wrench = postures[agent.name].hand_wrenches[side]
+            on_load = -world_from_agent @ wrench[:3]
+            point = world_from_agent @ np.array(scene.payload.grasp_point(agent, side))
             force = force + on_load
-            moment = moment + np.cross(world_from_agent @ np.array(scene.payload.grasp(side)), on_load)
+            moment = moment + np.cross(point, on_load) - world_from_agent @ wrench[3:]
             push += float(on_load[0]) if agent is scene.robot else 0.0
+            passed = max(passed, float(np.abs(wrench[3:]).max()))
     return {
         "load.force_balance": float(np.abs(force).max()),
         "load.moment_balance": float(np.abs(moment).max()),
         "load.push": max(0.0, abs(push) - scene.stance.push),
+        "load.grasp": passed if scene.payload.grasp is Grasp.POINT else 0.0,
     }

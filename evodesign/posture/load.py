@@ -1,9 +1,9 @@
 """The load's part of a program: it is level, still, and held by up to four hands.
 
-    sum_i f_i + (0, 0, -m g) = 0        sum_i r_i x f_i = 0
+    sum_i f_i + (0, 0, -m g) = 0        sum_i (r_i x f_i + n_i) + c x (0, 0, -m g) = 0
 
-with f_i the force of hand i on the load and r_i its grasp point from the load's centre of mass. Hands pass
-forces, not moments (`point` grasps, as in the paper).
+with f_i and n_i the force and moment of hand i on the load (no moment with `point` grasps, as in the paper),
+r_i its grasp point and c the centre of mass, both from the box's centre.
 
 Source: Sartore et al. 2022, Eq. 8, third row at rest.
 """
@@ -20,44 +20,41 @@ from evodesign.statics.balance import GRAVITY
 from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.kinematics import vector
 
-__all__ = ["force_on_load", "load_constraints", "push_between"]
+__all__ = ["load_constraints"]
 
 Expression = Any
 
 LOAD_UNIT = 10.0  # [N] and [N m] per unit of the load's balance rows
 
 
-def force_on_load(agent: Agent, hand_force: Expression) -> Expression:
-    """Force on the load in world axes [N] from the force on a hand in the agent's frame."""
-    return -hand_force * ca.DM([agent.sign, agent.sign, 1.0])
-
-
-def push_between(robot: Agent, hand_forces: Mapping[str, Expression]) -> Expression:
-    """Horizontal force of the robot on the load, towards the person [N]."""
-    return sum(force_on_load(robot, hand_forces[side])[0] for side in SIDES)
+def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
+    """A vector in world axes from one in the agent's frame, which is turned about z by 0 or 180 degrees."""
+    return in_agent * ca.DM([agent.sign, agent.sign, 1.0])
 
 
 def load_constraints(
-    scene: Scene, hand_forces: Mapping[str, Mapping[str, Expression]]
+    scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]]
 ) -> tuple[Constraint, ...]:
     """Balance of the load and the bound on the push between the agents.
 
     Args:
         scene: agents and load.
-        hand_forces: force on each hand in its agent's frame [N], by agent name and side.
+        hand_wrenches: force [N] and moment [N m] on each hand in its agent's frame, by agent name and side.
     """
-    force: Expression = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
-    moment: Expression = ca.DM.zeros(3)
+    weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
+    force: Expression = weight
+    moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
+    push: Expression = 0.0
     for agent in (scene.robot, scene.human):
-        turn = ca.DM([agent.sign, agent.sign, 1.0])
         for side in SIDES:
-            on_load = force_on_load(agent, hand_forces[agent.name][side])
+            wrench = hand_wrenches[agent.name][side]
+            on_load = -turned_to_world(agent, wrench[:3])
+            point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, side)))
             force = force + on_load
-            moment = moment + ca.cross(vector(scene.payload.grasp(side)) * turn, on_load)
-    push = push_between(scene.robot, hand_forces[scene.robot.name])
+            moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
+            push = push + on_load[0] if agent is scene.robot else push
+    limit = scene.stance.push / LOAD_UNIT
     return (
         Constraint("load.balance", ca.vertcat(force, moment) / LOAD_UNIT, 0.0, 0.0),
-        Constraint(
-            "load.push", push / LOAD_UNIT, -scene.stance.push / LOAD_UNIT, scene.stance.push / LOAD_UNIT
-        ),
+        Constraint("load.push", push / LOAD_UNIT, -limit, limit),
     )

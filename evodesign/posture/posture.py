@@ -86,7 +86,7 @@ def _program(scene: Scene, space: DesignSpace, weights: EffortWeights) -> Progra
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = agent_block(scene.robot, tree, scene, height)
     human = agent_block(scene.human, scene.human.tree, scene, height)
-    load = load_constraints(scene, {ROBOT: robot.hand_forces, HUMAN: human.hand_forces})
+    load = load_constraints(scene, {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches})
     effort = weights.robot * ca.sumsqr(robot.torques) + weights.human * ca.sumsqr(human.torques)
     return Program(
         name="posture",

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.agent import HAND_UNIT, agent_block
+from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, agent_block, hand_wrench
 from evodesign.posture.load import load_constraints
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
 from evodesign.records import Status, worst_status
@@ -87,12 +87,14 @@ def _program(scene: Scene, space: DesignSpace) -> Program:
     height = Variable.column("height", [floor], [5.0], [START_HEIGHTS[0]], 1.0)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = agent_block(scene.robot, tree, scene, height.value)
-    limit = [300.0] * 3
+    limit = [300.0] * GRASP_ROWS[scene.payload.grasp]
     helping = {
-        side: Variable.column(f"helper.{side}_hand", [-x for x in limit], limit, [0.0] * 3, HAND_UNIT)
+        side: Variable.column(
+            f"helper.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
+        )
         for side in SIDES
     }
-    hands = {ROBOT: robot.hand_forces, HUMAN: {side: helping[side].value for side in SIDES}}
+    hands = {ROBOT: robot.hand_wrenches, HUMAN: {side: hand_wrench(helping[side].value) for side in SIDES}}
     return Program(
         name="reach",
         variables=(height, *robot.variables, *helping.values()),

@@ -26,7 +26,8 @@ class AgentPosture:
         base_angles: roll, pitch, yaw of the root link in the agent's frame [rad], shape (3,).
         joints: position [rad] of each joint that moves.
         torques: torque [N m] of each joint that moves.
-        hand_forces: force on the hand, by side, in the agent's frame [N], shape (3,).
+        hand_wrenches: force [N] and moment about the grasp point [N m] on the hand, by side, in the agent's
+            frame, shape (6,).
         foot_wrenches: force [N] and moment [N m] on the foot, by side, in the sole frame, shape (6,).
     """
 
@@ -34,7 +35,7 @@ class AgentPosture:
     base_angles: Array
     joints: Mapping[str, float]
     torques: Mapping[str, float]
-    hand_forces: Mapping[str, Array]
+    hand_wrenches: Mapping[str, Array]
     foot_wrenches: Mapping[str, Array]
 
     @property
@@ -88,6 +89,11 @@ def posture_of(agent: Agent, solution: RawSolution) -> AgentPosture:
         base_angles=values["base_angles"],
         joints=dict(zip(agent.joints, values["joints"].tolist(), strict=True)),
         torques=dict(zip(agent.joints, values["torques"].tolist(), strict=True)),
-        hand_forces={side: values[f"{side}_hand"] for side in SIDES},
+        hand_wrenches={side: _padded(values[f"{side}_hand"]) for side in SIDES},
         foot_wrenches={side: values[f"{side}_foot"] for side in SIDES},
     )
+
+
+def _padded(free: Array) -> Array:
+    """Six rows from the free numbers of a grasp: a point grasp passes no moment."""
+    return np.concatenate([free, np.zeros(6 - len(free))])

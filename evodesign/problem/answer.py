@@ -1,9 +1,9 @@
 """The answer of `evodesign evaluate`: everything about one design, in one JSON object.
 
 Its shape is a promise. Units: heights and positions [m], angles [rad], torques [N m], forces [N], times [s].
-Positions and hand forces (on the hand) are in the agent's own frame, which looks along +x at the load above
-its origin; foot wrenches
-(force, then moment about the sole's origin) act on the foot and are in the sole frame.
+Positions and hand wrenches are in the agent's own frame, which looks along +x at the load above its origin; a
+wrench is force, then moment, acting on the agent: at a hand about the grasp point, at a foot about the sole's
+origin and in the sole frame.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _agent(posture: AgentPosture) -> dict[str, Any]:
 
 
 def _wrenches(posture: AgentPosture) -> dict[str, list[float]]:
-    hands = {f"{side}_hand": [*posture.hand_forces[side].tolist(), 0.0, 0.0, 0.0] for side in SIDES}
+    hands = {f"{side}_hand": posture.hand_wrenches[side].tolist() for side in SIDES}
     feet = {f"{side}_foot": posture.foot_wrenches[side].tolist() for side in SIDES}
     return {**hands, **feet}
 

@@ -15,7 +15,7 @@ from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.objectives import OBJECTIVES
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.statics.contact import Ground
-from evodesign.statics.scene import Payload, Scene, StanceLimits
+from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Payload, Scene, StanceLimits
 from evodesign.tree.model import Tree
 
 __all__ = ["Problem", "build_problem"]
@@ -71,7 +71,7 @@ def build_problem(source: ProblemSource) -> Problem:
     scene = Scene(
         robot=robot_agent(tables, source),
         human=human_agent(tables, source),
-        payload=Payload(tables.payload.size_m, tables.payload.mass_kg),
+        payload=_payload(tables, source),
         ground=_ground(tables),
         stance=_stance(tables, source),
     )
@@ -93,6 +93,21 @@ def build_problem(source: ProblemSource) -> Problem:
         search=tables.search,
         start=start,
     )
+
+
+def _payload(tables: ProblemFile, source: ProblemSource) -> Payload:
+    table = tables.payload
+    for axis, (offset, size) in enumerate(zip(table.center_of_mass_m, table.size_m, strict=True)):
+        if abs(offset) > size / 2.0:
+            key = f"payload.center_of_mass_m[{axis}]"
+            raise InputError(source.path, key, f"a point in the box, at most {size / 2.0:g}", f"{offset:g}")
+    points = {
+        (agent, side): getattr(grasps, side)
+        for agent, grasps in ((ROBOT, table.robot_grasps_m), (HUMAN, table.human_grasps_m))
+        if grasps is not None
+        for side in SIDES
+    }
+    return Payload(table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, points)
 
 
 def _ground(tables: ProblemFile) -> Ground:

@@ -6,17 +6,19 @@ that name file, key, what was wanted and what was found.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 
+from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 
 __all__ = ["HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
+Point = tuple[float, float, float]
 Name = Annotated[str, Meta(min_length=1)]
 
 
@@ -62,12 +64,22 @@ class HumanTable(Table, frozen=True):
     joints: tuple[Name, ...] = ()
 
 
+class GraspsTable(Table, frozen=True):
+    """Grasp points of an agent's hands, from the box's centre, in the world's axes."""
+
+    left: Point
+    right: Point
+
+
 class PayloadTable(Table, frozen=True):
     """`[payload]`: a box; size is depth (robot to person), width, height."""
 
     size_m: tuple[Positive, Positive, Positive]
     mass_kg: Positive
-    grasp: Literal["point"] = "point"
+    center_of_mass_m: Point = (0.0, 0.0, 0.0)
+    grasp: Grasp = Grasp.POINT
+    robot_grasps_m: GraspsTable | None = None
+    human_grasps_m: GraspsTable | None = None
 
 
 class WeightsTable(Table, frozen=True):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
@@ -17,35 +18,49 @@ from evodesign.body.shape import Box
 from evodesign.statics.contact import Ground, SoleSize
 from evodesign.tree.model import Tree
 
-__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Payload", "Scene", "StanceLimits"]
+__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
 
 ROBOT, HUMAN = "robot", "human"
 SIDES = ("left", "right")
 
 
+class Grasp(StrEnum):
+    """What a hand can pass to the load: a force (as in the paper), or a force and a moment."""
+
+    POINT = "point"
+    RIGID = "rigid"
+
+
 @dataclass(frozen=True, slots=True)
 class Payload:
-    """A box held level by four hands.
+    """A box held level by four hands. Its frame has the world's axes and its origin at the box's centre.
 
     Args:
         size: depth along x (robot to person), width along y, height along z [m].
         mass: [kg].
+        center_of_mass: from the box's centre, in its frame [m].
+        grasp: what every hand can pass to the load.
+        grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
+            it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
     """
 
     size: Vector
     mass: float
+    center_of_mass: Vector = (0.0, 0.0, 0.0)
+    grasp: Grasp = Grasp.POINT
+    grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
 
     @property
     def inertia(self) -> Inertia:
-        """Inertia about the box's centre, consistent with its mass."""
+        """Inertia in the load's frame, that of a uniform box moved to the centre of mass."""
         a, b, c = Box(*self.size).moments(self.mass)
-        return Inertia(self.mass, (0.0, 0.0, 0.0), ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c)))
+        return Inertia(self.mass, self.center_of_mass, ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c)))
 
-    def grasp(self, side: str) -> Vector:
-        """Grasp point of an agent's hand, from the load's centre in that agent's frame [m].
-
-        It lies on the top edge that faces the agent, at 0.4 of the width to its left or right.
-        """
+    def grasp_point(self, agent: Agent, side: str) -> Vector:
+        """Grasp point of an agent's hand, from the box's centre, in that agent's frame [m]."""
+        given = self.grasp_points.get((agent.name, side))
+        if given is not None:
+            return (agent.sign * given[0], agent.sign * given[1], given[2])
         depth, width, height = self.size
         return (-depth / 2.0, 0.4 * width * (1.0 if side == "left" else -1.0), height / 2.0)
 

@@ -54,17 +54,17 @@ def test_each_agent_carries_half_of_a_centred_load(unscaled: DesignResult, probl
     half = problem.scene.payload.mass * GRAVITY / 2.0
     for height in unscaled.heights:
         for posture in height.postures.values():
-            assert -sum(posture.hand_forces[side][2] for side in SIDES) == pytest.approx(half, abs=1e-5)
+            assert -sum(posture.hand_wrenches[side][2] for side in SIDES) == pytest.approx(half, abs=1e-5)
 
 
 def shifted(posture: AgentPosture, part: str) -> AgentPosture:
     """The posture with one part of it wrong by a little."""
     first = next(iter(posture.joints))
-    push = np.array([0.0, 0.0, 1.0])
+    push = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
     changes = {
         "joints": {"joints": {**posture.joints, first: posture.joints[first] + 0.01}},
         "torques": {"torques": {**posture.torques, first: posture.torques[first] + 0.01}},
-        "hand": {"hand_forces": {**posture.hand_forces, "left": posture.hand_forces["left"] + push}},
+        "hand": {"hand_wrenches": {**posture.hand_wrenches, "left": posture.hand_wrenches["left"] + push}},
         "foot": {
             "foot_wrenches": {**posture.foot_wrenches, "left": posture.foot_wrenches["left"] * -1.0},
         },
@@ -128,7 +128,7 @@ def mirrored(posture: AgentPosture) -> AgentPosture:
         base_angles=posture.base_angles * axial,
         joints={partner(name): sign(name) * value for name, value in posture.joints.items()},
         torques={partner(name): sign(name) * value for name, value in posture.torques.items()},
-        hand_forces={side: posture.hand_forces[other[side]] * polar for side in SIDES},
+        hand_wrenches={side: posture.hand_wrenches[other[side]] * wrench for side in SIDES},
         foot_wrenches={side: posture.foot_wrenches[other[side]] * wrench for side in SIDES},
     )
 
