@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import plotly.graph_objects as go
 
 from evodesign.analysis.front import front
@@ -17,37 +18,64 @@ MOST_POINTS = 10_000
 
 
 def front_html(header: RunHeader, evaluations: Sequence[Evaluation]) -> str:
-    """A page with the front over the first two objectives, coloured by the third.
+    """A page with the front: two objectives as axes, a third as colour.
+
+    The two objectives that differ most among the front's designs become the axes, which begin zoomed on the
+    front.
 
     Args:
         header: of the run.
         evaluations: all of the run.
     Raises:
-        InputError: the run has one objective or more than three.
+        InputError: the run has one objective or more than three, or no feasible design.
     """
     if not 2 <= len(header.objectives) <= 3:
         found = f"{len(header.objectives)} in {header.problem_name}"
         raise InputError("--plot", "", "a run with two or three objectives", found)
     best = front(header.objectives, evaluations)
-    others = [e for e in evaluations if e.feasible and e not in best]
+    if not best:
+        raise InputError("--plot", "", "a run with a feasible design", "none")
+    objectives = sorted(header.objectives, key=lambda objective: -_spread(objective, best))
+    numbers = {evaluation.number for evaluation in best}
+    others = [e for e in evaluations if e.feasible and e.number not in numbers]
     shown = others[:: 1 + len(others) // MOST_POINTS]
+    note = "" if len(shown) == len(others) else f" ({len(shown)} of {len(others)} shown)"
     figure = go.Figure()
-    note = "" if len(shown) == len(others) else f" (1 in {len(others) // len(shown)} shown)"
-    figure.add_trace(_points(header.objectives, shown, f"dominated{note}", on_front=False))
-    figure.add_trace(_points(header.objectives, best, "front", on_front=True))
-    if header.search.start and evaluations and evaluations[0].feasible:
-        figure.add_trace(_marked(header.objectives, evaluations[0]))
-    first, second = (_label(objective) for objective in header.objectives[:2])
+    figure.add_trace(_points(objectives, shown, f"dominated{note}", on_front=False))
+    figure.add_trace(_points(objectives, best, "front", on_front=True))
+    first = [e for e in evaluations[:1] if e.feasible and header.search.start]
+    for evaluation in first:
+        figure.add_trace(_marked(objectives, evaluation))
     figure.update_layout(
         template="plotly_white",
-        title=f"{_safe(header.problem_name)}: {len(best)} designs on the front of {len(evaluations)}",
-        xaxis_title=first,
-        yaxis_title=second,
-        legend={"orientation": "h", "y": 1.06, "x": 1.0, "xanchor": "right"},
+        title=f"{_safe(header.problem_name)}: {len(best)} of {len(evaluations)} designs are on the front",
+        xaxis={"title": _label(objectives[0]), "range": _range(objectives[0], best, first)},
+        yaxis={"title": _label(objectives[1]), "range": _range(objectives[1], best, first)},
+        legend={"orientation": "h", "y": 1.12, "x": 1.0, "xanchor": "right"},
         font={"size": 15},
     )
     page: str = figure.to_html(include_plotlyjs=True, full_html=True)
     return page
+
+
+def _spread(objective: Objective, evaluations: Sequence[Evaluation]) -> float:
+    """Interquartile range over the median's size: how much the designs differ in an objective."""
+    low, middle, high = np.quantile(_values(objective, evaluations), [0.25, 0.5, 0.75])
+    return float((high - low) / abs(middle)) if middle else float(high - low)
+
+
+def _range(
+    objective: Objective, best: Sequence[Evaluation], marked: Sequence[Evaluation] = ()
+) -> list[float]:
+    """Axis from the 5th to the 95th percentile of the front that holds the marked designs, 5 % wider."""
+    low, high = np.quantile(_values(objective, best), [0.05, 0.95])
+    low, high = min([low, *_values(objective, marked)]), max([high, *_values(objective, marked)])
+    margin = 0.05 * (high - low) or 1.0
+    return [float(low - margin), float(high + margin)]
+
+
+def _values(objective: Objective, evaluations: Sequence[Evaluation]) -> list[float]:
+    return [evaluation.assessment.objectives[objective.name] for evaluation in evaluations]
 
 
 def _points(
@@ -55,15 +83,18 @@ def _points(
 ) -> go.Scatter:
     marker: dict[str, object] = {"size": 11 if on_front else 5, "color": "#1f4e79" if on_front else "#c0c4c9"}
     if on_front and len(objectives) == 3:
+        low, high = _range(objectives[2], evaluations)
         marker.update(
-            color=[e.assessment.objectives[objectives[2].name] for e in evaluations],
+            color=_values(objectives[2], evaluations),
             colorscale="Viridis",
+            cmin=low,
+            cmax=high,
             colorbar={"title": {"text": _label(objectives[2]), "side": "right"}},
             line={"width": 1, "color": "#333333"},
         )
     return go.Scatter(
-        x=[e.assessment.objectives[objectives[0].name] for e in evaluations],
-        y=[e.assessment.objectives[objectives[1].name] for e in evaluations],
+        x=_values(objectives[0], evaluations),
+        y=_values(objectives[1], evaluations),
         text=[_hover(objectives, e) for e in evaluations],
         hoverinfo="text",
         mode="markers",
@@ -74,8 +105,8 @@ def _points(
 
 def _marked(objectives: Sequence[Objective], evaluation: Evaluation) -> go.Scatter:
     return go.Scatter(
-        x=[evaluation.assessment.objectives[objectives[0].name]],
-        y=[evaluation.assessment.objectives[objectives[1].name]],
+        x=_values(objectives[0], [evaluation]),
+        y=_values(objectives[1], [evaluation]),
         text=[_hover(objectives, evaluation)],
         hoverinfo="text",
         mode="markers",
