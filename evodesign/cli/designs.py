@@ -6,12 +6,13 @@ from pathlib import Path
 
 from evodesign.cli.design_tables import assessment_tables
 from evodesign.cli.model_table import model_json, model_tables
-from evodesign.cli.output import console, print_json
+from evodesign.cli.output import console, print_json, show_notes
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.answer import answer
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source, read_text
 
 __all__ = ["check_problem", "evaluate_design"]
@@ -36,6 +37,7 @@ def evaluate_design(problem: Path, design: Path | None, name: str | None, json: 
 def check_problem(problem: Path, json: bool) -> None:
     """Read a problem and print what was understood."""
     built = build_problem(read_source(problem))
+    show_notes(notes(built))
     if json:
         print_json(model_json(built))
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from evodesign.analysis.front import front
-from evodesign.cli.output import console, print_json
+from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.tables import front_json, front_table
 from evodesign.errors import InputError
 from evodesign.runlog.run import Run, read_run
@@ -16,8 +16,7 @@ __all__ = ["show", "show_run"]
 def show(directory: Path, json: bool, plot: Path | None) -> None:
     """Print the front of a run, with a note on anything its log lacks; write its figure if asked."""
     run = read_run(directory)
-    for note in run.notes:
-        console(stderr=True).print(f"note: {note}", highlight=False, markup=False, soft_wrap=True)
+    show_notes(run.notes)
     if plot is not None:
         from evodesign.report.front_figure import front_html  # plotly takes its time to load
 

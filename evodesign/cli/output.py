@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from typing import Any
 
 import msgspec
 from rich.console import Console
 
-__all__ = ["console", "figure", "print_json"]
+__all__ = ["console", "figure", "print_json", "show_notes"]
 
 PLAIN_WIDTH = 110
 """Columns of a table that is not shown on a terminal."""
@@ -28,3 +29,9 @@ def figure(value: float | None) -> str:
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
     sys.stdout.write(msgspec.json.format(msgspec.json.encode(value), indent=2).decode() + "\n")
+
+
+def show_notes(sentences: Iterable[str]) -> None:
+    """Remarks on standard error, one line each."""
+    for sentence in sentences:
+        console(stderr=True).print(f"note: {sentence}", highlight=False, markup=False, soft_wrap=True)

@@ -12,9 +12,11 @@ from typing import NoReturn
 from evodesign import evolve
 from evodesign.cli.fronts import show_run
 from evodesign.cli.header import header_of, problem_factory, renewed
+from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
+from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
 
 __all__ = ["Wishes", "go_on", "start"]
@@ -33,6 +35,7 @@ class Wishes:
 def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, json: bool) -> None:
     """Search a problem in a new run directory and print the front."""
     problem = build_problem(read_source(path))
+    show_notes(notes(problem))
     table = problem.search
     settings = problem.settings(
         table.algorithm if wishes.algorithm is None else wishes.algorithm,

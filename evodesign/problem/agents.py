@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
-from evodesign.problem.file import HandsTable, HumanTable, ProblemFile, SolesTable
+from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable
 from evodesign.records import ProblemSource
 from evodesign.statics.contact import SoleSize
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Agent
 from evodesign.tree.anthropometry import Person
 from evodesign.tree.human import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
-from evodesign.tree.model import Tree
+from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
 __all__ = ["human_agent", "refuse_unknown", "robot_agent"]
@@ -20,7 +21,8 @@ __all__ = ["human_agent", "refuse_unknown", "robot_agent"]
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     """The robot of the `[robot]` table."""
     table = tables.robot
-    tree = read_urdf(source.files[table.urdf], table.urdf, MassRule.SHAPES)
+    bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.SHAPES)
+    tree = _with_frames(bare, table.frames, ROBOT, source)
     return _agent(ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
 
 
@@ -35,7 +37,8 @@ def human_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     if table.hands is None or table.soles is None:
         key = "human.hands" if table.hands is None else "human.soles"
         raise InputError(source.path, key, "the frames of this URDF", "nothing")
-    tree = read_urdf(source.files[table.urdf], table.urdf, MassRule.FILE)
+    bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.FILE)
+    tree = _with_frames(bare, table.frames, HUMAN, source)
     return _agent(HUMAN, tree, table.hands, table.soles, table.trunk, table.joints, source)
 
 
@@ -48,11 +51,24 @@ def _generated(table: HumanTable, source: ProblemSource) -> Agent:
         someone = Person(table.stature_m, table.mass_kg, table.sex)
     except InputError as error:
         raise InputError(source.path, f"human.{error.key}", error.wanted, error.found) from error
-    tree = human_tree(someone)
+    tree = _with_frames(human_tree(someone), table.frames, HUMAN, source)
     hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
     soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
     joints = table.joints or DEFAULT_JOINTS
     return _agent(HUMAN, tree, hands, soles, table.trunk or TRUNK, joints, source)
+
+
+def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], agent: str, source: ProblemSource) -> Tree:
+    """The tree with the frames that the problem file adds, each fixed to a link."""
+    for position, frame in enumerate(frames):
+        key = f"{agent}.frames[{position}]"
+        refuse_unknown(source, f"{key}.link", "link", frame.link, tree.link_by_name, tree.name)
+        if frame.name in tree.link_by_name:
+            raise InputError(source.path, f"{key}.name", "a new name", f"'{frame.name}' of '{tree.name}'")
+        place = Placement.from_xyz_rpy(frame.xyz_m, frame.rpy_rad)
+        joint = Joint(f"{frame.name}_fixed_joint", JointKind.FIXED, frame.link, frame.name, place)
+        tree = Tree(tree.name, (*tree.links, Link(frame.name)), (*tree.joints, joint))
+    return tree
 
 
 def _agent(

@@ -41,10 +41,20 @@ class SolesTable(Table, frozen=True):
     size_m: tuple[Positive, Positive] = (0.236, 0.100)
 
 
+class FrameTable(Table, frozen=True):
+    """A frame to add to a URDF that lacks it: a sole under a foot, a palm in a hand."""
+
+    name: Name
+    link: Name
+    xyz_m: Point
+    rpy_rad: Point = (0.0, 0.0, 0.0)
+
+
 class RobotTable(Table, frozen=True):
     """`[robot]`: a URDF with primitive shapes, and the parts of it that matter."""
 
     urdf: Name
+    frames: tuple[FrameTable, ...] = ()
     hands: HandsTable = HandsTable()
     soles: SolesTable = SolesTable()
     trunk: tuple[Name, ...] = ("root_link", "chest")
@@ -58,6 +68,7 @@ class HumanTable(Table, frozen=True):
     mass_kg: Positive | None = None
     sex: Sex | None = None
     urdf: Name | None = None
+    frames: tuple[FrameTable, ...] = ()
     hands: HandsTable | None = None
     soles: SolesTable | None = None
     trunk: tuple[Name, ...] = ()
