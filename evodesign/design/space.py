@@ -13,9 +13,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from evodesign.body.placement import Scalar
+from evodesign.errors import ModelError
 from evodesign.records import Genome, Parameter, design_of
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import growth_of, resize
+from evodesign.tree.symmetry import mirror_of
 
 __all__ = ["DesignParameter", "DesignSpace", "ParameterKind"]
 
@@ -80,6 +82,19 @@ class DesignSpace:
             if parameter.kind is ParameterKind.LENGTH:
                 for link in parameter.links:
                     growth_of(tree, link)
+
+    def check_mirror(self, tree: Tree) -> None:
+        """Refuse parameters that make a mirror-symmetric tree unequal.
+
+        Raises:
+            ModelError: naming a link whose mirror image is not in its group, or what in the tree differs.
+        """
+        partners = mirror_of(tree).links
+        for parameter in self.parameters:
+            for link in parameter.links:
+                if partners[link] not in parameter.links:
+                    found = f"'{link}' without '{partners[link]}'"
+                    raise ModelError(tree.name, f"{parameter.name}.links", "both links of a pair", found)
 
     def resized(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
         """The tree of a design.

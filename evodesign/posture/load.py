@@ -33,13 +33,14 @@ def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
 
 
 def load_constraints(
-    scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]]
+    scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]], *, symmetric: bool
 ) -> tuple[Constraint, ...]:
     """Balance of the load and the bound on the push between the agents.
 
     Args:
         scene: agents and load.
         hand_wrenches: force [N] and moment [N m] on each hand in its agent's frame, by agent name and side.
+        symmetric: whether right hands mirror left ones, so that three of the six rows vanish by themselves.
     """
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
     force: Expression = weight
@@ -53,8 +54,9 @@ def load_constraints(
             force = force + on_load
             moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
             push = push + on_load[0] if agent is scene.robot else push
+    rows = ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
     limit = scene.stance.push / LOAD_UNIT
     return (
-        Constraint("load.balance", ca.vertcat(force, moment) / LOAD_UNIT, 0.0, 0.0),
+        Constraint("load.balance", rows / LOAD_UNIT, 0.0, 0.0),
         Constraint("load.push", push / LOAD_UNIT, -limit, limit),
     )

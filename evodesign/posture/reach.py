@@ -17,10 +17,11 @@ import casadi as ca
 
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, agent_block, hand_wrench
+from evodesign.posture.form import WRENCH, Form, symmetric_forms, whole
 from evodesign.posture.load import load_constraints
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
 from evodesign.records import Status, worst_status
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Scene
+from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
 __all__ = ["Reach", "ReachProblem"]
 
@@ -56,8 +57,9 @@ class Reach:
 class ReachProblem:
     """One reach program for all designs of a scene."""
 
-    def __init__(self, scene: Scene, space: DesignSpace, options: IpoptOptions) -> None:
-        self._solver = Solver(_program(scene, space), options)
+    def __init__(self, scene: Scene, space: DesignSpace, options: IpoptOptions, *, symmetric: bool) -> None:
+        form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
+        self._solver = Solver(_program(form, scene, space), options)
 
     def solve(self, values: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
@@ -80,25 +82,30 @@ class ReachProblem:
         return float(best.values["height"][0]), best
 
 
-def _program(scene: Scene, space: DesignSpace) -> Program:
+def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
     design = ca.SX.sym("design", len(space.parameters))
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
     height = Variable.column("height", [floor], [5.0], [START_HEIGHTS[0]], 1.0)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
-    robot = agent_block(scene.robot, tree, scene, height.value)
+    robot = agent_block(form, tree, scene, height.value)
     limit = [300.0] * GRASP_ROWS[scene.payload.grasp]
     helping = {
         side: Variable.column(
             f"helper.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
         )
-        for side in SIDES
+        for side in form.sides
     }
-    hands = {ROBOT: robot.hand_wrenches, HUMAN: {side: hand_wrench(helping[side].value) for side in SIDES}}
+    helped = {side: hand_wrench(variable.value) for side, variable in helping.items()}
+    if form.mirror is not None:
+        helped["right"] = helped["left"] * ca.DM(WRENCH)
+    load = load_constraints(
+        scene, {ROBOT: robot.hand_wrenches, HUMAN: helped}, symmetric=form.mirror is not None
+    )
     return Program(
         name="reach",
         variables=(height, *robot.variables, *helping.values()),
-        constraints=(*robot.constraints, *load_constraints(scene, hands)),
+        constraints=(*robot.constraints, *load),
         cost=sense * height.value + COMFORT * robot.comfort,
         parameters=ca.vertcat(design, sense),
     )

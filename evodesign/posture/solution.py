@@ -8,11 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.posture.program import RawSolution
 from evodesign.records import Status
-from evodesign.statics.scene import SIDES, Agent
 
-__all__ = ["AgentPosture", "Attempt", "HeightSolution", "posture_of"]
+__all__ = ["AgentPosture", "Attempt", "HeightSolution"]
 
 Array = NDArray[np.float64]
 
@@ -79,21 +77,3 @@ class HeightSolution:
     def solved(self) -> bool:
         """Whether there is a checked posture."""
         return self.status is Status.SOLVED
-
-
-def posture_of(agent: Agent, solution: RawSolution) -> AgentPosture:
-    """One agent's part of a solved program."""
-    values = {name.split(".", 1)[1]: v for name, v in solution.values.items() if name.startswith(agent.name)}
-    return AgentPosture(
-        base_position=values["base_position"],
-        base_angles=values["base_angles"],
-        joints=dict(zip(agent.joints, values["joints"].tolist(), strict=True)),
-        torques=dict(zip(agent.joints, values["torques"].tolist(), strict=True)),
-        hand_wrenches={side: _padded(values[f"{side}_hand"]) for side in SIDES},
-        foot_wrenches={side: values[f"{side}_foot"] for side in SIDES},
-    )
-
-
-def _padded(free: Array) -> Array:
-    """Six rows from the free numbers of a grasp: a point grasp passes no moment."""
-    return np.concatenate([free, np.zeros(6 - len(free))])

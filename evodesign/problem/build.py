@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
-from evodesign.posture.posture import EffortWeights
+from evodesign.posture.posture import EffortWeights, Symmetry
 from evodesign.posture.program import IpoptOptions
 from evodesign.problem.agents import human_agent, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
@@ -34,6 +34,7 @@ class Problem:
         weights: of the agents' efforts in the posture problem.
         objectives: in the file's order, minimised ones first.
         options: of the inner solver.
+        symmetry: which postures are looked for.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
     """
@@ -46,6 +47,7 @@ class Problem:
     weights: EffortWeights
     objectives: tuple[Objective, ...]
     options: IpoptOptions
+    symmetry: Symmetry
     search: SearchTable
     start: tuple[Genome, ...]
 
@@ -90,6 +92,7 @@ def build_problem(source: ProblemSource) -> Problem:
         weights=EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human),
         objectives=_objectives(tables, source),
         options=IpoptOptions(iterations=tables.solver.iterations, seconds=tables.solver.seconds),
+        symmetry=tables.solver.symmetry,
         search=tables.search,
         start=start,
     )

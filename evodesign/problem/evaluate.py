@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.posture import PostureProblem
+from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.reach import Reach, ReachProblem
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
@@ -33,8 +33,10 @@ class Evaluator:
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self._reach = ReachProblem(problem.scene, problem.space, problem.options)
-        self._posture = PostureProblem(problem.scene, problem.space, problem.weights, problem.options)
+        scene, space, options = problem.scene, problem.space, problem.options
+        symmetric = problem.symmetry is not Symmetry.OFF
+        self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry)
+        self._reach = ReachProblem(scene, space, options, symmetric=symmetric)
         self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
 
     def solve(self, values: Sequence[float]) -> DesignResult:

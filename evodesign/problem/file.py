@@ -11,6 +11,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from evodesign.posture.posture import Symmetry
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 
@@ -164,7 +165,9 @@ class SearchTable(Table, frozen=True):
 
 
 class SolverTable(Table, frozen=True):
-    """`[solver]`: limits of one inner solve."""
+    """`[solver]`: limits of one inner solve, and whether postures are mirror-symmetric."""
+
+    symmetry: Symmetry = Symmetry.ON
 
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0

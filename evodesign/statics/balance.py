@@ -15,7 +15,7 @@ Source: DESIGN 2; equivalent to Sartore et al. 2022, Eq. 12, as docs/model.md sh
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,8 +65,21 @@ class Balance:
     moment: Expression
 
 
-def cut(tree: Tree, poses: Mapping[str, Pose], applied: Sequence[AppliedWrench]) -> Balance:
-    """Joint torques and base residuals of a tree under its weight and the applied wrenches."""
+def cut(
+    tree: Tree,
+    poses: Mapping[str, Pose],
+    applied: Sequence[AppliedWrench],
+    doubled: Set[str] = frozenset(),
+) -> Balance:
+    """Joint torques and base residuals of a tree under its weight and the applied wrenches.
+
+    Args:
+        tree: numbers or expressions.
+        poses: of all links.
+        applied: external wrenches beside the weights.
+        doubled: joints of the middle line (in the plane y = 0) whose branch stands for its mirror image
+            too: what both pass on is (2 F_x, 0, 2 F_z) and (0, 2 n_y, 0).
+    """
     forces: dict[str, Expression] = {}
     moments: dict[str, Expression] = {}
     for link in tree.links:
@@ -80,8 +93,11 @@ def cut(tree: Tree, poses: Mapping[str, Pose], applied: Sequence[AppliedWrench])
         elif joint.kind is not JointKind.FIXED:
             torques[joint.name] = -ca.dot(axis, moment)
         lever = poses[joint.child].position - poses[joint.parent].position
+        moment = moment + ca.cross(lever, force)
+        if joint.name in doubled:
+            force, moment = force * ca.DM([2.0, 0.0, 2.0]), moment * ca.DM([0.0, 2.0, 0.0])
         forces[joint.parent] += force
-        moments[joint.parent] += moment + ca.cross(lever, force)
+        moments[joint.parent] += moment
     ordered = {name: torques[name] for name in tree.actuated}
     return Balance(ordered, forces[tree.root], moments[tree.root])
 

@@ -18,11 +18,12 @@ import math
 from collections.abc import Mapping, Sequence
 
 from evodesign.body.inertia import Inertia, total
+from evodesign.body.mirror import mirrored_point
 from evodesign.body.placement import Matrix, Placement, Vector, add, scale
 from evodesign.tree.anthropometry import Person, Sex, landmarks, segments, sole_size
 from evodesign.tree.anthropometry_tables import Articulation, tables
 from evodesign.tree.human_looks import human_looks
-from evodesign.tree.mirror import LEFT, mirrored_joint, mirrored_link, mirrored_point, right_name
+from evodesign.tree.mirror import LEFT, mirrored_joint, mirrored_link, right_name
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
 __all__ = ["DEFAULT_JOINTS", "HANDS", "SOLES", "TRUNK", "Person", "Sex", "human_tree", "sole_size"]

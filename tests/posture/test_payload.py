@@ -9,7 +9,7 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.posture import PostureProblem
+from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
@@ -22,7 +22,7 @@ BOX = (0.5, 0.5, 0.025)
 def solve(problem: Problem, payload: Payload, height: float = 1.0) -> HeightSolution:
     scene = replace(problem.scene, payload=payload)
     values = problem.space.unscaled(scene.robot.tree)
-    posture = PostureProblem(scene, problem.space, problem.weights, problem.options)
+    posture = PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
     tree = problem.space.resized(scene.robot.tree, values)
     checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
     return posture.solve(values, height, checker)

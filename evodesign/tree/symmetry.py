@@ -1,0 +1,186 @@
+"""Mirror symmetry of a tree in the plane y = 0 of its root.
+
+A link has a mirror partner when its joint, its limits, its mass and all its children are the mirror images of
+the partner's:
+
+    placement   R' = M R M, p' = M p with M = diag(1, -1, 1)
+    axis        a rotation's axis is a pseudovector: equal joint positions are mirror images when
+                a' = -M a (sign +1); opposite ones when a' = M a (sign -1); a slide's axis the other way round
+    limits      equal for sign +1, exchanged and negated for sign -1
+
+Frames without mass at the end of a branch need only be at mirrored places. Links on the middle line are their
+own partners. A joint of the middle line with sign -1 (a roll or a yaw) is zero in every symmetric posture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from evodesign.body.mirror import mirrored_inertia, mirrored_matrix, mirrored_point
+from evodesign.body.placement import Placement
+from evodesign.errors import ModelError
+from evodesign.tree.model import Joint, JointKind, Link, Tree
+
+__all__ = ["Mirror", "left_half", "mirror_of"]
+
+TOLERANCE = 1e-9
+"""Largest difference of figures [m, kg, kg m^2, rad] between mirror images."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mirror:
+    """Which link and joint is whose mirror image.
+
+    Args:
+        links: partner by link name.
+        joints: partner by joint name.
+        signs: +1 if the partner's position and torque are equal in a symmetric posture, -1 if opposite.
+    """
+
+    links: Mapping[str, str]
+    joints: Mapping[str, str]
+    signs: Mapping[str, float]
+
+    def is_middle(self, link: str) -> bool:
+        """Whether a link is its own partner."""
+        return self.links[link] == link
+
+
+def mirror_of(tree: Tree) -> Mirror:
+    """The mirror symmetry of a tree of numbers.
+
+    Raises:
+        ModelError: naming a link that has no mirror partner, with the one that comes nearest.
+    """
+    links: dict[str, str] = {tree.root: tree.root}
+    joints: dict[str, str] = {}
+    signs: dict[str, float] = {}
+    _refuse_unequal(tree, tree.link_by_name[tree.root], tree.link_by_name[tree.root])
+    for joint in tree.joints:
+        if joint.name in joints:
+            continue
+        partner = _partner(tree, joint, links[joint.parent], joints)
+        for one, other in ((joint, partner), (partner, joint)):
+            links[one.child], joints[one.name] = other.child, other.name
+            signs[one.name] = _sign(joint, partner)
+    return Mirror(links, joints, signs)
+
+
+def _partner(tree: Tree, joint: Joint, parent: str, taken: Iterable[str]) -> Joint:
+    """The mirror image of a joint among those of its parent's partner."""
+    candidates = [j for j in tree.child_joints[parent] if j.name not in taken]
+    for candidate in candidates:
+        if _same_place(tree, joint, candidate) and _sign_fits(joint, candidate):
+            link = tree.link_by_name[joint.child]
+            image = tree.link_by_name[candidate.child]
+            if len(candidates) > 1 and not _same_body(link, image):
+                continue
+            _refuse_unequal(tree, link, image)
+            return candidate
+    nearest = min(candidates, key=lambda c: _distance(joint, c), default=joint)
+    raise ModelError(
+        tree.name,
+        f"joint {joint.name}",
+        "a mirror image in the plane y = 0",
+        f"'{nearest.name}', which differs" if nearest is not joint else "none",
+    )
+
+
+def _same_place(tree: Tree, joint: Joint, other: Joint) -> bool:
+    """Whether two joints are at mirrored places; a bare frame may be turned as it likes."""
+    if joint.kind is not other.kind or _distance(joint, other) > TOLERANCE:
+        return False
+    if all(_is_bare(tree, one.child) for one in (joint, other)):
+        return True
+    mine, its = joint.parent_from_child, other.parent_from_child
+    image = mirrored_matrix(mine.rotation)
+    turned = max(
+        abs(a - b) for r, s in zip(image, its.rotation, strict=True) for a, b in zip(r, s, strict=True)
+    )
+    return turned <= TOLERANCE
+
+
+def _is_bare(tree: Tree, link: str) -> bool:
+    return not tree.child_joints[link] and bool(tree.link_by_name[link].inertia.mass == 0.0)
+
+
+def _distance(joint: Joint, other: Joint) -> float:
+    image = mirrored_point(joint.parent_from_child.translation)
+    return float(max(abs(a - b) for a, b in zip(image, other.parent_from_child.translation, strict=True)))
+
+
+def _sign(joint: Joint, other: Joint) -> float:
+    """+1 or -1, or 0 when the axes are no mirror images."""
+    if joint.kind is JointKind.FIXED:
+        return 1.0
+    image = mirrored_point(joint.axis)
+    along = sum(a * b for a, b in zip(image, other.axis, strict=True))
+    if abs(abs(along) - 1.0) > TOLERANCE:
+        return 0.0
+    slides = joint.kind is JointKind.PRISMATIC
+    return 1.0 if (along > 0.0) == slides else -1.0
+
+
+def _sign_fits(joint: Joint, other: Joint) -> bool:
+    sign = _sign(joint, other)
+    if sign == 0.0:
+        return False
+    expected = (joint.lower, joint.upper) if sign > 0.0 else (-joint.upper, -joint.lower)
+    given = (other.lower, other.upper)
+    return all(a == b or abs(a - b) <= TOLERANCE for a, b in zip(expected, given, strict=True))
+
+
+def _refuse_unequal(tree: Tree, link: Link, image: Link) -> None:
+    if not _same_body(link, image):
+        found = f"'{image.name}', whose mass or shape differs"
+        if link.name == image.name:
+            found = "a mass or shape that is not symmetric"
+        raise ModelError(tree.name, f"link {link.name}", "a mirror image in the plane y = 0", found)
+
+
+def _same_body(link: Link, image: Link) -> bool:
+    mine, its = link.inertia, image.inertia
+    expected = mirrored_inertia(mine)
+    pairs = [(expected.mass, its.mass), *zip(expected.center, its.center, strict=True)]
+    for r, s in zip(expected.about_center, its.about_center, strict=True):
+        pairs += zip(r, s, strict=True)
+    return all(abs(a - b) <= TOLERANCE for a, b in pairs)
+
+
+def left_half(tree: Tree, mirror: Mirror) -> tuple[Tree, frozenset[str]]:
+    """The middle line and the left branches of a symmetric tree, which may hold expressions.
+
+    Returns:
+        The smaller tree, and the joints at which its left branches begin: each stands for a right one too.
+    """
+    kept = {tree.root}
+    begins = set()
+    for joint in tree.joints:
+        if joint.parent not in kept:
+            continue
+        if mirror.is_middle(joint.child):
+            kept.add(joint.child)
+        elif not mirror.is_middle(joint.parent):
+            kept.add(joint.child)
+        elif _is_left(tree, joint, mirror):
+            kept.add(joint.child)
+            begins.add(joint.name)
+    links = tuple(link for link in tree.links if link.name in kept)
+    joints = tuple(joint for joint in tree.joints if joint.child in kept)
+    return Tree(tree.name, links, joints), frozenset(begins)
+
+
+def _is_left(tree: Tree, joint: Joint, mirror: Mirror) -> bool:
+    """Whether the branch below a joint of the middle line goes to the left (y > 0), at zero positions."""
+    first: Placement = joint.parent_from_child
+    names = [joint.child]
+    places = {joint.child: first}
+    while names:
+        name = names.pop(0)
+        if abs(float(places[name].translation[1])) > TOLERANCE:
+            return float(places[name].translation[1]) > 0.0
+        for below in tree.child_joints[name]:
+            places[below.child] = places[name] @ below.parent_from_child
+            names.append(below.child)
+    return joint.name < mirror.joints[joint.name]

@@ -1,0 +1,115 @@
+"""Symmetric postures are solutions of the whole problem, and scenes that are not symmetric are refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.errors import ModelError
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.form import half, symmetric_forms
+from evodesign.posture.posture import PostureProblem, Symmetry
+from evodesign.posture.reach import ReachProblem
+from evodesign.posture.solution import HeightSolution
+from evodesign.problem.build import Problem
+from evodesign.records import Status
+from evodesign.statics.scene import HUMAN, ROBOT, Payload
+
+
+def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> HeightSolution:
+    scene, space = problem.scene, problem.space
+    values = space.unscaled(scene.robot.tree)
+    checker = Checker(
+        scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
+    )
+    return PostureProblem(scene, space, problem.weights, problem.options, symmetry).solve(
+        values, height, checker
+    )
+
+
+def cost(solution: HeightSolution) -> float:
+    return min(attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED)
+
+
+def test_half_and_whole_describe_the_same_problem(problem: Problem) -> None:
+    """Solved as a half, the whole posture passes the whole check; polished, it costs no more."""
+    symmetric, polished = (solve(problem, symmetry) for symmetry in (Symmetry.ON, Symmetry.POLISH))
+    assert symmetric.status is Status.SOLVED
+    assert max(symmetric.residuals.values()) < 1e-6
+    assert cost(polished) <= cost(symmetric) * (1.0 + 1e-6)
+
+
+def test_cost_of_a_half_is_that_of_the_whole_at_the_same_posture(problem: Problem) -> None:
+    """The paired torques count twice: recomputed here from the expanded posture."""
+    solution = solve(problem, Symmetry.ON)
+    effort = sum(posture.torque_norm**2 for posture in solution.postures.values()) / 100.0
+    assert effort <= cost(solution) <= effort * 1.1, "comfort is a small part of the cost"
+
+
+def test_right_side_mirrors_the_left(problem: Problem) -> None:
+    robot = solve(problem, Symmetry.ON).postures[ROBOT]
+    for name, position in robot.joints.items():
+        if name.startswith("l_"):
+            assert robot.joints["r_" + name[2:]] == position
+            assert robot.torques["r_" + name[2:]] == robot.torques[name]
+    assert robot.joints["torso_yaw"] == robot.joints["torso_roll"] == 0.0
+    mirrored = robot.foot_wrenches["left"] * [1.0, -1.0, 1.0, -1.0, 1.0, -1.0]
+    assert np.allclose(robot.foot_wrenches["right"], mirrored)
+
+
+def test_symmetric_reach_is_the_whole_reach(problem: Problem) -> None:
+    """What can be reached at the top with two hands is reached symmetrically."""
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    highest = [
+        ReachProblem(problem.scene, problem.space, problem.options, symmetric=symmetric).solve(values).highest
+        for symmetric in (True, False)
+    ]
+    assert highest[0] == pytest.approx(highest[1], abs=1e-3)
+
+
+def test_half_holds_the_left_and_the_middle(problem: Problem) -> None:
+    forms = symmetric_forms(problem.scene)
+    assert len(forms[0].joints) == 12
+    assert sum(forms[0].counts) + 2 == len(problem.scene.robot.joints), "all but torso roll and yaw"
+    part, doubled = forms[0].part(problem.scene.robot.tree)
+    assert "r_knee" not in part.joint_by_name
+    assert doubled == {"l_hip_pitch", "l_shoulder_pitch"}
+    assert not any("Right" in name for name in forms[1].joints)
+
+
+def test_payload_off_the_middle_is_refused(problem: Problem) -> None:
+    scene = replace(problem.scene, payload=Payload((0.5, 0.5, 0.025), 5.0, (0.0, 0.1, 0.0)))
+    with pytest.raises(ModelError, match=r"center_of_mass_m: wanted y = 0 .*, found y = 0.1 m"):
+        PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
+
+
+def test_pair_of_links_that_differ_is_named(problem: Problem) -> None:
+    tree = problem.scene.robot.tree
+    heavier = tuple(
+        replace(link, solids=(replace(link.solids[0], density=3000.0),))
+        if link.name == "l_lower_leg"
+        else link
+        for link in tree.links
+    )
+    agent = replace(problem.scene.robot, tree=replace(tree, links=heavier))
+    with pytest.raises(
+        ModelError, match="link [lr]_lower_leg.*'[lr]_lower_leg', whose mass or shape differs"
+    ):
+        half(agent)
+
+
+def test_parameter_of_one_side_alone_is_refused(problem: Problem) -> None:
+    space = DesignSpace((DesignParameter(ParameterKind.LENGTH, "arm", ("l_upper_arm",), 0.6, 1.8),))
+    with pytest.raises(ModelError, match="'l_upper_arm' without 'r_upper_arm'"):
+        PostureProblem(problem.scene, space, problem.weights, problem.options, Symmetry.ON)
+
+
+def test_joint_without_its_partner_is_refused(problem: Problem) -> None:
+    human = problem.scene.human
+    lame = replace(human, joints=tuple(name for name in human.joints if name != "jRightKnee_roty"))
+    with pytest.raises(ModelError, match="'jLeftKnee_roty' without 'jRightKnee_roty'"):
+        half(lame)
+    assert lame.name == HUMAN
