@@ -70,21 +70,16 @@ def mirror_of(tree: Tree) -> Mirror:
 def _partner(tree: Tree, joint: Joint, parent: str, taken: Iterable[str]) -> Joint:
     """The mirror image of a joint among those of its parent's partner."""
     candidates = [j for j in tree.child_joints[parent] if j.name not in taken]
-    for candidate in candidates:
-        if _same_place(tree, joint, candidate) and _sign_fits(joint, candidate):
-            link = tree.link_by_name[joint.child]
-            image = tree.link_by_name[candidate.child]
-            if len(candidates) > 1 and not _same_body(link, image):
-                continue
-            _refuse_unequal(tree, link, image)
+    fitting = [c for c in candidates if _same_place(tree, joint, c) and _sign_fits(joint, c)]
+    link = tree.link_by_name[joint.child]
+    for candidate in fitting:
+        if _same_body(link, tree.link_by_name[candidate.child]):
             return candidate
-    nearest = min(candidates, key=lambda c: _distance(joint, c), default=joint)
-    raise ModelError(
-        tree.name,
-        f"joint {joint.name}",
-        "a mirror image in the plane y = 0",
-        f"'{nearest.name}', which differs" if nearest is not joint else "none",
-    )
+    for candidate in fitting:
+        _refuse_unequal(tree, link, tree.link_by_name[candidate.child])
+    nearest = min((c for c in candidates if c is not joint), key=lambda c: _distance(joint, c), default=None)
+    found = "none" if nearest is None else f"none (the nearest is '{nearest.name}')"
+    raise ModelError(tree.name, f"joint {joint.name}", "a mirror image in the plane y = 0", found)
 
 
 def _same_place(tree: Tree, joint: Joint, other: Joint) -> bool:
@@ -159,12 +154,11 @@ def left_half(tree: Tree, mirror: Mirror) -> tuple[Tree, frozenset[str]]:
     for joint in tree.joints:
         if joint.parent not in kept:
             continue
-        if mirror.is_middle(joint.child):
-            kept.add(joint.child)
-        elif not mirror.is_middle(joint.parent):
-            kept.add(joint.child)
-        elif _is_left(tree, joint, mirror):
-            kept.add(joint.child)
+        begins_here = mirror.is_middle(joint.parent) and not mirror.is_middle(joint.child)
+        if begins_here and not _is_left(tree, joint, mirror):
+            continue
+        kept.add(joint.child)
+        if begins_here:
             begins.add(joint.name)
     links = tuple(link for link in tree.links if link.name in kept)
     joints = tuple(joint for joint in tree.joints if joint.child in kept)
