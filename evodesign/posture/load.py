@@ -20,7 +20,7 @@ from evodesign.statics.balance import GRAVITY
 from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.kinematics import vector
 
-__all__ = ["load_constraints"]
+__all__ = ["load_constraints", "push_of"]
 
 Expression = Any
 
@@ -30,6 +30,16 @@ LOAD_UNIT = 10.0  # [N] and [N m] per unit of the load's balance rows
 def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
     """A vector in world axes from one in the agent's frame, which is turned about z by 0 or 180 degrees."""
     return in_agent * ca.DM([agent.sign, agent.sign, 1.0])
+
+
+def push_of(robot: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression:
+    """Horizontal force of the robot on the load, towards the person [N].
+
+    Args:
+        robot: the agent.
+        hand_wrenches: on its hands, in its frame, by side.
+    """
+    return sum(-turned_to_world(robot, wrench[:3])[0] for wrench in hand_wrenches.values())
 
 
 def load_constraints(
@@ -45,7 +55,6 @@ def load_constraints(
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
     force: Expression = weight
     moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
-    push: Expression = 0.0
     for agent in (scene.robot, scene.human):
         for side in SIDES:
             wrench = hand_wrenches[agent.name][side]
@@ -53,8 +62,8 @@ def load_constraints(
             point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, side)))
             force = force + on_load
             moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
-            push = push + on_load[0] if agent is scene.robot else push
     rows = ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
+    push = push_of(scene.robot, hand_wrenches[scene.robot.name])
     limit = scene.stance.push / LOAD_UNIT
     return (
         Constraint("load.balance", rows / LOAD_UNIT, 0.0, 0.0),

@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import casadi as ca
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, agent_block, hand_wrench
-from evodesign.posture.form import WRENCH, Form, symmetric_forms, whole
+from evodesign.posture.agent import agent_block
+from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.load import load_constraints
+from evodesign.posture.partner import free_hands
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
@@ -89,22 +90,12 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
     height = Variable.column("height", [floor], [5.0], [START_HEIGHTS[0]], 1.0)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = agent_block(form, tree, scene, height.value)
-    limit = [300.0] * GRASP_ROWS[scene.payload.grasp]
-    helping = {
-        side: Variable.column(
-            f"helper.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
-        )
-        for side in form.sides
-    }
-    helped = {side: hand_wrench(variable.value) for side, variable in helping.items()}
-    if form.mirror is not None:
-        helped["right"] = helped["left"] * ca.DM(WRENCH)
-    load = load_constraints(
-        scene, {ROBOT: robot.hand_wrenches, HUMAN: helped}, symmetric=form.mirror is not None
-    )
+    partner = free_hands(form, scene)
+    hands = {ROBOT: robot.hand_wrenches, HUMAN: partner.wrenches}
+    load = load_constraints(scene, hands, symmetric=form.mirror is not None)
     return Program(
         name="reach",
-        variables=(height, *robot.variables, *helping.values()),
+        variables=(height, *robot.variables, *partner.variables),
         constraints=(*robot.constraints, *load),
         cost=sense * height.value + COMFORT * robot.comfort,
         parameters=ca.vertcat(design, sense),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from evodesign.body.placement import dot
 from evodesign.problem.build import Problem
 from evodesign.tree.anthropometry import Person, Sex
 from evodesign.tree.human import human_tree
@@ -12,35 +13,53 @@ from evodesign.tree.model import Joint
 __all__ = ["notes"]
 
 ALIKE = math.radians(15.0)
-"""Joint limits closer than this count as the same."""
+"""Joint limits closer than this count as the same; they fit better if they are closer by this much."""
+
+PARALLEL = math.cos(math.radians(10.0))
+"""Joint axes whose directions have at least this cosine count as the same."""
 
 
 def notes(problem: Problem) -> tuple[str, ...]:
-    """A sentence for each thing that a careful reader of the problem would ask about."""
+    """A sentence for each thing that a careful reader of the problem would ask about.
+
+    Now: limits of a person's joints that look as if their sign were wrong. Only joints with the names of the
+    generated person are looked at, in the same T-pose (x forward, y to the left, z up; docs/person.md), and
+    whether or not the problem moves them. Limits do not depend on stature, mass or sex, so any person serves.
+    """
     human = problem.scene.human.tree
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
-    turned = [
-        joint for joint in human.joints if joint.name in anatomy and _looks_turned(joint, anatomy[joint.name])
-    ]
-    return tuple(_sentence(human.name, joint, anatomy[joint.name]) for joint in turned)
-
-
-def _looks_turned(joint: Joint, anatomical: Joint) -> bool:
-    """Whether limits fit the anatomical ones much better with their sign turned."""
-    as_given = _difference(joint.lower, joint.upper, anatomical)
-    turned = _difference(-joint.upper, -joint.lower, anatomical)
-    return turned < ALIKE < as_given
-
-
-def _difference(lower: float, upper: float, anatomical: Joint) -> float:
-    return max(abs(lower - anatomical.lower), abs(upper - anatomical.upper))
-
-
-def _sentence(name: str, joint: Joint, anatomical: Joint) -> str:
-    given, expected = (
-        f"{math.degrees(j.lower):.0f} to {math.degrees(j.upper):.0f} degrees" for j in (joint, anatomical)
+    found = (
+        _turned(human.name, joint, anatomy[joint.name]) for joint in human.joints if joint.name in anatomy
     )
+    return tuple(sentence for sentence in found if sentence)
+
+
+def _turned(person: str, joint: Joint, anatomical: Joint) -> str:
+    """A sentence if limits fit the anatomical ones much better with their sign turned; otherwise nothing."""
+    along = dot(joint.axis, anatomical.axis)
+    if abs(along) < PARALLEL:
+        return ""
+    given, right = (joint.lower, joint.upper), (anatomical.lower, anatomical.upper)
+    if along < 0.0:
+        right = _negated(right)
+    turned = _difference(_negated(given), right)
+    if turned >= ALIKE or _difference(given, right) < turned + ALIKE:
+        return ""
     return (
-        f"{name}: joint {joint.name} turns from {given}, where a person's turns from {expected}: "
-        "its limits seem to have the wrong sign"
+        f"{person}: joint {joint.name} turns from {_degrees(given)}, where a person's turns from "
+        f"{_degrees(right)}: its limits seem to have the wrong sign"
     )
+
+
+def _negated(limits: tuple[float, float]) -> tuple[float, float]:
+    """The same range about the opposite axis."""
+    return (-limits[1], -limits[0])
+
+
+def _difference(limits: tuple[float, float], others: tuple[float, float]) -> float:
+    """The larger difference of the two ends [rad]."""
+    return max(abs(one - other) for one, other in zip(limits, others, strict=True))
+
+
+def _degrees(limits: tuple[float, float]) -> str:
+    return f"{math.degrees(limits[0]):.0f} to {math.degrees(limits[1]):.0f} degrees"

@@ -1,0 +1,52 @@
+"""An agent reduced to its hands: forces on the load that it may choose freely, without a body behind them.
+
+The reach problem lets such hands stand in for the person; the split posture problem lets them stand in for
+whichever agent is solved separately.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, hand_wrench
+from evodesign.posture.form import WRENCH, Form
+from evodesign.posture.program import Variable
+from evodesign.statics.scene import Scene
+
+__all__ = ["Hands", "free_hands"]
+
+Expression = Any
+
+STRONGEST = 300.0  # [N] and [N m], beyond any holding posture
+
+
+@dataclass(frozen=True, slots=True)
+class Hands:
+    """Hands without a body.
+
+    Args:
+        variables: what they pass, for the sides of the form.
+        wrenches: force [N] and moment [N m] on both hands by side, in their agent's frame.
+    """
+
+    variables: tuple[Variable, ...]
+    wrenches: Mapping[str, Expression]
+
+
+def free_hands(form: Form, scene: Scene) -> Hands:
+    """Hands that stand in for another agent of the same form (whole or half)."""
+    limit = [STRONGEST] * GRASP_ROWS[scene.payload.grasp]
+    variables = {
+        side: Variable.column(
+            f"partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
+        )
+        for side in form.sides
+    }
+    wrenches = {side: hand_wrench(variable.value) for side, variable in variables.items()}
+    if form.mirror is not None:
+        wrenches["right"] = wrenches["left"] * ca.DM(WRENCH)
+    return Hands(tuple(variables.values()), wrenches)
