@@ -93,7 +93,7 @@ def _same_place(tree: Tree, joint: Joint, other: Joint) -> bool:
     turned = max(
         abs(a - b) for r, s in zip(image, its.rotation, strict=True) for a, b in zip(r, s, strict=True)
     )
-    return turned <= TOLERANCE
+    return bool(turned <= TOLERANCE)
 
 
 def _is_bare(tree: Tree, link: str) -> bool:

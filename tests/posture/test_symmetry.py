@@ -96,7 +96,7 @@ def test_pair_of_links_that_differ_is_named(problem: Problem) -> None:
     )
     agent = replace(problem.scene.robot, tree=replace(tree, links=heavier))
     with pytest.raises(
-        ModelError, match="link [lr]_lower_leg.*'[lr]_lower_leg', whose mass or shape differs"
+        ModelError, match=r"link [lr]_lower_leg.*'[lr]_lower_leg', whose mass or shape differs"
     ):
         half(agent)
 

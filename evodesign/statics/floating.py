@@ -1,0 +1,168 @@
+"""A floating tree in pinocchio: mass matrix, bias and Jacobians at a configuration and velocity.
+
+Velocities are pinocchio's: linear and angular velocity of the root link in the root link's frame [m/s,
+rad/s], then the speeds of the moving joints, here in the order that the caller asks for.
+
+Nothing of the CasADi graph is used: trees go through the URDF writer into pinocchio.
+
+Source: Sartore et al. 2022, Eq. 5; pinocchio `crba`, `nonLinearEffects`, `getFrameJacobian`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from evodesign.body.inertia import Inertia
+from evodesign.statics.balance import GRAVITY
+from evodesign.tree.model import Tree
+from evodesign.tree.urdf_write import urdf_text
+
+__all__ = ["ROOT", "Configuration", "FloatingBody", "Instant"]
+
+Array = NDArray[np.float64]
+
+ROOT = 6
+"""Velocities of the root link; those of the joints follow."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Configuration:
+    """Where a floating tree is.
+
+    Args:
+        base_position: origin of the root link [m], shape (3,).
+        base_angles: roll, pitch, yaw of the root link [rad], shape (3,).
+        joints: position [rad or m] of every joint that moves, by name.
+    """
+
+    base_position: Array
+    base_angles: Array
+    joints: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FloatingBody:
+    """A floating tree as pinocchio sees it.
+
+    Args:
+        model: pinocchio's model, without the joints that do not move.
+        joints: names of the moving joints, in the order of our rows.
+        order: pinocchio's velocity index of each of our rows.
+        world_from_given: rotation from the axes in which configurations are given to the world, (3, 3).
+    """
+
+    model: Any
+    joints: tuple[str, ...]
+    order: NDArray[np.intp]
+    world_from_given: Array
+
+    @property
+    def size(self) -> int:
+        """Number of velocities: six, and one per moving joint."""
+        return ROOT + len(self.joints)
+
+    @classmethod
+    def of_tree(cls, tree: Tree, joints: Sequence[str], world_from_given: Array) -> FloatingBody:
+        """A tree of numbers, floating; joints that are not named are welded at zero."""
+        whole = pin.buildModelFromXML(urdf_text(tree), pin.JointModelFreeFlyer())
+        welded = [whole.getJointId(name) for name in tree.actuated if name not in joints]
+        return cls._of_model(
+            pin.buildReducedModel(whole, welded, pin.neutral(whole)), joints, world_from_given
+        )
+
+    @classmethod
+    def of_solid(cls, inertia: Inertia, points: Mapping[str, Array]) -> FloatingBody:
+        """One rigid body with frames at the given points, configured in the world.
+
+        Args:
+            inertia: in the body's frame, numbers.
+            points: in the body's frame [m], by frame name.
+        """
+        model = pin.Model()
+        joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
+        body = pin.Inertia(inertia.mass, np.array(inertia.center), np.array(inertia.about_center))
+        model.appendBodyToJoint(joint, body, pin.SE3.Identity())
+        for name, point in points.items():
+            model.addFrame(pin.Frame(name, joint, pin.SE3(np.eye(3), point), pin.FrameType.BODY))
+        return cls._of_model(model, (), np.eye(3))
+
+    @classmethod
+    def _of_model(cls, model: Any, joints: Sequence[str], world_from_given: Array) -> FloatingBody:
+        model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
+        columns = [model.joints[model.getJointId(name)].idx_v for name in joints]
+        return cls(model, tuple(joints), np.array([*range(ROOT), *columns]), world_from_given)
+
+    def at(self, configuration: Configuration, velocity: Array) -> Instant:
+        """The body at a configuration, moving with a velocity of shape (6 + joints,).
+
+        Raises:
+            ValueError: the configuration places other joints than those that move.
+        """
+        model, data = self.model, self.model.createData()
+        q, v = self._coordinates(configuration), np.empty(model.nv)
+        v[self.order] = velocity
+        mass = np.array(pin.crba(model, data, q))[np.ix_(self.order, self.order)]
+        bias = np.array(pin.nonLinearEffects(model, data, q, v))[self.order]
+        pin.computeJointJacobians(model, data, q)
+        pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))  # last: it leaves dJ/dt nu in `data`
+        pin.updateFramePlacements(model, data)
+        return Instant(self, mass, bias, data)
+
+    def _coordinates(self, configuration: Configuration) -> Array:
+        """The configuration vector of pinocchio, in the world."""
+        differing = set(configuration.joints) ^ set(self.joints)
+        if differing:
+            raise ValueError(f"a configuration places exactly the joints that move; see {sorted(differing)}")
+        world_from_base = self.world_from_given @ pin.rpy.rpyToMatrix(*configuration.base_angles)
+        q = np.array(pin.neutral(self.model))
+        q[:3] = self.world_from_given @ configuration.base_position
+        q[3:7] = pin.Quaternion(world_from_base).coeffs()
+        for name in self.joints:
+            joint, position = self.model.joints[self.model.getJointId(name)], configuration.joints[name]
+            if joint.nq == 2:  # pinocchio's continuous joints hold cosine and sine
+                q[joint.idx_q : joint.idx_q + 2] = np.cos(position), np.sin(position)
+            else:
+                q[joint.idx_q] = position
+        return q
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Instant:
+    """A floating body at one configuration and velocity, v velocities.
+
+    Args:
+        body: the body.
+        mass: mass matrix M, shape (v, v).
+        bias: Coriolis, centrifugal and gravity terms h, shape (v,).
+        data: pinocchio's, with kinematics at zero acceleration.
+    """
+
+    body: FloatingBody
+    mass: Array
+    bias: Array
+    data: Any
+
+    def twist_in_frame(self, frame: str) -> tuple[Array, Array]:
+        """J, shape (6, v), and dJ/dt nu of a frame's linear and angular velocity in the frame's own axes."""
+        identity = self._identity(frame)
+        drift = pin.getFrameAcceleration(self.body.model, self.data, identity, pin.LOCAL)
+        return self._jacobian(identity, pin.LOCAL), np.array(drift.vector)
+
+    def twist_in_world(self, frame: str) -> tuple[Array, Array]:
+        """J, shape (6, v), and dJ/dt nu of a frame's linear and angular velocity in world axes."""
+        identity, axes = self._identity(frame), pin.LOCAL_WORLD_ALIGNED
+        drift = pin.getFrameClassicalAcceleration(self.body.model, self.data, identity, axes)
+        return self._jacobian(identity, axes), np.array(drift.vector)
+
+    def _identity(self, frame: str) -> int:
+        return int(self.body.model.getFrameId(frame, pin.FrameType.BODY))
+
+    def _jacobian(self, identity: int, axes: Any) -> Array:
+        jacobian = np.array(pin.getFrameJacobian(self.body.model, self.data, identity, axes))
+        return jacobian[:, self.body.order]
