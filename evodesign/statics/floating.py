@@ -160,6 +160,11 @@ class Instant:
         drift = pin.getFrameClassicalAcceleration(self.body.model, self.data, identity, axes)
         return self._jacobian(identity, axes), np.array(drift.vector)
 
+    def pose(self, frame: str) -> tuple[Array, Array]:
+        """Rotation, shape (3, 3), and origin [m], shape (3,), of a frame in the world."""
+        placement = self.data.oMf[self._identity(frame)]
+        return np.array(placement.rotation), np.array(placement.translation)
+
     def _identity(self, frame: str) -> int:
         return int(self.body.model.getFrameId(frame, pin.FrameType.BODY))
 
