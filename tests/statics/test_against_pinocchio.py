@@ -7,7 +7,7 @@ statics are all under test at once.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -22,6 +22,8 @@ from evodesign.tree.human import human_tree
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
+from tests.oracles.published import published_robots
+from tests.tree.crane import crane
 
 CASES = 120
 RELATIVE = 1e-10
@@ -64,6 +66,20 @@ def persons(problem: Problem) -> Iterator[Case]:
         yield posture(tree, problem.scene.human, rng)
 
 
+def published(problem: Problem) -> Iterator[Case]:
+    rng = np.random.default_rng(3)
+    for tree in published_robots(problem, rng, CASES // 4):
+        yield posture(tree, problem.scene.robot, rng)
+
+
+def cranes(problem: Problem) -> Iterator[Case]:
+    rng = np.random.default_rng(4)
+    for _ in range(CASES // 4):
+        tree = crane()
+        ends = dict.fromkeys(SIDES, tree.links[-1].name)
+        yield posture(tree, replace(problem.scene.robot, tree=tree, hands=ends, soles=ends), rng)
+
+
 def ours(case: Case) -> tuple[dict[str, Pose], np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Poses, joint torques, unbalanced force and moment, centre of mass."""
     base = Pose(euler_rotation(ca.DM(case.angles)), ca.DM(case.position))
@@ -87,7 +103,11 @@ def oracle(case: Case) -> tuple[pin.Model, pin.Data, np.ndarray]:
     q[:3] = case.position
     q[3:7] = pin.Quaternion(pin.rpy.rpyToMatrix(*case.angles)).coeffs()
     for name, value in case.joints.items():
-        q[model.joints[model.getJointId(name)].idx_q] = value
+        joint = model.joints[model.getJointId(name)]
+        if joint.nq == 2:
+            q[joint.idx_q : joint.idx_q + 2] = np.cos(value), np.sin(value)
+        else:
+            q[joint.idx_q] = value
     rows = pin.computeGeneralizedGravity(model, data, q).copy()
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)
@@ -98,7 +118,7 @@ def oracle(case: Case) -> tuple[pin.Model, pin.Data, np.ndarray]:
     return model, data, rows
 
 
-@pytest.mark.parametrize("cases", [robots, persons])
+@pytest.mark.parametrize("cases", [robots, persons, published, cranes])
 def test_frames_stand_where_pinocchio_puts_them(cases, problem: Problem) -> None:
     for case in cases(problem):
         poses = ours(case)[0]
@@ -109,7 +129,7 @@ def test_frames_stand_where_pinocchio_puts_them(cases, problem: Problem) -> None
             assert np.allclose(np.array(poses[frame].rotation), placed.rotation, atol=RELATIVE)
 
 
-@pytest.mark.parametrize("cases", [robots, persons])
+@pytest.mark.parametrize("cases", [robots, persons, published, cranes])
 def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches(
     cases, problem: Problem
 ) -> None:
@@ -124,7 +144,7 @@ def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches
         assert np.allclose(base_in_world.T @ moment, -rows[3:6], atol=RELATIVE * scale)
 
 
-@pytest.mark.parametrize("cases", [robots, persons])
+@pytest.mark.parametrize("cases", [robots, persons, published, cranes])
 def test_mass_and_centre_of_mass_agree(cases, problem: Problem) -> None:
     for case in cases(problem):
         center = ours(case)[-1]

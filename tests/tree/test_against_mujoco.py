@@ -1,4 +1,4 @@
-"""Kinematics, mass matrix and bias of our robot and of a crane against MuJoCo.
+"""Kinematics, mass matrix and bias of our robot, the published one and a crane against MuJoCo.
 
 MuJoCo reads the URDF that our writer writes. Its free joint counts the root's linear velocity in world axes
 and the angular one in the root's: u = (R v, omega, rates), so that
@@ -19,11 +19,12 @@ import numpy as np
 import pytest
 
 from evodesign.problem.build import Problem
-from evodesign.statics.balance import GRAVITY
+from evodesign.statics.balance import GRAVITY, center_of_mass, cut
 from evodesign.tree.dynamics import ROOT_ROWS, bias, mass_matrix
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
+from tests.oracles.published import published_robots
 from tests.tree.crane import crane
 
 RELATIVE = 1e-6
@@ -98,10 +99,16 @@ def cranes(_: Problem) -> Iterator[Case]:
         yield Case.of(crane(), rng)
 
 
-BOTH = pytest.mark.parametrize("cases", [robots, cranes])
+def published(problem: Problem) -> Iterator[Case]:
+    rng = np.random.default_rng(23)
+    for tree in published_robots(problem, rng, CASES):
+        yield Case.of(tree, rng)
 
 
-@BOTH
+ALL = pytest.mark.parametrize("cases", [robots, cranes, published])
+
+
+@ALL
 def test_links_stand_where_mujoco_puts_them(cases, problem: Problem) -> None:
     for case in cases(problem):
         poses = forward(case.tree, Pose(ca.DM(case.rotation), ca.DM(case.position)), case.joints)
@@ -111,7 +118,23 @@ def test_links_stand_where_mujoco_puts_them(cases, problem: Problem) -> None:
             assert np.allclose(np.array(pose.rotation), body.xmat.reshape(3, 3), rtol=0.0, atol=RELATIVE)
 
 
-@BOTH
+@ALL
+def test_centre_of_mass_and_gravity_torques_are_mujocos(cases, problem: Problem) -> None:
+    for case in cases(problem):
+        poses = forward(case.tree, Pose(ca.DM(case.rotation), ca.DM(case.position)), case.joints)
+        mass, center = center_of_mass(case.tree, poses)
+        assert float(mass) == pytest.approx(float(case.model.body_mass.sum()), rel=RELATIVE)
+        root = case.data.body(case.tree.root)
+        assert np.allclose(np.array(center).ravel(), root.subtree_com, rtol=0.0, atol=RELATIVE)
+        case.data.qvel[:] = 0.0
+        mujoco.mj_forward(case.model, case.data)
+        gravity = case.data.qfrc_bias[case.order][ROOT_ROWS:]
+        held = cut(case.tree, poses, []).torques
+        found = [float(held[name]) for name in case.joints]
+        assert np.allclose(found, gravity, rtol=0.0, atol=RELATIVE * np.abs(gravity).max())
+
+
+@ALL
 def test_mass_matrix_and_bias_are_mujocos(cases, problem: Problem) -> None:
     for case in cases(problem):
         names = tuple(case.joints)

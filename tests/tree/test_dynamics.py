@@ -23,6 +23,7 @@ from evodesign.tree.human import human_tree
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_write import urdf_text
+from tests.oracles.published import published_robots
 from tests.tree.crane import crane
 
 CASES = 30
@@ -87,7 +88,13 @@ def cranes(_: Problem) -> Iterator[Case]:
         yield moving(crane(), rng)
 
 
-ALL = pytest.mark.parametrize("cases", [robots, persons, cranes])
+def published(problem: Problem) -> Iterator[Case]:
+    rng = np.random.default_rng(14)
+    for tree in published_robots(problem, rng, CASES):
+        yield moving(tree, rng)
+
+
+ALL = pytest.mark.parametrize("cases", [robots, persons, cranes, published])
 
 
 def in_pinocchio(case: Case) -> tuple[np.ndarray, np.ndarray]:
