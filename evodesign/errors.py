@@ -46,7 +46,12 @@ class InputError(EvodesignError):
         self.wanted = wanted
         self.found = found
         place = f"{source}: {key}" if key else source
-        super().__init__(f"{place}: wanted {wanted}, found {found}")
+        super().__init__(_on_one_line(f"{place}: wanted {wanted}, found {found}"))
+
+
+def _on_one_line(text: str) -> str:
+    """The text with line ends and other control characters as their escapes: names in files may hold them."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
 
 
 class ModelError(InputError):

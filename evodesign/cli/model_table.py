@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from rich.markup import escape
@@ -12,12 +13,15 @@ from evodesign.cli.output import figure
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.problem.build import Problem
 from evodesign.statics.scene import Agent
-from evodesign.tree.model import Tree
+from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
 
 __all__ = ["model_json", "model_tables"]
 
-CAPTION = "sizes [m]: box x, y, z; cylinder radius x length; density [kg/m^3]"
+CAPTION = (
+    "sizes [m]: box x, y, z; cylinder radius, length; sphere radius; density [kg/m^3]\n"
+    "grows along: direction in the link's frame in which it gets longer; -: keeps its size"
+)
 
 
 def model_json(problem: Problem) -> dict[str, Any]:
@@ -29,37 +33,73 @@ def model_json(problem: Problem) -> dict[str, Any]:
         "payload": {"size_m": list(scene.payload.size), "mass_kg": scene.payload.mass},
         "heights_m": list(problem.heights),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
+        "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
     }
 
 
 def model_tables(problem: Problem) -> tuple[Table, ...]:
-    """What was understood, for a person: the agents, the task, the links that may change."""
+    """What was understood, for a person: agents, task, the robot's links, and the parameters."""
     shown = model_json(problem)
-    agents = Table(title=escape(problem.name), title_justify="left")
+    return (
+        _agents_table(problem.name, shown["agents"]),
+        _task_table(shown),
+        _links_table(shown["links"]),
+        _parameters_table(shown["parameters"]),
+    )
+
+
+def _agents_table(name: str, agents: Iterable[dict[str, Any]]) -> Table:
+    table = Table(title=escape(name), title_justify="left")
     for column in ("agent", "model", "links", "joints", "that move", "mass [kg]"):
-        agents.add_column(escape(column), justify="left" if column in ("agent", "model") else "right")
-    for agent in shown["agents"]:
+        table.add_column(escape(column), justify="left" if column in ("agent", "model") else "right")
+    for agent in agents:
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
-        agents.add_row(agent["name"], escape(agent["model"]), *map(str, counts), figure(agent["mass_kg"]))
-    task = Table(show_header=False)
-    task.add_row("load", f"{shown['payload']['mass_kg']:g} kg, {_times(shown['payload']['size_m'])} m")
-    task.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
-    task.add_row("objectives", ", ".join(shown["objectives"]))
-    links = Table(caption=escape(CAPTION), caption_justify="left")
-    for column in ("parameter", "from", "to", "link", "shape", "grows along", "density", "mass [kg]"):
-        links.add_column(escape(column))
-    for parameter in shown["parameters"]:
-        for position, link in enumerate(parameter["links"]):
-            name = (parameter["name"], figure(parameter["lower"]), figure(parameter["upper"]))
-            growth = "-" if link["axis"] is None else _direction(link["axis"], link["about_centre"])
-            first = name if position == 0 else ("", "", "")
-            links.add_row(
-                *map(escape, (*first, link["link"], link["shape"], growth)),
-                figure(link["density_kg_per_m3"]),
-                figure(link["mass_kg"]),
-            )
-    return agents, task, links
+        table.add_row(agent["name"], escape(agent["model"]), *map(str, counts), figure(agent["mass_kg"]))
+    return table
+
+
+def _task_table(shown: dict[str, Any]) -> Table:
+    table = Table(show_header=False)
+    table.add_row(
+        "load", f"{shown['payload']['mass_kg']:g} kg, {' x '.join(map(figure, shown['payload']['size_m']))} m"
+    )
+    table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
+    table.add_row("objectives", ", ".join(shown["objectives"]))
+    return table
+
+
+def _links_table(links: Iterable[dict[str, Any]]) -> Table:
+    """Every link that has mass; the frames without are named below."""
+    frames = [link["link"] for link in links if link["kind"] == "frame"]
+    caption = f"{CAPTION}\nwithout mass: {', '.join(frames)}" if frames else CAPTION
+    table = Table(title="links of the robot", title_justify="left", caption=escape(caption))
+    table.caption_justify = "left"
+    for column in ("link", "shape", "grows along", "density", "mass [kg]"):
+        table.add_column(escape(column))
+    for link in links:
+        if link["kind"] != "frame":
+            _add_link(table, link)
+    return table
+
+
+def _add_link(table: Table, link: dict[str, Any]) -> None:
+    """A link's rows, one for each solid."""
+    figures = (figure(link["density_kg_per_m3"]), figure(link["mass_kg"]))
+    for number, shape in enumerate(link["solids"] or [link["kind"]]):
+        name, density, mass = (link["link"], *figures) if number == 0 else ("", "", "")
+        table.add_row(escape(name), shape, escape(_growth(link, number)), density, mass)
+
+
+def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
+    table = Table(title="parameters", title_justify="left")
+    for column in ("parameter", "from", "to", "unit", "links"):
+        table.add_column(column)
+    for parameter in parameters:
+        bounds = (figure(parameter["lower"]), figure(parameter["upper"]), parameter["unit"])
+        links = ", ".join(link["link"] for link in parameter["links"])
+        table.add_row(escape(parameter["name"]), *bounds, escape(links))
+    return table
 
 
 def _agent(agent: Agent) -> dict[str, Any]:
@@ -74,45 +114,66 @@ def _agent(agent: Agent) -> dict[str, Any]:
 
 
 def _parameter(parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
+    grows = parameter.kind is ParameterKind.LENGTH
     return {
         "name": parameter.name,
         "lower": parameter.lower,
         "upper": parameter.upper,
-        "links": [_link(name, parameter, tree) for name in parameter.links],
+        "unit": parameter.record.unit,
+        "links": [_link(tree.link_by_name[name], tree, grows=grows) for name in parameter.links],
     }
 
 
-def _link(name: str, parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
-    link = tree.link_by_name[name]
-    growth = growth_of(tree, name) if parameter.kind is ParameterKind.LENGTH else None
+def _link(link: Link, tree: Tree, *, grows: bool) -> dict[str, Any]:
+    """A link, and how it answers to a length multiplier: None without solids, or if not asked for."""
+    solids = [_shape(solid.shape) for solid in link.solids]
+    growth = growth_of(tree, link.name) if grows and solids else None
     return {
-        "link": name,
-        "shape": " + ".join(_shape(solid.shape) for solid in link.solids),
+        "link": link.name,
+        "kind": _kind(link),
+        "shape": " + ".join(solids),
+        "solids": solids,
         "axis": None if growth is None else list(growth.axis),
         "about_centre": None if growth is None else growth.about_centre,
         "dimension_m": None if growth is None else growth.dimension,
-        "density_kg_per_m3": float(link.solids[0].density),
+        "longer_solids": None if growth is None else sorted(growth.stretched),
+        "density_kg_per_m3": float(link.solids[0].density) if solids else None,
         "mass_kg": float(link.inertia.mass),
     }
 
 
+def _kind(link: Link) -> str:
+    """What a link's mass is made of."""
+    if len(link.solids) > 1:
+        return "composite"
+    if link.solids:
+        return type(link.solids[0].shape).__name__.lower()
+    return "inertia of the file" if link.inertia.mass > 0.0 else "frame"
+
+
+def _growth(link: dict[str, Any], solid: int) -> str:
+    """The direction in which a solid of a link grows, or a dash."""
+    if link["axis"] is None or solid not in link["longer_solids"]:
+        return "-"
+    return _direction(link["axis"], link["about_centre"])
+
+
 def _shape(shape: Shape) -> str:
     if isinstance(shape, Box):
-        return f"box {_times(shape.sides)}"
+        return f"box {_sizes(shape.sides)}"
     if isinstance(shape, Cylinder):
-        return f"cylinder {shape.radius:g} x {shape.length:g}"
+        return f"cylinder {_sizes((shape.radius, shape.length))}"
     return f"sphere {shape.radius:g}"
 
 
-def _times(sizes: Any) -> str:
-    return " x ".join(f"{size:g}" for size in sizes)
+def _sizes(sizes: Iterable[float]) -> str:
+    return ", ".join(f"{size:.4g}" for size in sizes)
 
 
 def _direction(axis: list[float], about_centre: bool) -> str:
-    """The axis in words: `-z` where it is a main axis, its components otherwise."""
-    one_way = "+" if max(axis, key=abs) > 0.0 else "-"
-    signs = "+-" if about_centre else one_way
+    """The axis in words: `-z` where it is a main axis, its components otherwise; `+-` for both ways."""
     for name, component in zip("xyz", axis, strict=True):
         if abs(abs(component) - 1.0) < 1e-6:
-            return f"{signs}{name}"
-    return f"({', '.join(f'{component:.3f}' for component in axis)})"
+            return f"+-{name}" if about_centre else f"{'+' if component > 0.0 else '-'}{name}"
+    components = f"({', '.join(f'{component:.2f}' for component in axis)})"
+    return f"+-{components}" if about_centre else components

@@ -14,6 +14,9 @@ from evodesign.errors import InputError, nearest_name
 
 __all__ = ["decode_toml"]
 
+DEEPEST = 16
+"""Tables and arrays inside each other; a problem has four."""
+
 T = TypeVar("T", bound=msgspec.Struct)
 
 
@@ -29,8 +32,9 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
     """
     try:
         raw = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # a ValueError for an integer of thousands of digits
         raise InputError(source, "", "valid TOML", str(error) or "tables nested too deeply") from error
+    _refuse_depth(raw, source)
     _refuse_unknown_keys(raw, table, source, "")
     for key, value in _leaves(raw, ""):
         if isinstance(value, float) and not math.isfinite(value):
@@ -39,6 +43,20 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
         return msgspec.convert(raw, table)
     except msgspec.ValidationError as error:
         raise _explained(error, raw, source) from error
+
+
+def _refuse_depth(raw: Any, source: str) -> None:
+    """Refuse nesting that no table asks for: dotted keys nest without limit, and what follows recurs."""
+    layer = [raw]
+    for _ in range(DEEPEST):
+        layer = [
+            inner
+            for outer in layer
+            if isinstance(outer, dict | list)
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+        ]
+    if layer:
+        raise InputError(source, "", f"tables nested at most {DEEPEST} deep", "deeper ones")
 
 
 def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:

@@ -1,33 +1,52 @@
 """A tree whose links are longer or shorter, lighter or heavier.
 
-A length multiplier l of a link whose solid has the principal dimension v adds e = (l - 1) v along the
-principal axis, in the direction in which the chain grows from the link's parent joint:
+A length multiplier l of a link with the principal dimension v adds e = (l - 1) v along the principal axis, in
+the direction in which the chain grows from the link's parent joint. It is as if the link were cut across at
+its main solid's centre and a piece of length e put in: end pieces keep their size, the middle gets longer.
 
-    solid           centre moves by e/2, dimension v becomes l v
-    child joint     at or beyond the solid's centre: moves by e (the end pieces keep their size);
-                    before it by more than v/20: stays
-    root link       grows about its centre: children above move by +e/2, below by -e/2, at it stay
+    chain           from the parent joint to the centre of the link's volume; if there is none (or a cylinder
+                    lies across it), from the parent joint to the middle of the child joints
+    main solid      of several, the one that spans most along the chain: v |axis . chain|; the first of equals
+    main solid      centre moves by e/2, dimension v becomes l v
+    solid beside    one that reaches from end to end of the main solid, each end within v/20, along the same
+    it              axis (two rods, four walls): as the main solid
+    other solids    centre more than v/20 beyond the main one's: moves by e; more than v/20 before: stays;
+                    between: moves by e/2; size kept
+    child joint     at or beyond the main solid's centre: moves by e; before it by more than v/20: stays
+    root link       z up is its chain, and it grows about its centre: child joints and other solids above move
+                    by +e/2, below by -e/2, at it stay
+    no chain        a link centred on its joints, or a cylinder across both directions: about its centre too
 
-Mass and inertia are those of the resized solid. l = 1 with the file's density gives the file's tree back.
-Multipliers and densities are numbers or symbolic expressions.
+Mass and inertia are those of the resized solids, so a link has one density, also when made of several solids.
+A link whose file gives its mass a mesh, or no shape, keeps its inertia and cannot change. l = 1 with the
+file's density gives the file's tree back. Multipliers and densities are numbers or symbolic expressions.
 
-Source: Sartore et al. 2022, Section III-A and IV; the rule for child joints is ours (docs/model.md).
+Source: Sartore et al. 2022, Section III-A and IV; the rules for child joints and composites are ours
+(docs/model.md).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from evodesign.body.placement import Placement, Scalar, Vector, add, dot, rotate, scale, transpose
-from evodesign.body.shape import Solid
+from evodesign.body.shape import Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, Link, Tree
 
 __all__ = ["Growth", "growth_of", "resize"]
 
 AT_CENTRE = 1e-6
-"""A child joint within this distance of a root solid's centre counts as at the centre [m]."""
+"""A point within this distance of a centre counts as at the centre [m]."""
+
+ACROSS = 0.01
+"""Cosine between axis and chain below which a solid lies across the chain: 0.6 degrees off a right angle."""
+
+MARGIN = 1.0 / 20.0
+"""Of v. For stacked trunk boxes whose next joint stands a hair below the middle (2.4 mm of 134 mm in the
+reference robot): a trunk that grows lifts what it carries."""
 
 UP: Vector = (0.0, 0.0, 1.0)
 """The chain's direction in a root link, whose frame is z up (REP 103)."""
@@ -41,44 +60,96 @@ class Growth:
         link: its name.
         axis: unit vector in the link's frame along which it grows, away from the parent joint.
         dimension: unscaled principal dimension v [m].
-        about_centre: whether it grows to both sides (a root link).
+        centre: of the main solid, in the link's frame [m].
+        stretched: indices of the solids that get longer: the main one and those beside it.
+        about_centre: whether it grows to both sides (a root link, or one without a chain).
     """
 
     link: str
     axis: Vector
-    dimension: Scalar
+    dimension: float
+    centre: Vector
+    stretched: frozenset[int]
     about_centre: bool
 
 
 def growth_of(tree: Tree, name: str) -> Growth:
-    """The direction and dimension in which a link grows, read off its solid's placement.
+    """The direction and dimension in which a link grows, read off the placement of its solids.
 
     Raises:
-        ModelError: the link is missing, has no solid, or several.
+        ModelError: the link is missing, or its mass is not that of spheres, cylinders and boxes.
     """
-    link = tree.link(name, "length parameter")
-    if len(link.solids) != 1:
-        found = f"{len(link.solids)} shapes in link '{name}'"
-        raise ModelError(tree.name, f"length of link {name}", "a link with one primitive shape", found)
-    solid = link.solids[0]
+    link = _changeable(tree, name, "length")
     is_root = name not in tree.parent_joint
-    chain = UP if is_root else _chain_direction(tree, link, solid)
-    rotation = solid.link_from_solid.rotation
-    axis_in_solid = solid.shape.principal_axis(rotate(transpose(rotation), chain))
-    dimension = solid.shape.principal_dimension(axis_in_solid)
-    return Growth(name, rotate(rotation, axis_in_solid), dimension, is_root)
+    for chain in [UP] if is_root else _chains(tree, link):
+        main = max(link.solids, key=lambda solid: _span(solid, chain))
+        axis, dimension = _principal(main, chain)
+        if abs(dot(axis, chain)) > ACROSS:
+            return _growth(link, main, axis, dimension, about_centre=is_root)
+    main = max(link.solids, key=lambda solid: _principal(solid, UP)[1])
+    return _growth(link, main, *_principal(main, UP), about_centre=True)
 
 
-def _chain_direction(tree: Tree, link: Link, solid: Solid) -> Vector:
-    """From the parent joint to the solid's centre, or to the mean child joint when they coincide."""
+def _changeable(tree: Tree, name: str, what: str) -> Link:
+    """The link of a name, if a design can change it."""
+    link = tree.link(name, f"{what} parameter")
+    if link.solids:
+        return link
+    if link.looks:
+        found = "a shape that is only seen, without mass" if link.inertia.mass == 0.0 else "a shape only seen"
+    else:
+        found = "none" if link.inertia.mass == 0.0 else "a link with a mesh or without any shape"
+    wanted = "a link with mass, in the shape of spheres, cylinders or boxes"
+    raise ModelError(tree.name, f"{what} of link {name}", wanted, found)
+
+
+def _chains(tree: Tree, link: Link) -> Iterator[Vector]:
+    """Unit vectors from the parent joint to the volume's centre and to the mean child joint, if not there."""
     children = [joint.parent_from_child.translation for joint in tree.child_joints[link.name]]
-    mean = (0.0, 0.0, 0.0)
-    for child in children:
-        mean = add(mean, scale(1.0 / len(children), child))
-    for direction in (solid.link_from_solid.translation, mean, UP):
-        if dot(direction, direction) > AT_CENTRE**2:
-            return direction
-    return UP
+    volumes = [solid.shape.volume for solid in link.solids]
+    centres = [solid.link_from_solid.translation for solid in link.solids]
+    for weights, points in ((volumes, centres), ([1.0] * len(children), children)):
+        mean: Vector = (0.0, 0.0, 0.0)
+        for weight, point in zip(weights, points, strict=True):
+            mean = add(mean, scale(weight / sum(weights), point))
+        distance = math.sqrt(dot(mean, mean))
+        if distance > AT_CENTRE:
+            yield scale(1.0 / distance, mean)
+
+
+def _principal(solid: Solid, chain: Vector) -> tuple[Vector, float]:
+    """Principal axis of a solid in the link's frame, along the chain, and its dimension [m]."""
+    rotation = solid.link_from_solid.rotation
+    axis = solid.shape.principal_axis(rotate(transpose(rotation), chain))
+    return rotate(rotation, axis), solid.shape.principal_dimension(axis)
+
+
+def _span(solid: Solid, chain: Vector) -> float:
+    """How much a solid spans along the chain, v |axis . chain| [m].
+
+    It is rounded to the nanometre, so that rounding errors do not choose among equals.
+    """
+    axis, dimension = _principal(solid, chain)
+    return round(dimension * abs(float(dot(axis, chain))), 9)
+
+
+def _growth(link: Link, main: Solid, axis: Vector, dimension: float, *, about_centre: bool) -> Growth:
+    centre = main.link_from_solid.translation
+    stretched = frozenset(
+        number for number, solid in enumerate(link.solids) if _reaches_as_far(solid, main, axis, dimension)
+    )
+    return Growth(link.name, axis, dimension, centre, stretched, about_centre)
+
+
+def _reaches_as_far(solid: Solid, main: Solid, axis: Vector, dimension: float) -> bool:
+    """Whether a solid reaches from end to end of the main one, along the same axis."""
+    own_axis, own_dimension = _principal(solid, axis)
+    offset = abs(_beyond(solid.link_from_solid.translation, main.link_from_solid.translation, axis))
+    return (
+        isinstance(solid.shape, Sphere) == isinstance(main.shape, Sphere)
+        and dot(own_axis, axis) > math.cos(ACROSS)
+        and offset + abs(own_dimension - dimension) / 2.0 <= MARGIN * dimension
+    )
 
 
 def resize(tree: Tree, lengths: Mapping[str, Scalar], densities: Mapping[str, Scalar]) -> Tree:
@@ -95,10 +166,9 @@ def resize(tree: Tree, lengths: Mapping[str, Scalar], densities: Mapping[str, Sc
     """
     growths = {name: growth_of(tree, name) for name in lengths}
     for name in densities:
-        if not tree.link(name, "density parameter").solids:
-            raise ModelError(tree.name, f"density of link {name}", "a link with a primitive shape", "none")
+        _changeable(tree, name, "density")
     links = tuple(_resized_link(link, growths, lengths, densities) for link in tree.links)
-    joints = tuple(_moved_joint(joint, tree, growths, lengths) for joint in tree.joints)
+    joints = tuple(_moved_joint(joint, growths, lengths) for joint in tree.joints)
     return replace(tree, links=links, joints=joints)
 
 
@@ -111,48 +181,63 @@ def _resized_link(
     if link.name in densities:
         solids = tuple(replace(solid, density=densities[link.name]) for solid in solids)
     if link.name in lengths:
-        solids = (_lengthened(solids[0], growths[link.name], lengths[link.name]),)
+        growth, factor = growths[link.name], lengths[link.name]
+        solids = tuple(
+            _stretched(solid, growth, factor)
+            if number in growth.stretched
+            else _carried(solid, growth, factor)
+            for number, solid in enumerate(solids)
+        )
     return replace(link, solids=solids)
 
 
-def _lengthened(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
-    placement = solid.link_from_solid
-    axis_in_solid = rotate(transpose(placement.rotation), growth.axis)
-    shape = solid.shape.lengthened(factor, axis_in_solid)
-    if not growth.about_centre:
-        half = (factor - 1.0) * growth.dimension / 2.0
-        moved = add(placement.translation, scale(half, growth.axis))
-        placement = Placement(placement.rotation, moved)
-    return Solid(shape, placement, solid.density)
+def _stretched(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
+    """The main solid, or one beside it: longer, and moved by half of what the link grows."""
+    axis_in_solid = rotate(transpose(solid.link_from_solid.rotation), growth.axis)
+    share = 0.0 if growth.about_centre else 0.5
+    place = _moved(solid.link_from_solid, share, growth, factor)
+    return Solid(solid.shape.lengthened(factor, axis_in_solid), place, solid.density)
 
 
-def _moved_joint(
-    joint: Joint, tree: Tree, growths: Mapping[str, Growth], lengths: Mapping[str, Scalar]
-) -> Joint:
+def _carried(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
+    """A solid that keeps its size."""
+    beyond = _beyond(solid.link_from_solid.translation, growth.centre, growth.axis)
+    at_centre = not growth.about_centre and abs(beyond) <= MARGIN * growth.dimension
+    share = 0.5 if at_centre else _share(beyond, growth)
+    return replace(solid, link_from_solid=_moved(solid.link_from_solid, share, growth, factor))
+
+
+def _moved_joint(joint: Joint, growths: Mapping[str, Growth], lengths: Mapping[str, Scalar]) -> Joint:
     if joint.parent not in lengths:
         return joint
     growth = growths[joint.parent]
-    centre = tree.link_by_name[joint.parent].solids[0].link_from_solid.translation
-    origin = joint.parent_from_child.translation
-    beyond = dot(add(origin, scale(-1.0, centre)), growth.axis)
-    share = _share(beyond, growth)
+    share = _share(_beyond(joint.parent_from_child.translation, growth.centre, growth.axis), growth)
     if share == 0.0:
         return joint
-    extension = (lengths[joint.parent] - 1.0) * growth.dimension
-    moved = add(origin, scale(share * extension, growth.axis))
-    return replace(joint, parent_from_child=Placement(joint.parent_from_child.rotation, moved))
+    place = _moved(joint.parent_from_child, share, growth, lengths[joint.parent])
+    return replace(joint, parent_from_child=place)
+
+
+def _moved(place: Placement, share: float, growth: Growth, factor: Scalar) -> Placement:
+    """The placement, moved by a share of e = (l - 1) v along the growth axis."""
+    if share == 0.0:
+        return place
+    extension = (factor - 1.0) * growth.dimension
+    return Placement(place.rotation, add(place.translation, scale(share * extension, growth.axis)))
+
+
+def _beyond(point: Vector, centre: Vector, axis: Vector) -> float:
+    """Distance of a point past a centre, along an axis [m]."""
+    return float(dot(add(point, scale(-1.0, centre)), axis))
 
 
 def _share(beyond: float, growth: Growth) -> float:
-    """The part of a link's extension by which a child joint moves.
-
-    The margin of v/20 is for stacked trunk boxes whose next joint stands a hair below the middle (2.4 mm
-    of 134 mm in the reference robot): a trunk that grows lifts what it carries.
+    """The part of a link's extension by which a child joint or a solid that keeps its size moves.
 
     Args:
-        beyond: distance of the joint past the solid's centre, along the growth axis [m].
-        growth: of the link that holds the joint.
+        beyond: its distance past the main solid's centre, along the growth axis [m].
+        growth: of the link that holds it.
     """
     if growth.about_centre:
         return 0.0 if abs(beyond) <= AT_CENTRE else 0.5 if beyond > 0.0 else -0.5
-    return 1.0 if beyond > -growth.dimension / 20.0 else 0.0
+    return 1.0 if beyond > -MARGIN * growth.dimension else 0.0

@@ -1,9 +1,9 @@
 """URDF text vetted element by element, so that every complaint is a sentence that names file and element.
 
 What passes holds nothing but links and joints, and of these only what a tree is made of: places, masses,
-shapes, axes and limits, all figures finite and within bounds. Colours, sensors, simulator tags, and the axes
-and limits of fixed joints are stripped. Nothing is fetched: documents with a DTD (and so entities) are
-refused.
+shapes, axes and limits, all figures finite and within bounds, and no part twice. Colours, sensors, simulator
+tags, and the axes and limits of fixed joints are stripped. Nothing is fetched: documents with a DTD (and so
+entities) are refused, and a mesh's file is never opened.
 
 Source: wiki.ros.org/urdf/XML (link, joint).
 """
@@ -40,20 +40,31 @@ class Figures:
 
 SIZE = Figures(low=1e-6, high=1e3)
 """A dimension [m]: beyond a micrometre and a kilometre lies a mistaken unit, and a volume of zero."""
-ANY, OPTIONAL, NOT_NEGATIVE = Figures(), Figures(required=False), Figures(low=0.0, required=False)
-THREE = Figures(count=3, required=False)
+MASS = Figures(low=0.0, high=1e6)
+"""A mass [kg]: up to a thousand tonnes."""
+MOMENT = Figures(low=-1e9, high=1e9)
+"""An entry of an inertia tensor [kg m^2]."""
+POSITION, ANGLES = Figures(3, -1e3, 1e3, required=False), Figures(3, -1e3, 1e3, required=False)
+"""A point [m] and roll, pitch, yaw [rad]."""
+AXIS = Figures(3, -1e3, 1e3, required=False)
+"""A direction, of any length that can be divided by."""
+OPTIONAL, NOT_NEGATIVE = Figures(required=False), Figures(low=0.0, required=False)
 
 ATTRIBUTES: Mapping[str, Mapping[str, Figures]] = {
-    "origin": {"xyz": THREE, "rpy": THREE},
-    "mass": {"value": Figures(low=0.0)},
-    "inertia": {"ixx": ANY, "ixy": ANY, "ixz": ANY, "iyy": ANY, "iyz": ANY, "izz": ANY},
+    "origin": {"xyz": POSITION, "rpy": ANGLES},
+    "mass": {"value": MASS},
+    "inertia": dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), MOMENT),
     "box": {"size": Figures(3, SIZE.low, SIZE.high)},
     "cylinder": {"radius": SIZE, "length": SIZE},
     "sphere": {"radius": SIZE},
-    "axis": {"xyz": THREE},
+    "axis": {"xyz": AXIS},
     "limit": {"lower": OPTIONAL, "upper": OPTIONAL, "effort": NOT_NEGATIVE, "velocity": NOT_NEGATIVE},
 }
 PRIMITIVES = ("box", "cylinder", "sphere")
+SHORTEST_AXIS = 1e-6
+"""An <axis> of fewer than this length has no direction."""
+LONGEST_QUOTE = 60
+"""Characters of the file that a message repeats."""
 
 
 def checked_urdf(text: str, source: str) -> etree._Element:
@@ -96,14 +107,12 @@ def _check(root: etree._Element, source: str) -> None:
     """Refuse what cannot be read, and strip what is not, so that only checked elements remain."""
     if root.tag != "robot":
         raise ModelError(source, "", "<robot> as the outermost element", f"<{root.tag}>")
-    if not root.get("name"):
-        raise ModelError(source, "robot.name", "a name", "nothing")
+    _check_name(root, "robot", source)
     if root.find("link") is None:
         raise ModelError(source, "robot", "links", "none")
     _strip(root, ("link", "joint"))
     for element in root:
-        if not element.get("name"):
-            raise ModelError(source, f"{_indexed(element)}.name", "a name", "nothing")
+        _check_name(element, _indexed(element), source)
         check = _check_link if element.tag == "link" else _check_joint
         check(element, source)
         for part in element.iter(*ATTRIBUTES):
@@ -112,17 +121,36 @@ def _check(root: etree._Element, source: str) -> None:
         _check_motion(joint, source)
 
 
+def _check_name(element: etree._Element, key: str, source: str) -> None:
+    name = element.get("name")
+    if not name:
+        raise ModelError(source, f"{key}.name", "a name", "nothing")
+    if not name.isprintable():
+        raise ModelError(source, f"{key}.name", "a name on one line", _quoted(name))
+
+
+def _check_once(element: etree._Element, tags: Iterable[str], source: str) -> None:
+    """Refuse parts that stand twice: readers differ on which one counts."""
+    for tag in tags:
+        found = len(element.findall(tag))
+        if found > 1:
+            raise ModelError(source, f"{_key(element)}.{tag}", f"one <{tag}>", str(found))
+
+
 def _check_link(link: etree._Element, source: str) -> None:
     _strip(link, ("inertial", "visual", "collision"))
+    _check_once(link, ("inertial",), source)
     for inertial in link.findall("inertial"):
+        _check_once(inertial, ("origin", "mass", "inertia"), source)
         for tag in ("mass", "inertia"):
             if inertial.find(tag) is None:
                 raise ModelError(source, f"{_key(inertial)}.{tag}", f"<{tag}>", "nothing")
         _strip(inertial, ("origin", "mass", "inertia"))
     for look in [*link.findall("visual"), *link.findall("collision")]:
+        _check_once(look, ("origin", "geometry"), source)
         shapes = [shape.tag for geometry in look.findall("geometry") for shape in geometry]
         if len(shapes) != 1 or shapes[0] not in (*PRIMITIVES, "mesh"):
-            found = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
+            found = _shortened(", ".join(f"<{shape}>" for shape in shapes)) or "nothing"
             wanted = "one <box>, <cylinder>, <sphere> or <mesh>"
             raise ModelError(source, f"{_key(look)}.geometry", wanted, found)
         _strip(look, ("origin", "geometry"))
@@ -131,17 +159,18 @@ def _check_link(link: etree._Element, source: str) -> None:
 def _check_joint(joint: etree._Element, source: str) -> None:
     kind = joint.get("type")
     if kind not in list(JointKind):
-        found = f"'{kind}'" if kind else "nothing"
+        found = _quoted(kind) if kind else "nothing"
         raise ModelError(source, f"{_key(joint)}.type", "fixed, revolute, continuous or prismatic", found)
     mimic = joint.find("mimic")
     if mimic is not None:
-        found = f"a copy of joint '{mimic.get('joint')}'"
+        found = f"a copy of joint {_quoted(mimic.get('joint', ''))}"
         raise ModelError(source, f"{_key(joint)}.mimic", "a joint that moves by itself", found)
     for role in ("parent", "child"):
         element = joint.find(role)
         if element is None or not element.get("link"):
             raise ModelError(source, f"{_key(joint)}.{role}", "the name of a link", "nothing")
     moves = kind != JointKind.FIXED
+    _check_once(joint, ("origin", "parent", "child", *(("axis", "limit") if moves else ())), source)
     _strip(joint, ("origin", "parent", "child", "axis", "limit") if moves else ("origin", "parent", "child"))
 
 
@@ -155,7 +184,7 @@ def _check_figures(element: etree._Element, source: str) -> None:
             figures.low <= number <= figures.high for number in numbers
         )
         if not fits or not all(map(math.isfinite, numbers)):
-            found = "nothing" if text is None else f"'{text}'"
+            found = "nothing" if text is None else _quoted(text)
             raise ModelError(source, f"{_key(element)}.{name}", str(figures), found)
         element.set(name, " ".join(map(repr, numbers)))
 
@@ -163,8 +192,8 @@ def _check_figures(element: etree._Element, source: str) -> None:
 def _check_motion(joint: etree._Element, source: str) -> None:
     """Axis and limits of a joint whose figures are known to be numbers."""
     axis, limit = joint.find("axis"), joint.find("limit")
-    if axis is not None and not any(_numbers(axis.get("xyz", "1 0 0"))):
-        raise ModelError(source, f"{_key(axis)}.xyz", "a direction", f"'{axis.get('xyz')}'")
+    if axis is not None and math.hypot(*_numbers(axis.get("xyz", "1 0 0"))) < SHORTEST_AXIS:
+        raise ModelError(source, f"{_key(axis)}.xyz", "a direction", _quoted(axis.get("xyz", "")))
     if joint.get("type") not in (JointKind.REVOLUTE, JointKind.PRISMATIC):
         return
     for name in ("lower", "upper"):
@@ -181,6 +210,15 @@ def _numbers(text: str) -> list[float]:
         return [float(word) for word in text.split()]
     except ValueError:
         return []
+
+
+def _quoted(text: str) -> str:
+    """A piece of the file in a message: on one line, and not a page of it."""
+    return repr(_shortened(text))
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 3]}..."
 
 
 def _strip(element: etree._Element, tags: Iterable[str]) -> None:

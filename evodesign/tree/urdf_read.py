@@ -1,9 +1,20 @@
 """A tree from URDF text.
 
 `urdf_check` vets the XML first; yourdfpy then reads what was checked and nothing else (links, joints,
-primitive shapes; meshes are ignored).
+primitive shapes).
 
-Source: wiki.ros.org/urdf/XML (link, joint).
+    shape of a link    its visuals; its collisions if there is no visual or a mesh among them; none if that is
+                       so with the collisions too
+    robot's link       with a shape and mass: solids of one density, mass / volume
+                       with mass alone: the file's centre of mass and tensor, kept by every design
+                       with a shape alone: only seen
+    person's link      the file's centre of mass and tensor; its shape is only seen
+
+So a mesh beside primitive shapes rules these out, because they are not the whole body. Mesh files are not
+opened. A tensor is kept only if some body could have it: none of its principal moments is larger than the sum
+of the others.
+
+Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III (tensors that bodies have).
 """
 
 from __future__ import annotations
@@ -14,6 +25,7 @@ from enum import StrEnum
 from io import BytesIO
 from typing import Any
 
+import numpy as np
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
@@ -25,6 +37,12 @@ from evodesign.tree.urdf_check import checked_urdf
 from evodesign.tree.urdf_write import UNLIMITED
 
 __all__ = ["MassRule", "read_urdf"]
+
+LEAST_MASS = 1e-9
+"""A link below a microgram [kg] has no mass: some files give their frames a tiny one."""
+
+ROUNDED = 0.01
+"""Share of the largest principal moment by which a file's figures may miss the triangle inequality."""
 
 
 class MassRule(StrEnum):
@@ -54,6 +72,8 @@ def read_urdf(text: str, source: str, masses: MassRule) -> Tree:
     robot = _loaded(checked_urdf(text, source), source)
     links = tuple(_link(link, masses) for link in robot.links)
     joints = tuple(_joint(joint) for joint in robot.joints)
+    for link in links:
+        _refuse_impossible(link, source)
     try:
         return Tree(robot.name, links, joints)
     except ModelError as error:
@@ -61,11 +81,12 @@ def read_urdf(text: str, source: str, masses: MassRule) -> Tree:
 
 
 def _loaded(root: etree._Element, source: str) -> Any:
-    """The Robot record that yourdfpy makes of the checked elements, without meshes."""
+    """The Robot record that yourdfpy makes of the checked elements, without what a mesh rules out."""
     import yourdfpy  # here, because it loads trimesh: half a second that only a read of a robot should pay
 
-    for look in root.xpath("link/*[geometry/mesh]"):
-        look.getparent().remove(look)
+    for role in ("visual", "collision"):
+        for look in root.xpath(f"link/{role}[../{role}/geometry/mesh]"):
+            look.getparent().remove(look)
     file = BytesIO(etree.tostring(root))
     try:
         return yourdfpy.URDF.load(file, build_scene_graph=False, load_meshes=False).robot
@@ -99,11 +120,20 @@ def _shape(geometry: Any) -> Shape:
 
 def _inertia(inertial: Any) -> Inertia:
     """Inertia in the link's frame; a link without mass has none."""
-    if inertial is None or inertial.mass == 0.0:
+    if inertial is None or inertial.mass < LEAST_MASS:
         return Inertia()
     rows = [_vector(row) for row in inertial.inertia]
     here = Inertia(inertial.mass, about_center=(rows[0], rows[1], rows[2]))
     return here.moved(_placement(inertial.origin))
+
+
+def _refuse_impossible(link: Link, source: str) -> None:
+    """Refuse a kept tensor that no body has."""
+    moments = [float(moment) for moment in np.linalg.eigvalsh(np.array(link.own_inertia.about_center))]
+    if moments[0] + moments[1] < (1.0 - ROUNDED) * moments[2]:
+        wanted = "principal moments of which none is larger than the sum of the others"
+        found = ", ".join(f"{moment:.4g}" for moment in moments)
+        raise ModelError(source, f"link {link.name}.inertial.inertia", wanted, found)
 
 
 def _placement(matrix: Any) -> Placement:

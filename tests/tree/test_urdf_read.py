@@ -11,6 +11,7 @@ from lxml import etree
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import JointKind, Tree
+from evodesign.tree.resize import growth_of
 from evodesign.tree.urdf_read import MassRule, read_urdf
 from tests.oracles.pinocchio_model import floating_model
 
@@ -137,11 +138,51 @@ def test_several_shapes_share_one_density_and_keep_the_mass():
     assert body.inertia.mass == pytest.approx(3.0, rel=1e-14)
 
 
-def test_collision_shapes_stand_in_for_a_mesh():
-    mesh, rod = '<mesh filename="a.stl" scale="x"/>', '<cylinder radius="0.1" length="0.5"/>'
-    body = one_link(inertial(3.0) + look(mesh) + look(rod, "collision"))
+MESH, ROD = '<mesh filename="nowhere/a.stl" scale="x"/>', '<cylinder radius="0.1" length="0.5"/>'
+
+
+@pytest.mark.parametrize("seen", [look(MESH), look(MESH) + look('<sphere radius="0.2"/>')])
+def test_collision_shapes_stand_in_for_visuals_with_a_mesh(seen):
+    body = one_link(inertial(3.0) + seen + look(ROD, "collision"))
     assert [solid.shape for solid in body.solids] == [Cylinder(0.1, 0.5)]
-    assert not one_link(inertial(3.0) + look(mesh)).solids
+
+
+@pytest.mark.parametrize("touched", ["", look(MESH, "collision"), look(MESH + "", "collision") * 2])
+@pytest.mark.parametrize("seen", [look(MESH), look(MESH) + look(ROD)])
+def test_a_link_of_meshes_keeps_the_inertia_of_the_file(seen, touched):
+    body = one_link(inertial(3.0) + seen + touched)
+    assert (body.solids, body.looks, body.inertia.mass) == ((), (), 3.0)
+    assert [body.inertia.about_center[i][i] for i in range(3)] == [0.01, 0.02, 0.03]
+
+
+def test_visual_shapes_do_not_mind_a_mesh_that_is_touched():
+    body = one_link(inertial(3.0) + look(ROD) + look(MESH, "collision"))
+    assert [solid.shape for solid in body.solids] == [Cylinder(0.1, 0.5)]
+
+
+def test_a_length_parameter_of_a_mesh_is_refused_with_the_reason():
+    tree = read(ONE_LINK.format(inertial(3.0) + look(MESH)))
+    with pytest.raises(ModelError, match="found a link with a mesh or without any shape") as caught:
+        growth_of(tree, "body")
+    assert caught.value.key == "length of link body"
+
+
+def test_a_link_below_a_microgram_has_no_mass():
+    assert one_link(inertial(1e-10)).inertia.mass == 0.0
+    assert not one_link(inertial(1e-10) + look(ROD)).solids
+
+
+def test_a_tensor_that_no_body_has_is_refused_where_it_would_be_kept():
+    thin = inertial(3.0).replace('izz="0.03"', 'izz="0.04"')
+    with pytest.raises(ModelError, match="none is larger than the sum") as caught:
+        one_link(thin)
+    assert (caught.value.key, caught.value.found) == ("link body.inertial.inertia", "0.01, 0.02, 0.04")
+    assert one_link(thin + look(ROD)).solids, "the shape tells the inertia"
+    assert one_link(thin.replace('izz="0.04"', 'izz="0.0302"')).inertia.mass == 3.0, "rounded figures"
+    with pytest.raises(ModelError, match="none is larger than the sum"):
+        one_link(inertial(3.0).replace('ixy="0"', 'ixy="0.1"'))
+    with pytest.raises(ModelError, match="none is larger than the sum"):
+        one_link(thin + look(ROD), MassRule.FILE)
 
 
 FAULTS = [
@@ -179,6 +220,20 @@ FAULTS = [
     ('name="weld"', 'name="shoulder"', "joint shoulder", "a unique name", "twice"),
     ('name="weld"', "", "joint[2].name", "a name", "nothing"),
     ('<robot name="arm">', "<robot>", "robot.name", "a name", "nothing"),
+    ("0.1 0.2 0.3", "1e4 1 1", "link chest.visual.box.size", "to 1000", "'1e4 1 1'"),
+    ('value="12.0"', 'value="1e300"', "link chest.inertial.mass.value", "to 1e+06", "'1e300'"),
+    ('izz="0.03"', 'izz="1e300"', "link chest.inertial.inertia.izz", "to 1e+09", "'1e300'"),
+    ("0 0.2 0.3", "0 0.2 3e7", "joint shoulder.origin.xyz", "to 1000", "'0 0.2 3e7'"),
+    ("0 2 0", "0 1e-9 0", "joint shoulder.axis.xyz", "a direction", "'0.0 1e-09 0.0'"),
+    ('value="12.0"', 'value="1&#10;2"', "link chest.inertial.mass.value", "a finite number", "1\\n2"),
+    ('value="12.0"', f'value="{"9" * 400}"', "link chest.inertial.mass.value", "a finite", "9..."),
+    ('<link name="hand"/>', '<link name="ha&#10;nd"/>', "link[3].name", "on one line", "ha\\nnd"),
+    ('"arm"', '"a&#13;m"', "robot.name", "on one line", "'a\\rm'"),
+    ('<axis xyz="0 2 0"/>', '<axis/><axis/>', "joint shoulder.axis", "one <axis>", "2"),
+    ('<child link="upper"/>', '<child link="hand"/>' * 3, "joint shoulder.child", "one <child>", "3"),
+    ('<mass value="12.0"/>', '<mass value="1"/>' * 2, "link chest.inertial.mass", "one <mass>", "2"),
+    (BOX, BOX.replace("<geometry>", "<geometry/><geometry>"), "link chest.visual.geometry", "one", "2"),
+    ("</inertial>", f"</inertial>{inertial(1.0)}", "link chest.inertial", "one <inertial>", "2"),
 ]  # fmt: skip
 
 

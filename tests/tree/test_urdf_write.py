@@ -4,6 +4,7 @@ import math
 from io import BytesIO
 
 import casadi
+import mujoco
 import numpy as np
 import pinocchio
 import pytest
@@ -51,11 +52,17 @@ def robot_links(draw, name):
     """A link as a robot has it: solids of one density, or an inertia of its own, or looks, or nothing."""
     if draw(st.booleans()):
         density = draw(densities)
-        bodies = draw(st.lists(st.tuples(shapes, placements), min_size=1, max_size=2))
+        bodies = draw(st.lists(st.tuples(shapes, placements), min_size=1, max_size=4))
         return Link(name, solids=tuple(Solid(shape, place, density) for shape, place in bodies))
     if draw(st.booleans()):
         return Link(name, own_inertia=draw(inertias))
     return Link(name, looks=draw(looks))
+
+
+@st.composite
+def heavy_links(draw, name):
+    """A link of a robot for a simulator: solids, or an inertia of its own."""
+    return draw(robot_links(name).filter(lambda link: link.inertia.mass > 0.0))
 
 
 @st.composite
@@ -184,6 +191,67 @@ def assert_pinocchio_has(model, joint: Joint, carrier_from_child: Placement):
 def test_yourdfpy_finds_nothing_to_complain_about(tree):
     urdf = yourdfpy.URDF.load(BytesIO(urdf_text(tree).encode()), build_scene_graph=False, load_meshes=False)
     assert urdf.validate(), urdf.errors
+
+
+def floating_in_mujoco(tree: Tree) -> mujoco.MjSpec:
+    """MuJoCo's description of a written tree, with every link a body of its own and a root that floats."""
+    spec = mujoco.MjSpec.from_string(urdf_text(tree))
+    spec.compiler.fusestatic = False
+    spec.body(tree.root).add_freejoint()
+    return spec
+
+
+def assert_mujoco_has(model: mujoco.MjModel, tree: Tree, tolerance: float):
+    """Places, masses, principal moments, axes and limits, within a tolerance [m, kg, kg m^2, rad, 1]."""
+    for link in tree.links:
+        body = model.body(link.name)
+        assert body.mass[0] == pytest.approx(link.inertia.mass, rel=tolerance)
+        if link.inertia.mass == 0.0:
+            continue
+        np.testing.assert_allclose(body.ipos, link.inertia.center, atol=tolerance)
+        turn = np.zeros(9)
+        mujoco.mju_quat2Mat(turn, body.iquat)
+        axes = turn.reshape(3, 3)
+        tensor = axes @ np.diag(body.inertia) @ axes.T
+        scale = max(np.trace(np.array(link.inertia.about_center)), 1e-3)
+        np.testing.assert_allclose(tensor, link.inertia.about_center, atol=tolerance * scale)
+    for joint in tree.joints:
+        body = model.body(joint.child)
+        turn = np.zeros(9)
+        mujoco.mju_quat2Mat(turn, body.quat)
+        np.testing.assert_allclose(turn.reshape(3, 3), joint.parent_from_child.rotation, atol=tolerance)
+        np.testing.assert_allclose(body.pos, joint.parent_from_child.translation, atol=tolerance)
+        if joint.kind is JointKind.FIXED:
+            assert body.jntnum[0] == 0
+            continue
+        found = model.joint(joint.name)
+        slides = joint.kind is JointKind.PRISMATIC
+        assert found.type[0] == (mujoco.mjtJoint.mjJNT_SLIDE if slides else mujoco.mjtJoint.mjJNT_HINGE)
+        np.testing.assert_allclose(found.axis, joint.axis, atol=tolerance)
+        if joint.kind is not JointKind.CONTINUOUS:
+            np.testing.assert_allclose(found.range, [joint.lower, joint.upper], atol=tolerance)
+
+
+limited = trees(heavy_links).filter(
+    lambda tree: all(
+        joint.kind is JointKind.FIXED or joint.upper - joint.lower > 1e-3 for joint in tree.joints
+    )
+)
+
+
+@settings(max_examples=40, deadline=None)
+@given(limited)
+def test_mujoco_finds_the_same_bodies_and_joints(tree):
+    assert_mujoco_has(floating_in_mujoco(tree).compile(), tree, 1e-9)
+
+
+@settings(max_examples=20, deadline=None)
+@given(limited)
+def test_mujocos_own_converter_gives_the_same_robot_to_six_digits(tree):
+    """So MJCF needs no writer of ours: MuJoCo prints what it read, with six significant digits."""
+    spec = floating_in_mujoco(tree)
+    spec.compile()
+    assert_mujoco_has(mujoco.MjModel.from_xml_string(spec.to_xml()), tree, 2e-5)
 
 
 def pendulum(**changes) -> Tree:

@@ -1,0 +1,63 @@
+"""`check` says of every link what it is made of and how it grows."""
+
+from __future__ import annotations
+
+from io import StringIO
+
+import pytest
+from rich.console import Console
+
+from evodesign.cli.model_table import model_json, model_tables
+from evodesign.problem.build import Problem, build_problem
+from evodesign.records import ProblemSource
+from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
+
+
+@pytest.fixture(scope="module")
+def small() -> Problem:
+    """A robot with composite arms, legs with meshes, and a claw without a shape."""
+    return build_problem(ProblemSource(path=PROBLEM, text=TEXTS[PROBLEM], files=TEXTS))
+
+
+def test_every_link_has_its_kind_solids_and_mass(small: Problem) -> None:
+    links = {link["link"]: link for link in model_json(small)["links"]}
+    assert list(links) == [link.name for link in small.scene.robot.tree.links]
+    kinds = {name: link["kind"] for name, link in links.items()}
+    assert kinds == {
+        "root_link": "box",
+        "claw": "inertia of the file",
+        **{f"{side}_arm": "composite" for side in "lr"},
+        **{f"{side}_leg": "box" for side in "lr"},
+        **{f"{side}_{frame}": "frame" for side in "lr" for frame in ("sole", "palm")},
+    }
+    arm = links["l_arm"]
+    assert arm["solids"] == ["cylinder 0.04, 0.4", "sphere 0.05"]
+    assert arm["shape"] == "cylinder 0.04, 0.4 + sphere 0.05"
+    assert arm["longer_solids"] == [0]
+    assert arm["axis"] == pytest.approx([0.0, 0.0, -1.0])
+    assert (arm["dimension_m"], arm["about_centre"]) == (0.4, False)
+    assert arm["mass_kg"] == pytest.approx(2.0)
+    assert (links["claw"]["axis"], links["claw"]["density_kg_per_m3"]) == (None, None)
+
+
+def test_a_density_parameter_does_not_grow(small: Problem) -> None:
+    length, density = model_json(small)["parameters"]
+    assert (length["unit"], density["unit"]) == ("1", "kg/m^3")
+    assert all(link["axis"] is not None for link in length["links"])
+    assert all(link["axis"] is None for link in density["links"])
+
+
+@pytest.mark.parametrize("width", [80, 110])
+def test_tables_fit_the_terminal_and_cut_nothing_off(small: Problem, width: int) -> None:
+    out = StringIO()
+    for table in model_tables(small):
+        Console(file=out, width=width).print(table)
+    text = out.getvalue()
+    assert max(map(len, text.splitlines())) <= width
+    assert "…" not in text
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in text.splitlines() if "│" in line]
+    at = next(i for i, row in enumerate(rows) if row[0] == "l_arm")
+    assert rows[at][1:3] == ["cylinder 0.04, 0.4", "-z"]
+    assert rows[at + 1] == ["", "sphere 0.05", "-", "", ""]
+    assert ["root_link", "box 0.2, 0.3, 0.4", "+-z"] in [row[:3] for row in rows]
+    assert "without mass: l_sole, r_sole, l_palm, r_palm" in text
