@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import platform
 import subprocess
 from datetime import UTC, datetime
@@ -11,11 +12,14 @@ from pathlib import Path
 
 import msgspec
 
-from evodesign.problem.build import Problem
-from evodesign.problem.evaluate import AssessmentFactory
+from evodesign.cli.output import show_notes
+from evodesign.posture.cache import user_cache
+from evodesign.posture.human_value import HumanValue
+from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.evaluate import AssessmentFactory, prepared
 from evodesign.records import FORMAT_VERSION, RunHeader, SearchSettings
 
-__all__ = ["header_of", "problem_factory", "renewed"]
+__all__ = ["header_of", "problem_factory", "renewed", "values_of"]
 
 PACKAGES = ("evodesign", "casadi", "pin", "numpy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
@@ -44,7 +48,17 @@ def renewed(header: RunHeader) -> RunHeader:
 def problem_factory(header: RunHeader) -> AssessmentFactory:
     """The evaluation of a header's problem, as a worker builds it."""
     digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
-    return AssessmentFactory(digest, header.problem)
+    return AssessmentFactory(digest, header.problem, values_of(build_problem(header.problem)))
+
+
+def values_of(problem: Problem) -> tuple[HumanValue, ...]:
+    """The person's part of a problem, from the user's cache or worked out while the user is told."""
+    try:
+        cache = user_cache("people", os.environ)
+    except OSError as error:
+        show_notes([f"nothing can be kept for the next time: {error}"])
+        cache = None
+    return prepared(problem, cache, lambda sentence: show_notes([sentence]))
 
 
 def _versions() -> dict[str, str]:

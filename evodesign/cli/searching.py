@@ -45,9 +45,10 @@ def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, js
     budget = table.evaluations if wishes.evaluations is None else wishes.evaluations
     header = header_of(problem, settings, budget)
     directory = Path("runs") / f"{problem.name}-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
+    factory = problem_factory(header)
     _stop_on_terminate()
     with make_pool(pool, jobs) as workers, observer() as watching:
-        done = evolve.start(directory, header, problem_factory(header), workers, watching)
+        done = evolve.start(directory, header, factory, workers, watching)
     show_run(done, json)
 
 

@@ -1,9 +1,9 @@
 """Bytes kept between runs, found again by a digest of everything that they were made from.
 
 Threat model: what is kept here may be executed, so nothing is given back that a user other than this one
-(and root) could have written or put in its place: directories and files must be owned by the user and closed
-to the writing of others, all the way up. Root, and programs that the user runs, are trusted; a damaged file is
-not, and is treated as missing.
+(and root) could have written or put in its place: directories and files must be the user's own and closed to
+the writing of others, all the way up. Root and the user's own programs are trusted, but not to have finished:
+a damaged file is treated as missing.
 
 A file's name is `<key>.<digest of its content>`: name and content arrive together by one atomic replacement,
 and whoever reads them can tell whether they still belong together.
@@ -70,7 +70,7 @@ class Cache:
         descriptor, name = tempfile.mkstemp(prefix=".", dir=self.directory)  # rights 0600
         unfinished = Path(name)
         try:
-            with open(descriptor, "wb") as file:
+            with os.fdopen(descriptor, "wb") as file:
                 file.write(content)
             unfinished.replace(path)
         except BaseException:
@@ -115,7 +115,7 @@ def user_cache(subject: str, environment: Mapping[str, str]) -> Cache:
     for root in _roots(environment):
         try:
             return open_cache(root / subject)
-        except OSError as error:
+        except (OSError, RuntimeError) as error:  # pathlib's word for a loop of links
             refused.append(str(error))
     raise OSError("no directory to keep files in: " + "; ".join(refused))
 
@@ -161,7 +161,7 @@ def _is_own(state: os.stat_result) -> bool:
 def _read_own(path: Path) -> bytes:
     """Content of a regular file that this user alone could have written."""
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC  # neither links nor pipes
-    with open(os.open(path, flags), "rb") as file:
+    with os.fdopen(os.open(path, flags), "rb") as file:
         state = os.fstat(file.fileno())
         if not stat.S_ISREG(state.st_mode) or not _is_own(state):
             raise PermissionError(f"{path} is not a file that this user alone can write")

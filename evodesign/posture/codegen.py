@@ -12,7 +12,6 @@ written or put in place is never loaded, but built again. The compiler that $CC 
 from __future__ import annotations
 
 import os
-import shlex
 import shutil
 import signal
 import subprocess
@@ -26,7 +25,15 @@ import casadi as ca
 
 from evodesign.posture.cache import Cache, digest_of, user_cache
 
-__all__ = ["CompiledFunctions", "Compiler", "Library", "NotCompiled", "compiled_functions", "find_compiler", "library"]
+__all__ = [
+    "CompiledFunctions",
+    "Compiler",
+    "Library",
+    "NotCompiled",
+    "compiled_functions",
+    "find_compiler",
+    "library",
+]
 
 Expression = Any
 
@@ -39,6 +46,9 @@ FLAGS = ("-O1", "-shared", "-fPIC", "-ffp-contract=off")
 
 COMPILING_LIMIT = 300.0
 """Wall time [s] after which a compiler is stopped; the largest program takes about 12."""
+
+VERSION_LIMIT = 10.0
+"""Wall time [s] in which a compiler must say its version."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,18 +105,18 @@ def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | Not
     try:
         return CompiledFunctions(ca.external("nlp", str(found.path)), found)
     except RuntimeError as error:  # such as a directory mounted without the right to execute
-        return NotCompiled(f"the compiled functions could not be loaded: {_last_line(str(error))}")
+        return NotCompiled(f"the compiled functions could not be loaded: {_gist(str(error))}")
 
 
 def find_compiler(environment: Mapping[str, str]) -> Compiler | NotCompiled:
     """The C compiler that $CC or PATH names."""
     named = environment.get("CC", "").strip()
-    wanted = [shlex.split(named)] if named else [[name] for name in COMPILERS]
+    wanted = [named.split()] if named else [[name] for name in COMPILERS]
     for program, *arguments in wanted:
         path = shutil.which(program, path=environment.get("PATH", ""))
         if path is None:
             continue
-        output = _run([path, *arguments, "--version"], 10.0)
+        output = _run([path, *arguments, "--version"], VERSION_LIMIT, environment)
         if isinstance(output, NotCompiled):
             return output
         return Compiler((path, *arguments), output)
@@ -133,7 +143,7 @@ def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> 
             return Library(path, fresh=False)
         if waited:  # trying again would take as long, and fail as surely, in one process after another
             return NotCompiled("another process tried to compile the same functions and failed")
-        content = _compiled(_c_text(nlp), compiler)
+        content = _compiled(_c_text(nlp), compiler, cache.directory)
         return content if isinstance(content, NotCompiled) else Library(cache.store(key, content), fresh=True)
 
 
@@ -141,7 +151,7 @@ def _key(nlp: Mapping[str, Expression], compiler: Compiler) -> str:
     expressions = ca.Function("nlp", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]]).serialize()
     machine = " ".join(os.uname()[::4])  # system and processor
     words = [RECIPE, ca.__version__, machine, *FLAGS, *compiler.command, compiler.version, expressions]
-    return digest_of(*(word.encode() for word in words))
+    return digest_of(*(word.encode(errors="surrogateescape") for word in words))
 
 
 def _c_text(nlp: Mapping[str, Expression]) -> str:
@@ -154,21 +164,28 @@ def _c_text(nlp: Mapping[str, Expression]) -> str:
     return str(generator.dump())
 
 
-def _compiled(text: str, compiler: Compiler) -> bytes | NotCompiled:
-    with tempfile.TemporaryDirectory(prefix="evodesign-") as name:  # rights 0700
+def _compiled(text: str, compiler: Compiler, directory: Path) -> bytes | NotCompiled:
+    """The library of a C text; every file on the way to it lies in the user's own directory."""
+    with tempfile.TemporaryDirectory(prefix=".", dir=directory) as name:
         source, target = Path(name) / "functions.c", Path(name) / "functions.so"
         source.write_text(text, encoding="ascii")
-        output = _run([*compiler.command, *FLAGS, str(source), "-o", str(target), "-lm"], COMPILING_LIMIT)
-        if isinstance(output, NotCompiled):
-            return output
-        return target.read_bytes()
+        command = [*compiler.command, *FLAGS, str(source), "-o", str(target), "-lm"]
+        output = _run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name})
+        return output if isinstance(output, NotCompiled) else target.read_bytes()
 
 
-def _run(command: Sequence[str], limit: float) -> str | NotCompiled:
+def _run(command: Sequence[str], limit: float, environment: Mapping[str, str]) -> str | NotCompiled:
     """What a compiler writes; it is stopped, with the processes that it started, after a limit [s]."""
     try:
-        process = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, process_group=0
+        process = subprocess.Popen(  # noqa: S603
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            env={**environment, "LC_ALL": "C"},  # a version reads the same in every language
+            process_group=0,
         )
     except OSError as error:
         return NotCompiled(f"the compiler could not be started: {error}")
@@ -181,10 +198,11 @@ def _run(command: Sequence[str], limit: float) -> str | NotCompiled:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
     if process.returncode != 0:
-        return NotCompiled(f"{command[0]} failed ({process.returncode}): {_last_line(output)}")
+        return NotCompiled(f"{command[0]} failed ({process.returncode}): {_gist(output)}")
     return output
 
 
-def _last_line(text: str) -> str:
-    lines = text.strip().splitlines()
-    return lines[-1] if lines else "it said nothing"
+def _gist(text: str) -> str:
+    """The line of a message that says what went wrong: the first about an error, or else the last."""
+    lines = text.strip().splitlines() or ["it said nothing"]
+    return next((line for line in lines if "error:" in line.lower()), lines[-1]).strip()

@@ -1,0 +1,144 @@
+"""The person's part of a posture, which does not depend on the robot.
+
+With point grasps and a symmetric scene the load's balance leaves one number between robot and person, the
+horizontal push X of the robot on the load. So the person's least cost at a height is a function V(X) that is
+found once, and robots are then solved alone:
+
+    min over both  =  min over robot and X of  w_r |tau_r|^2 + comfort_r + V(X)
+
+V is the lower envelope of many starts at Chebyshev nodes of [-push, push], as a polynomial through them; its
+error is measured half-way between the nodes.
+
+Source: DESIGN 3; Chebyshev interpolation: Trefethen, Approximation Theory and Approximation Practice, ch. 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.constraints import equal
+from evodesign.posture.form import Form
+from evodesign.posture.load import load_constraints, push_of
+from evodesign.posture.partner import free_hands
+from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.records import Status
+from evodesign.statics.scene import HUMAN, ROBOT, Scene
+
+__all__ = ["TERMS", "HumanProblem", "HumanValue", "chebyshev_sum"]
+
+Array = Any
+
+DEGREE = 8
+TERMS = DEGREE + 1
+SHARES = (0.1, 0.5, 1.0)
+RANDOM_STARTS = 9
+SPREAD = 0.3  # [rad], of random starts about the shares
+PUSH_UNIT = 10.0  # [N] per unit of the row that fixes the push
+LARGEST_ERROR = 0.02
+"""Largest error of V between nodes that is accepted, in the cost's unit (100 N^2 m^2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class HumanValue:
+    """The person's least cost V(X) at one height.
+
+    Args:
+        height: of the load's centre [m].
+        push: largest |X| [N].
+        coefficients: of V in Chebyshev polynomials of X / push.
+        starts: the person's optimum at each node, as starting values, with its X [N].
+        error: largest difference from the envelope half-way between nodes, in the cost's unit.
+    """
+
+    height: float
+    push: float
+    coefficients: tuple[float, ...]
+    starts: tuple[tuple[float, Mapping[str, Array]], ...]
+    error: float
+
+    def cost(self, push: Any) -> Any:
+        """V at a push X [N], a number or an expression."""
+        return chebyshev_sum(self.coefficients, push / self.push)
+
+    def nearest(self, push: float) -> Mapping[str, Array]:
+        """Starting values from the node nearest to a push [N]."""
+        return min(self.starts, key=lambda start: abs(start[0] - push))[1]
+
+
+def chebyshev_sum(coefficients: Sequence[Any], x: Any) -> Any:
+    """The sum of c_k T_k(x) by Clenshaw's recurrence, over numbers or expressions."""
+    later: Any = 0.0
+    latest: Any = 0.0
+    for coefficient in reversed(coefficients[1:]):
+        later, latest = latest, 2.0 * x * latest - later + coefficient
+    return x * latest - later + coefficients[0]
+
+
+class HumanProblem:
+    """The person's posture program, for any height and push."""
+
+    def __init__(self, form: Form, scene: Scene, weight: float, options: IpoptOptions) -> None:
+        self._push = scene.stance.push
+        self._solver = Solver(_program(form, scene, weight), options)
+
+    def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
+        """The person's posture at a height [m] under a push [N], from one start."""
+        return self._solver.solve([height, push], start)
+
+    def value(self, height: float) -> HumanValue | None:
+        """V at a height [m]; None when the person cannot hold the load there or V is too rough to fit."""
+        nodes = self._push * np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
+        between = (nodes[1:] + nodes[:-1]) / 2.0
+        best: dict[float, RawSolution] = {}
+        for push in (*nodes.tolist(), *between.tolist()):
+            solution = self._best(height, push)
+            if solution is None:
+                return None
+            best[push] = solution
+        costs = {push: solution.cost for push, solution in best.items()}
+        fit = Chebyshev.fit(nodes, [costs[float(x)] for x in nodes], DEGREE, domain=[-self._push, self._push])
+        error = max(abs(float(fit(x)) - costs[float(x)]) for x in between)
+        if error > LARGEST_ERROR:
+            return None
+        starts = tuple((push, dict(best[push].values)) for push in sorted(best))
+        return HumanValue(height, self._push, tuple(fit.coef.tolist()), starts, error)
+
+    def _best(self, height: float, push: float) -> RawSolution | None:
+        """The best of many starts, the same ones every time."""
+        solutions = [self.solve(height, push, start) for start in self._starts()]
+        solved = [solution for solution in solutions if solution.status is Status.SOLVED]
+        return min(solved, key=lambda solution: solution.cost, default=None)
+
+    def _starts(self) -> Sequence[dict[str, Array]]:
+        rng = np.random.default_rng(0)
+        block = next(v for v in self._solver.program.variables if v.name == f"{HUMAN}.joints")
+        middle = (block.lower + block.upper) / 2.0
+        noise = [np.zeros(len(middle))] * len(SHARES)
+        noise += [SPREAD * rng.standard_normal(len(middle)) for _ in range(RANDOM_STARTS)]
+        return [
+            {block.name: np.clip(SHARES[i % len(SHARES)] * middle + n, block.lower, block.upper)}
+            for i, n in enumerate(noise)
+        ]
+
+
+def _program(form: Form, scene: Scene, weight: float) -> Program:
+    height, push = ca.SX.sym("height"), ca.SX.sym("push")
+    human = agent_block(form, form.agent.tree, scene, height)
+    robot = free_hands(form, scene)
+    hands = {ROBOT: robot.wrenches, HUMAN: human.hand_wrenches}
+    load = load_constraints(scene, hands, symmetric=form.mirror is not None)
+    pushed = equal("load.given_push", (push_of(scene.robot, robot.wrenches) - push) / PUSH_UNIT)
+    return Program(
+        name="human",
+        variables=(*human.variables, *robot.variables),
+        constraints=(*human.constraints, *load, pushed),
+        cost=weight * human.effort / TORQUE_UNIT**2 + human.comfort,
+        parameters=ca.vertcat(height, push),
+    )

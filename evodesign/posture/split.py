@@ -1,0 +1,113 @@
+"""Robot and person solved one after the other, joined by the push between them.
+
+Where `HumanValue` knows the person's least cost V(X) at a height, the robot alone is solved against it,
+
+    minimise  w_r |tau_r|^2 + comfort_r + V(X)
+
+and then the person at the push X that was found. The programs are half as large again, local minima are a
+third as many, and the person's many starts are paid for once.
+
+Source: DESIGN 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from evodesign.design.space import DesignSpace
+from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.candidate import Candidate, checked
+from evodesign.posture.check import Checker
+from evodesign.posture.form import Form
+from evodesign.posture.human_value import TERMS, HumanProblem, HumanValue, chebyshev_sum
+from evodesign.posture.load import load_constraints, push_of
+from evodesign.posture.partner import free_hands
+from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.posture.start import STARTS, joint_starts
+from evodesign.records import Status, worst_status
+from evodesign.statics.scene import HUMAN, ROBOT, Scene
+
+__all__ = ["SplitPostures"]
+
+
+class SplitPostures:
+    """The robot's program against the person's value function, for the heights that have one."""
+
+    def __init__(
+        self,
+        forms: tuple[Form, Form],
+        scene: Scene,
+        space: DesignSpace,
+        weights: tuple[float, float],
+        options: IpoptOptions,
+        values: Sequence[HumanValue],
+    ) -> None:
+        self._forms = forms
+        self._scene = scene
+        self._values = {value.height: value for value in values}
+        self._robot = Solver(_program(forms[0], scene, space, weights[0]), options)
+        self._human = HumanProblem(forms[1], scene, weights[1], options)
+        self._starts = [joint_starts(self._robot, {ROBOT: shares[ROBOT]}) for shares in STARTS]
+
+    def tries(self, design: Sequence[float], height: float, checker: Checker) -> list[Candidate]:
+        """The result of every start, in the order of the starts."""
+        return [self._try(design, height, start, checker) for start in self._starts]
+
+    def _try(
+        self, design: Sequence[float], height: float, start: dict[str, Any], checker: Checker
+    ) -> Candidate:
+        value = self._values[height]
+        robot = self._robot.solve([*design, height, *value.coefficients], start)
+        if robot.status is not Status.SOLVED:
+            return Candidate(checked(robot, {}), {}, {})
+        push = self._push(robot)
+        human = self._human.solve(height, push, value.nearest(push))
+        both = _joined(robot, human, float(value.cost(push)))
+        if human.status is not Status.SOLVED:
+            return Candidate(checked(both, {}), {}, {})
+        solutions = ((self._forms[0], robot), (self._forms[1], human))
+        postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form, raw in solutions}
+        residuals = checker.residuals(postures, height)
+        return Candidate(checked(both, residuals), postures, residuals)
+
+    def _push(self, robot: RawSolution) -> float:
+        posture = self._forms[0].expand(robot.of(ROBOT))
+        push = float(push_of(self._scene.robot, {s: ca.DM(w) for s, w in posture.hand_wrenches.items()}))
+        return float(np.clip(push, -self._scene.stance.push, self._scene.stance.push))
+
+
+def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolution:
+    """Both solves as one: V(X) in the robot's cost gives way to what the person's solve found."""
+    reason = robot.reason if human.status is Status.SOLVED else f"the person: {human.reason}"
+    return replace(
+        robot,
+        values={**robot.values, **human.values},
+        status=worst_status([robot.status, human.status]),
+        reason=reason,
+        iterations=robot.iterations + human.iterations,
+        seconds=robot.seconds + human.seconds,
+        cost=robot.cost - expected + human.cost,
+    )
+
+
+def _program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
+    design = ca.SX.sym("design", len(space.parameters))
+    height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", TERMS)
+    tree = space.resized(scene.robot.tree, ca.vertsplit(design))
+    robot = agent_block(form, tree, scene, height)
+    human = free_hands(form, scene)
+    hands = {ROBOT: robot.hand_wrenches, HUMAN: human.wrenches}
+    push = push_of(scene.robot, robot.hand_wrenches) / scene.stance.push
+    value = chebyshev_sum(ca.vertsplit(coefficients), push)
+    return Program(
+        name="robot",
+        variables=(*robot.variables, *human.variables),
+        constraints=(*robot.constraints, *load_constraints(scene, hands, symmetric=True)),
+        cost=weight * robot.effort / TORQUE_UNIT**2 + robot.comfort + value,
+        parameters=ca.vertcat(design, height, coefficients),
+    )
