@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from evodesign.cli.design_tables import assessment_tables
-from evodesign.cli.header import values_of
 from evodesign.cli.model_table import model_json, model_tables
 from evodesign.cli.output import console, print_json, show_notes
+from evodesign.cli.ready import evaluator_of
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.answer import answer
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source, read_text
 
@@ -25,7 +24,7 @@ def evaluate_design(problem: Path, design: Path | None, name: str | None, json: 
     """Solve one design and print everything about it."""
     built = build_problem(read_source(problem))
     chosen, values = _chosen(built, design, name)
-    evaluator = Evaluator(built, values_of(built))
+    evaluator = evaluator_of(built)
     result = evaluator.solve(values)
     assessment = evaluator.assessment(values, result)
     if json:

@@ -1,9 +1,7 @@
-"""The header of a run, and the evaluation that a header describes."""
+"""The header of a run."""
 
 from __future__ import annotations
 
-import hashlib
-import os
 import platform
 import subprocess
 from datetime import UTC, datetime
@@ -12,14 +10,10 @@ from pathlib import Path
 
 import msgspec
 
-from evodesign.cli.output import show_notes
-from evodesign.posture.cache import user_cache
-from evodesign.posture.human_value import HumanValue
-from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import AssessmentFactory, prepared
+from evodesign.problem.build import Problem
 from evodesign.records import FORMAT_VERSION, RunHeader, SearchSettings
 
-__all__ = ["header_of", "problem_factory", "renewed", "values_of"]
+__all__ = ["header_of", "renewed"]
 
 PACKAGES = ("evodesign", "casadi", "pin", "numpy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
@@ -43,22 +37,6 @@ def header_of(problem: Problem, settings: SearchSettings, budget: int) -> RunHea
 def renewed(header: RunHeader) -> RunHeader:
     """The header of a later session of the same run."""
     return msgspec.structs.replace(header, versions=_versions(), git=_git_state(), started=_now())
-
-
-def problem_factory(header: RunHeader) -> AssessmentFactory:
-    """The evaluation of a header's problem, as a worker builds it."""
-    digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
-    return AssessmentFactory(digest, header.problem, values_of(build_problem(header.problem)))
-
-
-def values_of(problem: Problem) -> tuple[HumanValue, ...]:
-    """The person's part of a problem, from the user's cache or worked out while the user is told."""
-    try:
-        cache = user_cache("people", os.environ)
-    except OSError as error:
-        show_notes([f"nothing can be kept for the next time: {error}"])
-        cache = None
-    return prepared(problem, cache, lambda sentence: show_notes([sentence]))
 
 
 def _versions() -> dict[str, str]:

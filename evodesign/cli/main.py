@@ -30,6 +30,8 @@ def main() -> None:
         app()
     except Interrupted as stop:
         _leave(f"{stop}", STOPPED)
+    except KeyboardInterrupt:  # a search turns it into Interrupted as soon as there is a run
+        _leave("stopped", STOPPED)
     except EvodesignError as error:
         _leave(f"error: {error}", BAD_INPUT)
 

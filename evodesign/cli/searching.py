@@ -11,13 +11,16 @@ from typing import NoReturn
 
 from evodesign import evolve
 from evodesign.cli.fronts import show_run
-from evodesign.cli.header import header_of, problem_factory, renewed
+from evodesign.cli.header import header_of, renewed
 from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
+from evodesign.cli.ready import problem_factory
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
+from evodesign.runlog.directory import refuse_run
+from evodesign.search.registry import make_search
 
 __all__ = ["Wishes", "go_on", "start"]
 
@@ -45,10 +48,13 @@ def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, js
     budget = table.evaluations if wishes.evaluations is None else wishes.evaluations
     header = header_of(problem, settings, budget)
     directory = Path("runs") / f"{problem.name}-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
-    factory = problem_factory(header)
+    refuse_run(directory)  # before anything takes time; the search's settings too
+    make_search(settings)
     _stop_on_terminate()
-    with make_pool(pool, jobs) as workers, observer() as watching:
-        done = evolve.start(directory, header, factory, workers, watching)
+    with make_pool(pool, jobs) as workers:
+        factory = problem_factory(header)
+        with observer() as watching:
+            done = evolve.start(directory, header, factory, workers, watching)
     show_run(done, json)
 
 

@@ -79,7 +79,10 @@ class PostureProblem:
         if symmetry is not Symmetry.OFF:
             space.check_mirror(scene.robot.tree)
             self._forms = symmetric_forms(scene)
-            self._values = {value.height: value for value in human_values}
+            self._known = frozenset(value.height for value in human_values)
+        if human_values:
+            both = (weights.robot, weights.human)
+            self._split = SplitPostures(self._forms, scene, space, both, options, human_values)
 
     def solve(self, values: Sequence[float], height: float, checker: Checker) -> HeightSolution:
         """The best checked posture of a design at one height.
@@ -93,7 +96,7 @@ class PostureProblem:
         if self._symmetry is Symmetry.OFF:
             return best_of(height, self._full.tries(parameters, checker))
         candidates: list[Candidate] = []
-        if height in self._values:
+        if height in self._known:
             candidates += self._split.tries(values, height, checker)
         if not any(candidate.solved for candidate in candidates):
             candidates += self._half.tries(parameters, checker)
@@ -104,13 +107,6 @@ class PostureProblem:
             best = min(solved, key=lambda c: c.attempt.cost)
             candidates.append(self._full.polish(parameters, best.postures, checker))
         return best_of(height, candidates)
-
-    @cached_property
-    def _split(self) -> SplitPostures:
-        """Robot and person one after the other, for the heights whose person is known."""
-        scene, space, weights, options = self._ingredients
-        both = (weights.robot, weights.human)
-        return SplitPostures(self._forms, scene, space, both, options, tuple(self._values.values()))
 
     @cached_property
     def _half(self) -> _Postures:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
+from evodesign.posture.form import symmetric_forms
 from evodesign.posture.posture import EffortWeights, Symmetry
 from evodesign.posture.program import IpoptOptions
 from evodesign.problem.agents import human_agent, refuse_unknown, robot_agent
@@ -78,6 +79,7 @@ def build_problem(source: ProblemSource) -> Problem:
         stance=_stance(tables, source),
     )
     space = _space(tables, source, scene.robot.tree)
+    _check_symmetry(tables, source, scene, space)
     start: tuple[Genome, ...] = ()
     if tables.search.start is not None:
         name = tables.search.start
@@ -91,11 +93,27 @@ def build_problem(source: ProblemSource) -> Problem:
         heights=_heights(tables, source),
         weights=EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human),
         objectives=_objectives(tables, source),
-        options=IpoptOptions(iterations=tables.solver.iterations, seconds=tables.solver.seconds),
+        options=IpoptOptions(
+            iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
+        ),
         symmetry=tables.solver.symmetry,
         search=tables.search,
         start=start,
     )
+
+
+def _check_symmetry(tables: ProblemFile, source: ProblemSource, scene: Scene, space: DesignSpace) -> None:
+    """Refuse symmetric postures of a scene that is not its own mirror image, naming what differs."""
+    if tables.solver.symmetry is Symmetry.OFF:
+        return
+    try:
+        space.check_mirror(scene.robot.tree)
+        symmetric_forms(scene)
+    except InputError as error:
+        wanted = "'off', or a scene that is its own mirror image"
+        raise InputError(
+            source.path, "solver.symmetry", wanted, f"'{tables.solver.symmetry}' ({error})"
+        ) from error
 
 
 def _payload(tables: ProblemFile, source: ProblemSource) -> Payload:

@@ -158,16 +158,17 @@ class SearchTable(Table, frozen=True):
     """`[search]`: how the design space is searched; `start` names a file of designs to begin with."""
 
     algorithm: Name = "nsga2"
-    population: Annotated[int, Meta(ge=2)] = 48
+    population: Annotated[int, Meta(ge=2, le=100_000)] = 48
     evaluations: Annotated[int, Meta(ge=1)] = 1920
     seed: Annotated[int, Meta(ge=0)] = 1
     start: Name | None = None
 
 
 class SolverTable(Table, frozen=True):
-    """`[solver]`: limits of one inner solve, and whether postures are mirror-symmetric."""
+    """`[solver]`: limits of one inner solve, symmetric postures or not, compiled functions or not."""
 
     symmetry: Symmetry = Symmetry.ON
+    compile: bool = False
 
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0

@@ -42,6 +42,8 @@ def read_text(path: Path, source: str, key: str) -> str:
         InputError: it cannot be read.
     """
     try:
+        if path.exists() and not path.is_file():  # reading a device or a pipe might never end
+            raise InputError(source, key, "a file", f"'{path}', which is none")
         return path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise InputError(source, key, "an existing file", f"no file '{path}'") from error

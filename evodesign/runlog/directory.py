@@ -14,7 +14,7 @@ from pathlib import Path
 
 from evodesign.errors import RunError
 
-__all__ = ["locked", "make_directory", "run_segments", "segment_path", "segments"]
+__all__ = ["locked", "make_directory", "refuse_run", "run_segments", "segment_path", "segments"]
 
 LOCK = "lock"
 SEGMENT = re.compile(r"(\d{3,})\.mcap")
@@ -31,6 +31,19 @@ def segments(directory: Path) -> dict[int, Path]:
         return {}
     found = {int(name[1]): path for path in directory.iterdir() if (name := SEGMENT.fullmatch(path.name))}
     return dict(sorted(found.items()))
+
+
+def refuse_run(directory: Path) -> None:
+    """Refuse a directory that holds a run.
+
+    Raises:
+        RunError: it does.
+    """
+    if segments(directory):
+        raise RunError(
+            f"{directory}: holds a run already; choose another directory with --run, "
+            f"or go on with: evodesign resume {directory}"
+        )
 
 
 def run_segments(directory: Path) -> dict[int, Path]:

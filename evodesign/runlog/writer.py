@@ -30,7 +30,7 @@ from evodesign.runlog.channels import (
     SCHEMA_ENCODING,
     described,
 )
-from evodesign.runlog.directory import make_directory, segment_path, segments
+from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments
 
 __all__ = ["RunWriter"]
 
@@ -50,11 +50,8 @@ class RunWriter:
     """
 
     def __init__(self, directory: Path, header: RunHeader, segment: int = 0) -> None:
-        if segment == 0 and segments(directory):
-            raise RunError(
-                f"{directory}: holds a run already; choose another directory with --run, "
-                f"or go on with: evodesign resume {directory}"
-            )
+        if segment == 0:
+            refuse_run(directory)
         make_directory(directory)
         self.path = segment_path(directory, segment)
         self._spoilt = False

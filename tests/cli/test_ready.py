@@ -1,0 +1,58 @@
+"""Everything that is made ready once only saves time: with and without it the answers are the same."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
+
+
+def evaluate(problem: Path, environment: dict[str, str]) -> tuple[dict, str]:
+    command = [*COMMAND, "evaluate", str(problem), "--json"]
+    done = subprocess.run(
+        command, capture_output=True, text=True, timeout=300, check=True, env={**os.environ, **environment}
+    )
+    return without_seconds(json.loads(done.stdout)), done.stderr
+
+
+def without_seconds(value):
+    if isinstance(value, dict):
+        return {key: without_seconds(item) for key, item in value.items() if key != "seconds"}
+    return [without_seconds(item) for item in value] if isinstance(value, list) else value
+
+
+@pytest.fixture(scope="module")
+def quick(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The default problem at one height."""
+    place = tmp_path_factory.mktemp("quick")
+    text = (repository / "problems" / "icub_lifting.toml").read_text()
+    text = text.replace("heights_m = [0.8, 1.0, 1.2]", "heights_m = [1.0]")
+    text = text.replace("robots/icub_shapes.urdf", str(repository / "problems/robots/icub_shapes.urdf"))
+    text = text.replace('start = "../populations/icub.toml"', "")
+    (place / "problem.toml").write_text(text)
+    return place / "problem.toml"
+
+
+def test_cache_does_not_change_an_answer(quick: Path, tmp_path: Path) -> None:
+    cold, first = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "cache")})
+    warm, second = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "cache")})
+    assert "working out the person's part at 1 m" in first
+    assert second == ""
+    assert cold == warm
+
+
+def test_asymmetric_robot_is_refused_with_what_to_write(quick: Path, tmp_path: Path) -> None:
+    text = quick.read_text().replace('links = ["l_upper_arm", "r_upper_arm"]', 'links = ["l_upper_arm"]', 1)
+    (tmp_path / "lame.toml").write_text(text)
+    done = subprocess.run(
+        [*COMMAND, "check", str(tmp_path / "lame.toml")], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "solver.symmetry: wanted 'off'" in done.stderr
+    assert "'l_upper_arm' without 'r_upper_arm'" in done.stderr
