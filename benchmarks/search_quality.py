@@ -4,7 +4,7 @@ Every algorithm searches the default problem with every seed; hypervolumes are t
 point, the worst of all feasible evaluations of all runs made worse by a tenth of the range. Results go to
 benchmarks/results/search_quality.json and are printed as a Markdown table.
 
-    python benchmarks/search_quality.py [--evaluations 320] [--population 32] [--seeds 3] [--jobs 2]
+    python benchmarks/search_quality.py [--evaluations 480] [--population 48] [--seeds 3] [--jobs 2]
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def main() -> None:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Searches against random sampling.")
-    for name, default in (("evaluations", 320), ("population", 32), ("seeds", 3), ("jobs", 2)):
+    for name, default in (("evaluations", 480), ("population", 48), ("seeds", 3), ("jobs", 2)):
         parser.add_argument(f"--{name}", type=int, default=default)
     return parser.parse_args()
 

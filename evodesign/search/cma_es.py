@@ -1,34 +1,33 @@
-"""CMA-ES, one instance per weight vector, told ranks only (pycma).
+"""CMA-ES, several instances that share a front between them, told ranks only (pycma).
 
-Several objectives are scalarised by the augmented Chebyshev function of the objectives z, normalised so
-that the front of all feasible outcomes told so far fills the unit cube:
+For one objective there is one instance, which ranks its samples by the objective. For several, every
+instance looks for one point of the front. It ranks its samples by the uncrowded hypervolume improvement over
+the incumbents of all others, so that a sample is good where it adds to what the others hold already, and
+needs no weights. An instance's incumbent is the best outcome that it has been told. Objectives are scaled to
+the range of all feasible outcomes told so far, and the reference point lies a tenth of the range beyond the
+worst. Improvements are compared within one instance and generation only, as ranks, feasible first, so no cost
+is ever made up for an infeasible design.
 
-    cost(f) = max_i w_i z_i + rho sum_i z_i        z_i = (f_i - ideal_i) / (nadir_i - ideal_i)
-
-The weight vectors w are a simplex lattice, drawn towards its centre because the ends of a front are of
-little use; there are as many as leave each instance pycma's default population. All instances ask together,
-so that one generation has exactly the settings' population. Costs are compared within one instance and
-generation only, as ranks, feasible first, so no cost is ever made up for an infeasible design.
-
-Generation 0 holds the start genomes and quasi-random points. Each instance begins where CMA-ES would have
-moved from it: at the weighted mean of the points that are best for its weights. An instance that pycma
-declares finished (converged, ill-conditioned, flat) starts again from the next quasi-random point.
+All instances ask together, so that one generation has exactly the settings' population; there are as many as
+leave each pycma's default population, but two at least, since one alone finds one point. Generation 0 holds
+the start genomes and quasi-random points, and the instances begin at those that together conquer most,
+chosen one after another. One that pycma declares finished (converged, ill-conditioned, flat) leaves its
+incumbent behind for the others to reckon with and starts again from the next quasi-random point.
 
 pycma draws from a generator of ours (`randn`), one per instance. With `seed` NaN it does not seed NumPy's
 global state; mirrored samples, which would read that state, are off; nothing else on the paths taken uses it.
 
-Source: Hansen, The CMA evolution strategy: a tutorial, 2016 (Eq. 6, 49 for the weighted mean); Steuer and
-Choo, An interactive weighted Tchebycheff procedure, 1983; Das and Dennis 1998 for the lattice.
+Source: Hansen, The CMA evolution strategy: a tutorial, 2016; Toure, Hansen, Auger and Brockhoff, Uncrowded
+hypervolume improvement: COMO-CMA-ES and the Sofomore framework, 2019. There an incumbent is the outcome of an
+instance's mean, evaluated for the purpose, and instances sample one after another.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from itertools import combinations_with_replacement
 
 import cma
-import moocore
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,14 +36,15 @@ from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.quasi_random import SobolStream, first_generation
 from evodesign.search.ranking import check_outcomes, ranks, usable
+from evodesign.search.uncrowded import UncrowdedGain
 
-__all__ = ["CmaEs", "chebyshev", "default_population", "simplex_weights"]
+__all__ = ["CmaEs", "default_population", "uncrowded_cost"]
 
-AUGMENTATION = 0.05
-"""rho: slope that keeps weakly dominated points from tying with the front."""
+MARGIN = 0.1
+"""Share of the range by which the reference point is worse than the worst outcome, so that the ends count."""
 
-CENTRING = 0.3
-"""Share by which weight vectors are drawn towards equal weights."""
+FEWEST_INSTANCES = 2
+"""With several objectives, as far as the population allows."""
 
 SMALLEST_POPULATION = 3
 """Fewest samples from which pycma can adapt."""
@@ -53,10 +53,11 @@ STEP = 0.15
 """First standard deviation per coordinate of the unit cube: half that of uniform points."""
 
 Array = NDArray[np.float64]
+Cost = Callable[[tuple[float, ...]], float]
 
 
 class CmaEs:
-    """Scalarised CMA-ES by ask and tell, in the unit cube.
+    """CMA-ES by ask and tell, in the unit cube, for one objective or more.
 
     Args:
         settings: dimension, objectives, population, seed and start genomes.
@@ -68,16 +69,16 @@ class CmaEs:
         if settings.population < SMALLEST_POPULATION:
             wanted = f"at least {SMALLEST_POPULATION} for cma-es"
             raise InputError("search", "population", wanted, str(settings.population))
-        count = max(1, settings.population // default_population(settings.dimension))
-        weights = simplex_weights(settings.objectives, count)
-        stream_seed, *seeds = np.random.SeedSequence(settings.seed).spawn(1 + len(weights))
+        count = _instances(settings)
+        stream_seed, *seeds = np.random.SeedSequence(settings.seed).spawn(1 + count)
         self._settings = settings
         self._stream = SobolStream(settings.dimension, stream_seed)
-        self._weights = weights
         self._generators = tuple(np.random.default_rng(seed) for seed in seeds)
-        self._front: Array = np.empty((0, settings.objectives))
-        self._strategies: tuple[cma.CMAEvolutionStrategy, ...] = ()
-        self._samples: tuple[list[Array], ...] = ()
+        self._extent: Array = np.empty((0, settings.objectives))
+        self._incumbents: list[tuple[float, ...] | None] = [None] * count
+        self._left_behind: list[tuple[float, ...]] = []
+        self._strategies: list[cma.CMAEvolutionStrategy] = []
+        self._samples: list[list[Array]] = []
         self._asked = first_generation(settings, self._stream)
 
     def ask(self) -> tuple[Genome, ...]:
@@ -91,42 +92,63 @@ class CmaEs:
             ValueError: outcomes that do not fit the genomes asked.
         """
         check_outcomes(self._asked, outcomes, self._settings.objectives)
-        self._remember(outcomes)
+        self._measure(outcomes)
         if self._strategies:
             self._adapt(outcomes)
         else:
             self._start(outcomes)
-        self._samples = tuple(strategy.ask() for strategy in self._strategies)
+        self._samples = [strategy.ask() for strategy in self._strategies]
         together = np.clip(np.concatenate(self._samples), 0.0, 1.0)
         self._asked = tuple(tuple(row) for row in together.tolist())
 
-    def _remember(self, outcomes: Sequence[Outcome]) -> None:
+    def _measure(self, outcomes: Sequence[Outcome]) -> None:
+        """Widen the range, best and worst value by objective, of the feasible outcomes."""
         feasible = [values for outcome in outcomes if (values := usable(outcome)) is not None]
         if feasible:
-            self._front = moocore.filter_dominated(np.vstack([self._front, feasible]))
+            known = np.vstack([self._extent, feasible])
+            self._extent = np.array([known.min(axis=0), known.max(axis=0)])
 
     def _start(self, outcomes: Sequence[Outcome]) -> None:
-        points = np.array(self._asked)
-        share, rest = divmod(len(points), len(self._weights))
-        strategies = []
-        for index, (weights, generator) in enumerate(zip(self._weights, self._generators, strict=True)):
-            size = share + (index < rest)
-            order = np.argsort(ranks(outcomes, chebyshev(weights, self._front)), kind="stable")
-            strategies.append(_strategy(_weighted_mean(points[order[: size // 2]]), size, generator))
-        self._strategies = tuple(strategies)
+        """Begin every instance at the outcome that adds most to those chosen before."""
+        waiting = list(range(len(outcomes)))
+        share, rest = divmod(len(outcomes), len(self._generators))
+        for index, generator in enumerate(self._generators):
+            order = ranks([outcomes[place] for place in waiting], self._cost(index))
+            chosen = waiting.pop(order.index(0))
+            self._incumbents[index] = usable(outcomes[chosen])
+            self._strategies.append(
+                _strategy(np.array(self._asked[chosen]), share + (index < rest), generator)
+            )
 
     def _adapt(self, outcomes: Sequence[Outcome]) -> None:
         told = 0
-        strategies = []
         for index, (strategy, samples) in enumerate(zip(self._strategies, self._samples, strict=True)):
             own = outcomes[told : told + len(samples)]
             told += len(samples)
-            strategy.tell(samples, ranks(own, chebyshev(self._weights[index], self._front)))
+            cost = self._cost(index)
+            strategy.tell(samples, ranks(own, cost))
+            held = self._incumbents[index]
+            found = [values for values in (held, *map(usable, own)) if values is not None]
+            self._incumbents[index] = min(found, key=cost, default=None)
             if strategy.stop():
-                (mean,) = self._stream.take(1)
-                strategy = _strategy(np.array(mean), len(samples), self._generators[index])
-            strategies.append(strategy)
-        self._strategies = tuple(strategies)
+                self._restart(index)
+
+    def _restart(self, index: int) -> None:
+        held = self._incumbents[index]
+        if held is not None:
+            self._left_behind.append(held)
+        self._incumbents[index] = None
+        (mean,) = self._stream.take(1)
+        size = len(self._samples[index])
+        self._strategies[index] = _strategy(np.array(mean), size, self._generators[index])
+
+    def _cost(self, index: int) -> Cost:
+        """What one instance minimises, given what all others hold."""
+        if self._settings.objectives == 1:
+            return lambda objectives: objectives[0]
+        held = [*self._incumbents[:index], *self._incumbents[index + 1 :], *self._left_behind]
+        others = np.array([values for values in held if values is not None])
+        return uncrowded_cost(others.reshape(-1, self._settings.objectives), self._extent)
 
 
 def default_population(dimension: int) -> int:
@@ -134,51 +156,28 @@ def default_population(dimension: int) -> int:
     return int(4.0 + 3.0 * math.log(dimension))
 
 
-def simplex_weights(objectives: int, count: int) -> tuple[Array, ...]:
-    """At most `count` weight vectors, each positive and of sum one, spread over the objectives.
-
-    The finest lattice of weights i/h that has no more than `count` points, and the centre if it is not a
-    point of the lattice and there is room; the centre alone when not even the corners fit.
-    """
-    centre = np.full(objectives, 1.0 / objectives)
-    if objectives == 1 or count < objectives:
-        return (centre,)
-    divisions = 1
-    while math.comb(divisions + objectives, objectives - 1) <= count:
-        divisions += 1
-    corners = np.eye(objectives)
-    lattice = [
-        np.mean([corners[index] for index in chosen], axis=0)
-        for chosen in combinations_with_replacement(range(objectives), divisions)
-    ]
-    if divisions % objectives != 0 and len(lattice) < count:
-        lattice.append(centre)
-    return tuple((1.0 - CENTRING) * weights + CENTRING * centre for weights in lattice)
-
-
-def chebyshev(weights: Array, front: Array) -> Callable[[tuple[float, ...]], float]:
-    """The augmented Chebyshev cost of objectives, normalised by the ideal and nadir of a front.
+def uncrowded_cost(others: Array, extent: Array) -> Cost:
+    """Minus the uncrowded hypervolume improvement, in units of the extent.
 
     Args:
-        weights: one per objective.
-        front: non-dominated points [points x objectives]; an objective in which all agree keeps its unit,
-            and without points nothing is normalised.
+        others: what the other instances hold [points x objectives].
+        extent: best and worst value of every objective [2 x objectives]; an objective in which both agree
+            keeps its unit, and without any feasible outcome there is nothing to compare [0 x objectives].
     """
-    ideal, nadir = (front.min(axis=0), front.max(axis=0)) if len(front) else (0.0, 1.0)
-    extent = np.where(np.greater(nadir, ideal), np.subtract(nadir, ideal), 1.0)
-
-    def cost(objectives: tuple[float, ...]) -> float:
-        normalised = (np.array(objectives) - ideal) / extent
-        return float(np.max(weights * normalised) + AUGMENTATION * np.sum(normalised))
-
-    return cost
+    if not len(extent):
+        return lambda objectives: 0.0
+    best, worst = extent
+    scale = np.where(worst > best, worst - best, 1.0)
+    gain = UncrowdedGain((others - best) / scale, np.full(len(best), 1.0 + MARGIN))
+    return lambda objectives: -gain((np.array(objectives) - best) / scale)
 
 
-def _weighted_mean(points: Array) -> Array:
-    """Mean of points in order of merit, with the weights ln(mu + 1/2) - ln i of CMA-ES (Eq. 6, 49)."""
-    weights = math.log(len(points) + 0.5) - np.log(np.arange(1, len(points) + 1))
-    mean: Array = np.clip(weights @ points / weights.sum(), 0.0, 1.0)
-    return mean
+def _instances(settings: SearchSettings) -> int:
+    """One for one objective; for several as many as leave each the default population, or at least two."""
+    if settings.objectives == 1:
+        return 1
+    fewest = min(FEWEST_INSTANCES, settings.population // SMALLEST_POPULATION)
+    return max(fewest, settings.population // default_population(settings.dimension))
 
 
 def _strategy(mean: Array, size: int, generator: np.random.Generator) -> cma.CMAEvolutionStrategy:

@@ -2,15 +2,15 @@ import itertools
 import math
 from pathlib import Path
 
+import moocore
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from scipy.optimize import minimize
 
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.cma_es import CENTRING, CmaEs, chebyshev, default_population, simplex_weights
+from evodesign.search.cma_es import MARGIN, CmaEs, default_population, uncrowded_cost
 
 FAILED = Outcome(None, None)
 
@@ -119,28 +119,63 @@ def test_start_genomes_on_the_border_are_used():
     assert min(best_values(search(start=start), corner, 60)) < 1e-3
 
 
-def test_every_instance_finds_the_trade_off_of_its_own_weights():
-    """Between bowls around a and b the trade-offs are the points of the straight line from a to b."""
-    a, b = np.full(4, 0.2), np.full(4, 0.8)
+def two_bowls(x):
+    """Between bowls around (0.2, ...) and (0.8, ...) the trade-offs are the points of the line between."""
+    return (float(np.sum((x - 0.2) ** 2)), float(np.sum((x - 0.8) ** 2)))
+
+
+def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
+    """The four incumbents conquer as much as four points of the line can, found by another optimiser."""
     cma_es = search(objectives=2, dimension=4, population=32)
-    for _ in range(40):
-        points = [np.array(genome) for genome in cma_es.ask()]
-        cma_es.tell(
-            [Outcome((float(np.sum((x - a) ** 2)), float(np.sum((x - b) ** 2))), 0.0) for x in points]
+    for _ in range(60):
+        cma_es.tell([Outcome(two_bowls(np.array(genome)), 0.0) for genome in cma_es.ask()])
+    best, worst = cma_es._extent
+    reference = worst + MARGIN * (worst - best)
+
+    def conquered_by(places):
+        line = sorted(two_bowls(np.full(4, place)) for place in places)
+        heights = [reference[1], *(values[1] for values in line)]
+        return sum(
+            max(reference[0] - left, 0.0) * max(above - below, 0.0)
+            for (left, below), above in zip(line, heights, strict=False)
         )
-    centres = np.array([np.mean(samples, axis=0) for samples in cma_es._samples])
-    places = centres.mean(axis=1)
-    assert len(centres) == 4
-    np.testing.assert_allclose(centres, np.tile(places[:, None], 4), atol=0.02)
-    first_weights = [weights[0] for weights in cma_es._weights]
-    assert list(np.argsort(places)) == list(np.argsort(first_weights)[::-1])
-    assert np.diff(np.sort(places)).min() > 0.05
+
+    most = -minimize(lambda places: -conquered_by(places), [0.3, 0.45, 0.55, 0.7], method="Nelder-Mead").fun
+    found = moocore.hypervolume(np.array(cma_es._incumbents), ref=reference)
+    assert len(cma_es._incumbents) == 4
+    assert 0.995 * most < found < 1.0001 * most
 
 
-def test_instances_share_the_population():
-    cma_es = search(objectives=3, dimension=16, population=50)
-    cma_es.tell([FAILED] * 50)
-    assert [len(samples) for samples in cma_es._samples] == [13, 13, 12, 12]
+def test_instances_begin_where_they_conquer_most_together():
+    """Of outcomes crowded at (1, 1) one is taken, then the ends; a violated one when none is left."""
+    told = [Outcome((1.0 + 0.001 * i, 1.0 + 0.001 * i), 0.0) for i in range(29)]
+    told += [Outcome((0.0, 3.0), 0.0), Outcome((3.0, 0.0), 0.0), Outcome(None, 0.1)]
+    cma_es = search(objectives=2, dimension=4, population=32)
+    cma_es.tell(told)
+    assert cma_es._incumbents[:3] == [(1.0, 1.0), (0.0, 3.0), (3.0, 0.0)]
+    lonely = search(objectives=2, dimension=4, population=32)
+    lonely.tell([*[FAILED] * 30, Outcome((1.0, 2.0), 0.0), Outcome(None, 0.1)])
+    assert lonely._incumbents == [(1.0, 2.0), None, None, None]
+
+
+def test_a_converged_instance_leaves_its_point_to_the_others_and_looks_elsewhere():
+    cma_es = search(objectives=2, dimension=2, population=12)
+    for _ in range(300):
+        cma_es.tell([Outcome(two_bowls(np.array(genome)), 0.0) for genome in cma_es.ask()])
+    held = np.array([*cma_es._left_behind, *(values for values in cma_es._incumbents if values is not None)])
+    assert len(cma_es._left_behind) >= 3
+    assert len(moocore.filter_dominated(held)) == len(held)
+    assert np.diff(np.sort(held[:, 0])).min() > 0.02
+
+
+@pytest.mark.parametrize(
+    ("objectives", "population", "shares"),
+    [(3, 50, [13, 13, 12, 12]), (2, 24, [12, 12]), (3, 13, [7, 6]), (3, 5, [5]), (1, 50, [50])],
+)
+def test_instances_share_the_population(objectives, population, shares):
+    cma_es = search(objectives=objectives, dimension=16, population=population)
+    cma_es.tell([FAILED] * population)
+    assert [len(samples) for samples in cma_es._samples] == shares
 
 
 def test_writes_and_reads_no_files(tmp_path, monkeypatch):
@@ -167,51 +202,15 @@ def test_default_population_is_that_of_the_tutorial(dimension, population):
     assert default_population(dimension) == population
 
 
-@pytest.mark.parametrize(
-    ("objectives", "count", "found"),
-    [
-        *[(1, 9, 1), (2, 1, 1), (2, 2, 2), (2, 4, 4), (2, 7, 7), (3, 2, 1), (3, 3, 3), (3, 4, 4)],
-        *[(3, 6, 6), (3, 9, 7), (3, 10, 10), (4, 4, 4), (4, 5, 5), (4, 12, 11)],
-    ],
-)
-def test_there_are_as_many_weights_as_lattice_and_centre_allow(objectives, count, found):
-    weights = simplex_weights(objectives, count)
-    assert len(weights) == found
-    assert len({tuple(np.round(vector, 9)) for vector in weights}) == found
+def test_the_cost_is_the_gain_in_units_of_the_range():
+    """Extent 4 and 10: others at (0.25, 0.5), reference 1.1; (0.5, 0.2) adds (1.1 - 0.5) (0.5 - 0.2)."""
+    cost = uncrowded_cost(np.array([[2.0, 15.0]]), np.array([[1.0, 10.0], [5.0, 20.0]]))
+    assert cost((3.0, 12.0)) == pytest.approx(-0.18, rel=1e-12)
+    assert cost((4.0, 17.0)) == pytest.approx(0.2, rel=1e-12)
 
 
-@given(st.integers(1, 5), st.integers(1, 40))
-def test_weights_are_positive_sum_to_one_and_favour_no_objective(objectives, count):
-    weights = np.array(simplex_weights(objectives, count))
-    assert 1 <= len(weights) <= count
-    assert (weights > 0.0).all()
-    np.testing.assert_allclose(weights.sum(axis=1), 1.0, rtol=1e-12)
-    np.testing.assert_allclose(weights.mean(axis=0), 1.0 / objectives, rtol=1e-12)
-
-
-def test_weights_are_the_lattice_counted_out_by_hand():
-    lattice = [w for w in itertools.product(range(4), repeat=3) if sum(w) == 3]
-    expected = {tuple(round((1 - CENTRING) * i / 3 + CENTRING / 3, 9) for i in w) for w in lattice}
-    assert {tuple(np.round(w, 9)) for w in simplex_weights(3, 10)} == expected
-
-
-def test_chebyshev_of_an_example_worked_by_hand():
-    """z = (0.25, 0.5): max(0.8 * 0.25, 0.2 * 0.5) + 0.05 * 0.75 = 0.2375."""
-    cost = chebyshev(np.array([0.8, 0.2]), np.array([[1.0, 20.0], [3.0, 15.0], [5.0, 10.0]]))
-    assert cost((2.0, 15.0)) == pytest.approx(0.2375, rel=1e-12)
-
-
-def test_chebyshev_without_a_range_keeps_the_unit():
-    assert chebyshev(np.array([1.0]), np.array([[7.0]]))((9.0,)) == pytest.approx(2.1, rel=1e-12)
-    assert chebyshev(np.array([1.0]), np.empty((0, 1)))((9.0,)) == pytest.approx(9.45, rel=1e-12)
-
-
-points = st.lists(st.tuples(*[st.integers(-8, 8).map(float)] * 3), min_size=1, max_size=6)
-
-
-@given(points, st.tuples(*[st.integers(-8, 8).map(float)] * 3), st.tuples(*[st.integers(0, 3)] * 3))
-def test_a_dominated_point_costs_more(front, better, losses):
-    worse = tuple(value + loss for value, loss in zip(better, losses, strict=True))
-    for weights in simplex_weights(3, 6):
-        cost = chebyshev(weights, np.array(front))
-        assert (cost(worse) > cost(better)) == (worse != better)
+def test_the_cost_without_a_range_keeps_the_unit():
+    """Reference 7 + 1.1 in the first objective, whose values all agree."""
+    cost = uncrowded_cost(np.empty((0, 2)), np.array([[7.0, 0.0], [7.0, 2.0]]))
+    assert cost((7.5, 1.0)) == pytest.approx(-0.6 * 0.6, rel=1e-12)
+    assert uncrowded_cost(np.empty((0, 2)), np.empty((0, 2)))((7.5, 1.0)) == 0.0
