@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -15,11 +17,12 @@ from evodesign.cli.header import header_of, renewed
 from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
 from evodesign.cli.ready import problem_factory
+from evodesign.errors import Interrupted
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
-from evodesign.runlog.directory import refuse_run
+from evodesign.runlog.directory import refuse_run, segments
 from evodesign.search.registry import make_search
 
 __all__ = ["Wishes", "go_on", "start"]
@@ -51,7 +54,7 @@ def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, js
     refuse_run(directory)  # before anything takes time; the search's settings too
     make_search(settings)
     _stop_on_terminate()
-    with make_pool(pool, jobs) as workers:
+    with _resumable(directory), make_pool(pool, jobs) as workers:
         factory = problem_factory(header)
         with observer() as watching:
             done = evolve.start(directory, header, factory, workers, watching)
@@ -61,9 +64,19 @@ def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, js
 def go_on(run: Path, evaluations: int | None, jobs: int, pool: str, json: bool) -> None:
     """Resume a run and print the front."""
     _stop_on_terminate()
-    with make_pool(pool, jobs) as workers, observer() as watching:
+    with _resumable(run), make_pool(pool, jobs) as workers, observer() as watching:
         done = evolve.resume(run, problem_factory, workers, watching, evaluations, renew=renewed)
     show_run(done, json)
+
+
+@contextmanager
+def _resumable(directory: Path) -> Iterator[None]:
+    """Turn a stop into an error that says how to go on, also one before or after the loop itself."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        hint = f"; go on with: evodesign resume {directory}" if segments(directory) else ""
+        raise Interrupted(f"stopped{hint}") from None
 
 
 def _stop_on_terminate() -> None:

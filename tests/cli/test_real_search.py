@@ -17,7 +17,7 @@ from mcap.reader import make_reader
 from evodesign.records import Evaluation
 from evodesign.runlog.run import read_run
 
-POPULATION, BUDGET = 4, 12
+POPULATION, BUDGET = 4, 24
 COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
 
 
@@ -79,7 +79,7 @@ def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     for line in process.stderr:
         if line.startswith("generation 1"):
             break
-    time.sleep(0.3)
+    time.sleep(0.2)
     os.kill(process.pid, stop)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == code
@@ -87,8 +87,9 @@ def test_stopped_search_is_resumed_as_if_nothing_had_happened(
         assert f"evodesign resume {run}" in errors
         assert "Traceback" not in errors
     known = remembered(run)
-    assert 2 * POPULATION <= len(known) <= BUDGET
-    assert known == remembered(whole[0])[: len(known)]
+    assert known[: 2 * POPULATION] == remembered(whole[0])[: 2 * POPULATION], "whole generations are kept"
+    assert set(known) <= set(remembered(whole[0])), "what had arrived is kept, in whatever order it came"
+    assert len(known) < BUDGET, "it was stopped in time"
     finish([*COMMAND, "resume", str(run)])
     assert remembered(run) == remembered(whole[0])
 
@@ -97,7 +98,7 @@ def test_larger_budget_continues_the_same_search(
     whole: tuple[Path, str, str], repository: Path, tmp_path: Path
 ) -> None:
     run = tmp_path / "short"
-    finish([*arguments(repository, run), "--evaluations", "6"])
+    finish([*arguments(repository, run), "--evaluations", "10"])
     finish([*COMMAND, "resume", str(run), "--evaluations", str(BUDGET), "--pool", "serial"])
     assert remembered(run) == remembered(whole[0])
 
