@@ -149,3 +149,10 @@ def test_placements_chain_associatively(a: Placement, b: Placement, c: Placement
     left, right = (a @ b) @ c, a @ (b @ c)
     assert np.allclose(left.translation, right.translation, atol=1e-12)
     assert np.allclose(left.rotation, right.rotation, atol=1e-12)
+
+
+@given(solids)
+def test_placing_a_solid_leaves_its_principal_moments(solid: Solid) -> None:
+    alone = sorted(solid.shape.moments(solid.mass))
+    placed = np.linalg.eigvalsh(np.array(solid.inertia.about_center))
+    assert np.allclose(placed, alone, rtol=1e-9, atol=1e-12 * solid.mass)
