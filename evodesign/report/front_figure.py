@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
-from evodesign.records import Evaluation, Objective, RunHeader
+from evodesign.records import Evaluation, Objective, RunHeader, Sense
 
 __all__ = ["front_html"]
 
@@ -67,8 +67,9 @@ def _spread(objective: Objective, evaluations: Sequence[Evaluation]) -> float:
 def _range(
     objective: Objective, best: Sequence[Evaluation], marked: Sequence[Evaluation] = ()
 ) -> list[float]:
-    """Axis from the 5th to the 95th percentile of the front that holds the marked designs, 5 % wider."""
-    low, high = np.quantile(_values(objective, best), [0.05, 0.95])
+    """An axis from the front's best value to its worst but 5 %, with the marked designs, 5 % wider."""
+    ends = [0.0, 0.95] if objective.sense is Sense.MINIMISE else [0.05, 1.0]
+    low, high = np.quantile(_values(objective, best), ends)
     low, high = min([low, *_values(objective, marked)]), max([high, *_values(objective, marked)])
     margin = 0.05 * (high - low) or 1.0
     return [float(low - margin), float(high + margin)]
