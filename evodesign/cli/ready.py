@@ -25,8 +25,10 @@ __all__ = ["evaluator_of", "problem_factory"]
 def problem_factory(header: RunHeader) -> AssessmentFactory:
     """The evaluation of a header's problem as workers build it, with everything they share made ready."""
     digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
-    factory = AssessmentFactory(digest, header.problem, _values(build_problem(header.problem)))
-    _compile(factory, digest)
+    problem = build_problem(header.problem)
+    factory = AssessmentFactory(digest, header.problem, _values(problem))
+    if problem.options.compiled:
+        _compile(factory)
     return factory
 
 
@@ -39,10 +41,10 @@ def _values(problem: Problem) -> tuple[HumanValue, ...]:
     return prepared(problem, _cache("people"), lambda sentence: show_notes([sentence]))
 
 
-def _compile(factory: AssessmentFactory, digest: str) -> None:
+def _compile(factory: AssessmentFactory) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     cache = _cache("ready")
-    if not build_problem(factory.source).options.compiled or (cache is not None and cache.read(digest)):
+    if cache is not None and cache.read(factory.digest):
         return
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
@@ -51,7 +53,7 @@ def _compile(factory: AssessmentFactory, digest: str) -> None:
     show_notes(["compiling the inner problems"])
     factory()
     if cache is not None:
-        cache.store(digest, b"ready")
+        cache.store(factory.digest, b"ready")
 
 
 def _cache(subject: str) -> Cache | None:

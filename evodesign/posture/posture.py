@@ -61,6 +61,13 @@ class EffortWeights:
 class PostureProblem:
     """One posture program for all designs and heights of a scene.
 
+    Args:
+        scene: agents, load, ground and stance.
+        space: design parameters.
+        weights: of the agents' efforts.
+        options: of the solver.
+        symmetry: which postures are looked for.
+        human_values: the person's part at the heights where it is known; of use for symmetric postures only.
     Raises:
         ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
     """
@@ -80,9 +87,9 @@ class PostureProblem:
             space.check_mirror(scene.robot.tree)
             self._forms = symmetric_forms(scene)
             self._known = frozenset(value.height for value in human_values)
-        if human_values:
-            both = (weights.robot, weights.human)
-            self._split = SplitPostures(self._forms, scene, space, both, options, human_values)
+            if human_values:
+                both = (weights.robot, weights.human)
+                self._split = SplitPostures(self._forms, scene, space, both, options, human_values)
 
     def solve(self, values: Sequence[float], height: float, checker: Checker) -> HeightSolution:
         """The best checked posture of a design at one height.

@@ -23,7 +23,7 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag  # type: ignore[import-untyped]
+from scipy.linalg import block_diag
 
 from evodesign.statics.floating import ROOT, Configuration, FloatingBody, Instant
 from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
