@@ -18,8 +18,11 @@ from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.objectives import OBJECTIVES, DesignResult
 from evodesign.records import (
+    AgentDetail,
+    Assessed,
     Assessment,
     Genome,
+    HeightDetail,
     HeightOutcome,
     ProblemSource,
     ReachOutcome,
@@ -64,10 +67,12 @@ class Evaluator:
         heights = tuple(self._at_height(values, height, reach, checker) for height in self.problem.heights)
         return DesignResult(scene.robot, tree, reach, heights)
 
-    def assess(self, genome: Genome) -> Assessment:
-        """What a genome is worth."""
+    def assess(self, genome: Genome) -> Assessed:
+        """What a genome is worth, with its postures."""
         values = self.problem.space.values(genome)
-        return self.assessment(values, self.solve(values))
+        result = self.solve(values)
+        heights = tuple(_detail(height) for height in result.heights if height.solved)
+        return Assessed(assessment=self.assessment(values, result), heights=heights)
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
@@ -126,6 +131,21 @@ def _outcome(height: HeightSolution) -> HeightOutcome:
     )
 
 
+def _detail(height: HeightSolution) -> HeightDetail:
+    agents = {
+        name: AgentDetail(
+            base_position_m=tuple(posture.base_position.tolist()),
+            base_rpy_rad=tuple(posture.base_angles.tolist()),
+            joints_rad=dict(posture.joints),
+            torques_n_m=dict(posture.torques),
+            hand_wrenches={side: tuple(wrench.tolist()) for side, wrench in posture.hand_wrenches.items()},
+            foot_wrenches={side: tuple(wrench.tolist()) for side, wrench in posture.foot_wrenches.items()},
+        )
+        for name, posture in height.postures.items()
+    }
+    return HeightDetail(height_m=height.height, agents=agents)
+
+
 @dataclass(frozen=True, slots=True)
 class AssessmentFactory:
     """Builds the evaluation of a problem in whichever process it is called.
@@ -140,6 +160,6 @@ class AssessmentFactory:
     source: ProblemSource = field(compare=False)
     human_values: tuple[HumanValue, ...] = field(compare=False)
 
-    def __call__(self) -> Callable[[Genome], Assessment]:
-        """Build the inner problems and return the function from genome to assessment."""
+    def __call__(self) -> Callable[[Genome], Assessed]:
+        """Build the inner problems and return the function from genome to what it is worth."""
         return Evaluator(build_problem(self.source), self.human_values).assess
