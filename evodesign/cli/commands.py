@@ -102,4 +102,23 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
-COMMANDS = (search, resume, front, evaluate, check)
+def baseline(
+    problem: ProblemPath,
+    starts: Annotated[int, typer.Option(min=1, help="How many starts.")] = 50,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Of the starts.", show_default="as in the problem")
+    ] = None,
+    run: Annotated[
+        Path | None, typer.Option(help="Directory of the new run.", show_default="runs/NAME-baseline-TIME")
+    ] = None,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """The paper's way: postures at all heights and the design in one program, from many starts."""
+    from evodesign.cli.baseline import start_baseline
+
+    start_baseline(problem, run, starts, seed, jobs, pool, json)
+
+
+COMMANDS = (search, resume, front, evaluate, check, baseline)

@@ -15,18 +15,27 @@ from evodesign.cli.output import show_notes
 from evodesign.posture.cache import Cache, user_cache
 from evodesign.posture.codegen import NotCompiled, find_compiler
 from evodesign.posture.human_value import HumanValue
+from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator, prepared
 from evodesign.records import RunHeader
+from evodesign.search.base import JOINT_STARTS
 
 __all__ = ["evaluator_of", "problem_factory"]
 
 
-def problem_factory(header: RunHeader) -> AssessmentFactory:
+Evaluations = AssessmentFactory | BaselineFactory
+
+
+def problem_factory(header: RunHeader) -> Evaluations:
     """The evaluation of a header's problem as workers build it, with everything they share made ready."""
     digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
     problem = build_problem(header.problem)
-    factory = AssessmentFactory(digest, header.problem, _values(problem))
+    factory: Evaluations
+    if header.search.algorithm == JOINT_STARTS:
+        factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem)
+    else:
+        factory = AssessmentFactory(digest, header.problem, _values(problem))
     if problem.options.compiled:
         _compile(factory)
     return factory
@@ -41,7 +50,7 @@ def _values(problem: Problem) -> tuple[HumanValue, ...]:
     return prepared(problem, _cache("people"), lambda sentence: show_notes([sentence]))
 
 
-def _compile(factory: AssessmentFactory) -> None:
+def _compile(factory: Evaluations) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     cache = _cache("ready")
     if cache is not None and cache.read(factory.digest):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -27,6 +28,7 @@ def front_json(run: Run, designs: Sequence[Evaluation]) -> dict[str, Any]:
         "run": str(run.directory),
         "objectives": [objective.name for objective in run.header.objectives],
         "evaluations": len(run.evaluations),
+        "statuses": Counter(str(evaluation.assessment.status) for evaluation in run.evaluations),
         "designs": [
             {
                 "id": evaluation.number,

@@ -23,7 +23,6 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import TORQUE_UNIT, agent_block
@@ -150,10 +149,11 @@ class _Postures:
         self, parameters: Sequence[float], postures: Mapping[str, AgentPosture], checker: Checker
     ) -> Candidate:
         """The result of starting from known whole postures."""
+        rows = {v.name: v.symbol.numel() for v in self._solver.program.variables}
         start = {
-            f"{form.agent.name}.{part}": value
+            name: value
             for form in self._forms
-            for part, value in _blocks(postures[form.agent.name], self._solver, form.agent.name).items()
+            for name, value in form.start(postures[form.agent.name], rows).items()
         }
         return self._try(parameters, start, checker)
 
@@ -180,17 +180,3 @@ def _program(forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights
         cost=effort / TORQUE_UNIT**2 + robot.comfort + human.comfort,
         parameters=ca.vertcat(design, height),
     )
-
-
-def _blocks(posture: AgentPosture, solver: Solver, agent: str) -> dict[str, Any]:
-    """A whole posture as starting values of a whole agent's variables."""
-    rows = {v.name: v.symbol.numel() for v in solver.program.variables}
-    hands = {f"{side}_hand": wrench for side, wrench in posture.hand_wrenches.items()}
-    return {
-        "base_position": posture.base_position,
-        "base_angles": posture.base_angles,
-        "joints": np.array(list(posture.joints.values())),
-        "torques": np.array(list(posture.torques.values())),
-        **{name: wrench[: rows[f"{agent}.{name}"]] for name, wrench in hands.items()},
-        **{f"{side}_foot": wrench for side, wrench in posture.foot_wrenches.items()},
-    }

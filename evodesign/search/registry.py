@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings
-from evodesign.search.base import Search
+from evodesign.search.base import JOINT_STARTS, Search
 from evodesign.search.cma_es import CmaEs
 from evodesign.search.nsga2 import Nsga2
 from evodesign.search.quasi_random import QuasiRandom
@@ -15,6 +15,7 @@ __all__ = ["SEARCHES", "make_search"]
 
 SEARCHES: dict[str, Callable[[SearchSettings], Search]] = {
     "cma-es": CmaEs,
+    JOINT_STARTS: QuasiRandom,
     "nsga2": Nsga2,
     "random": QuasiRandom,
 }

@@ -1,0 +1,35 @@
+"""`baseline`: the paper's joint problem from many starts, logged as a run like any other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from datetime import datetime
+from pathlib import Path
+
+from evodesign.cli.output import console
+from evodesign.cli.searching import Wishes, start
+from evodesign.problem.build import build_problem
+from evodesign.problem.source import read_source
+from evodesign.records import Status
+from evodesign.runlog.run import read_run
+from evodesign.search.base import JOINT_STARTS
+
+__all__ = ["GENERATION", "start_baseline"]
+
+GENERATION = 10
+"""Starts after which the log says how things stand."""
+
+
+def start_baseline(
+    problem: Path, run: Path | None, starts: int, seed: int | None, jobs: int, pool: str, json: bool
+) -> None:
+    """Solve the joint problem from many starts; print its front, and how the starts ended."""
+    name = build_problem(read_source(problem)).name
+    directory = Path("runs") / f"{name}-baseline-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
+    wishes = Wishes(JOINT_STARTS, starts, min(starts, GENERATION), seed)
+    start(problem, directory, wishes, jobs, pool, json)
+    if json:
+        return
+    ended = Counter(evaluation.assessment.status for evaluation in read_run(directory).evaluations)
+    counts = ", ".join(f"{status} {ended[status]}" for status in Status if status in ended)
+    console().print(f"how the {sum(ended.values())} starts ended: {counts}", highlight=False)
