@@ -3,7 +3,7 @@
 A start is a genome and nothing else: the postures are drawn with a generator seeded by the genome's digits,
 so that how a start ends is a property of problem and start alone. Joints begin a random share of the way to
 the middle of their ranges, with some spread about it, anew at every height. The named designs of a problem
-begin at the first of the posture problem's own starts.
+begin half-way to the middle.
 """
 
 from __future__ import annotations
@@ -15,21 +15,23 @@ from typing import Any
 import numpy as np
 
 from evodesign.posture.form import Form
-from evodesign.posture.start import STARTS
 from evodesign.records import Genome
 
 __all__ = ["drawn_postures", "standard_postures"]
 
 Array = Any
 
+SHARE = 0.5
+"""Of the way from zero to the middle of each joint's range, at which standard postures begin."""
+
 SPREAD = 0.3
 """Standard deviation of a joint about the common share [rad]."""
 
 
 def standard_postures(forms: Sequence[Form], heights: int) -> dict[str, Array]:
-    """Joints of every form at every height at the posture problem's first start, by variable name."""
+    """Joints of every form at every height half-way to the middle of its range, by variable name."""
     return {
-        _name(index, form): STARTS[0][form.agent.name] * _middle(form)
+        _name(index, form): SHARE * _middle(form)
         for index in range(heights)
         for form in forms
     }

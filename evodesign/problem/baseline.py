@@ -41,6 +41,15 @@ class Baseline:
         """Where a start leads; named designs begin with standard postures, others with drawn ones."""
         return self._joint.solve(start, drawn=start not in self._problem.joint_start)
 
+    def polish(self, result: DesignResult) -> JointSolution:
+        """The local optimum next to a design whose postures are known at every height.
+
+        Args:
+            result: of an evaluation; all its heights are solved.
+        """
+        genome = self._problem.space.genome(result.values)
+        return self._joint.polish(genome, [height.postures for height in result.heights])
+
     def assess(self, start: Genome) -> Assessed:
         """What the design in which a start ended is worth, with its postures."""
         solution = self.solve(start)

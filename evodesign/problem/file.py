@@ -177,9 +177,9 @@ class SolverTable(Table, frozen=True):
 class TaskWeightsTable(Table, frozen=True):
     """`[baseline.weights]`: W1 to W4 of the paper's tasks.
 
-    torque: of |tau|^2 in (10 N m)^2; density: of distances to the preferred densities in 1000 kg/m^3, multiplied;
-    center_of_pressure: of squared distances from the middle of the sole, in m^2; mass_height: of 1 / z^2 of the
-    standing robot's centre of mass, in 1/m^2.
+    torque: of |tau|^2 in (10 N m)^2; density: of distances to the preferred densities in 1000 kg/m^3,
+    multiplied; center_of_pressure: of squared distances from the middle of the sole, in m^2; mass_height:
+    of 1 / z^2 of the standing robot's centre of mass, in 1/m^2.
     """
 
     torque: Positive = 1.0
