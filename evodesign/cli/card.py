@@ -14,7 +14,7 @@ from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
 from evodesign.cli.tables import heading, heights_table
 from evodesign.errors import on_one_line
-from evodesign.records import HeightDetail, Parameter
+from evodesign.records import Assessment, HeightDetail, Parameter
 
 __all__ = ["card"]
 
@@ -27,10 +27,24 @@ BAR = 16
 
 def card(opened: OpenedDesign) -> Group:
     """The card."""
-    parts: list[RenderableType] = [_title(opened), _objectives(opened), _parameters(opened), _heights(opened)]
+    assessment = opened.evaluation.assessment
+    sections: dict[str, Table] = {
+        "objectives": _objectives(opened),
+        "parameters": _parameters(opened),
+        f"the load at each height (reach: {_reach(assessment)})": heights_table(assessment, ""),
+    }
     if opened.heights:
-        parts += [_torques(opened.heights), _contacts(opened.heights)]
+        sections["largest joint torques [N m]"] = _torques(opened.heights)
+        sections["contact forces [N]"] = _contacts(opened.heights)
+    parts: list[RenderableType] = [_title(opened)]
+    for title, table in sections.items():
+        parts += [Text(f"\n{title}", style="italic"), table]
     return Group(*parts)
+
+
+def _reach(assessment: Assessment) -> str:
+    reach = assessment.reach
+    return f"{figure(reach.lowest_m)} to {figure(reach.highest_m)} m" if reach else "unknown"
 
 
 def _title(opened: OpenedDesign) -> Text:
@@ -46,7 +60,7 @@ def _title(opened: OpenedDesign) -> Text:
 
 
 def _objectives(opened: OpenedDesign) -> Table:
-    table = _table("objectives", "objective")
+    table = _table("objective")
     table.add_column("value", justify="right")
     table.add_column("best of the run", justify="right")
     assessment = opened.evaluation.assessment
@@ -63,7 +77,7 @@ def _objectives(opened: OpenedDesign) -> Table:
 
 
 def _parameters(opened: OpenedDesign) -> Table:
-    table = _table("parameters", "parameter")
+    table = _table("parameter")
     for column in ("value", "unit", "lower", "within its bounds", "upper"):
         table.add_column(column, justify="right" if column in ("value", "lower") else "left")
     for parameter in opened.run.header.parameters:
@@ -88,15 +102,8 @@ def _bar(parameter: Parameter, value: float) -> str:
     return "─" * place + "●" + "─" * (BAR - 1 - place)
 
 
-def _heights(opened: OpenedDesign) -> Table:
-    assessment = opened.evaluation.assessment
-    reach = assessment.reach
-    reached = f"{figure(reach.lowest_m)} to {figure(reach.highest_m)} m" if reach else "unknown"
-    return heights_table(assessment, f"\nthe load at each height (reach: {reached})")
-
-
 def _torques(heights: Sequence[HeightDetail]) -> Table:
-    table = _height_table("largest joint torques [N m]", ("agent", "joint"), heights)
+    table = _height_table(("agent", "joint"), heights)
     for agent in heights[0].agents:
         by_height = [detail.agents[agent].torques_n_m for detail in heights]
         shown = _largest(by_height)
@@ -116,7 +123,7 @@ def _largest(by_height: Sequence[Mapping[str, float]]) -> list[str]:
 
 
 def _contacts(heights: Sequence[HeightDetail]) -> Table:
-    table = _height_table("contact forces [N]", ("agent", "contact"), heights)
+    table = _height_table(("agent", "contact"), heights)
     for agent in heights[0].agents:
         rows = list(_forces(heights, agent))
         for position, (contact, forces) in enumerate(rows):
@@ -136,16 +143,16 @@ def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, 
             yield f"{side} {part}", [math.hypot(*wrench[side][:3]) for wrench in wrenches]
 
 
-def _height_table(title: str, columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
-    table = _table(title, *columns)
+def _height_table(columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
+    table = _table(*columns)
     for detail in heights:
         table.add_column(f"{detail.height_m:g} m", justify="right")
     return table
 
 
-def _table(title: str, *columns: str) -> Table:
-    """A table with a title of its own, whose first columns hold names."""
-    table = Table(title=escape(f"\n{title}"), title_justify="left")
+def _table(*columns: str) -> Table:
+    """A table whose first columns hold names."""
+    table = Table()
     for column in columns:
         table.add_column(column, overflow="fold")
     return table

@@ -55,8 +55,8 @@ def front_table(run: Run, designs: Sequence[Evaluation]) -> Table:
 
 
 def heights_table(assessment: Assessment, title: str) -> Table:
-    """A design's postures in short, height by height."""
-    table = Table(title=title, title_justify="left")
+    """A design's postures in short, height by height, under a title unless it is empty."""
+    table = Table(title=title or None, title_justify="left")
     for column in ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual"):
         table.add_column(escape(column), justify="right")
     table.add_column("status", overflow="fold")

@@ -15,8 +15,9 @@ __all__ = ["FILES", "readme_text"]
 FILES: Final[Mapping[str, str]] = {
     "robot.urdf": """\
 The robot of this design, made of spheres, cylinders and boxes; it needs no other file. Any URDF viewer opens
-it, MuJoCo and `yourdfpy robot.urdf` too, and in Python
-`pinocchio.buildModelFromUrdf("robot.urdf", pinocchio.JointModelFreeFlyer())`.""",
+it, `yourdfpy robot.urdf`, and in Python
+`pinocchio.buildModelFromUrdf("robot.urdf", pinocchio.JointModelFreeFlyer())`. MuJoCo opens it, too, but
+fixes its root: take the next file there.""",
     "robot.xml": """\
 The same robot for MuJoCo, floating over a ground plane, with a keyframe per load height:
 `python -m mujoco.viewer --mjcf=robot.xml`, there Simulation, Key, Load key. Nothing drives the joints and
