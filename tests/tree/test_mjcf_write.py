@@ -17,9 +17,10 @@ import yourdfpy
 
 from evodesign.body.placement import Placement
 from evodesign.body.quaternion import quaternion_wxyz
-from evodesign.body.shape import Box, Solid
+from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.problem.build import Problem
+from evodesign.report.stage import looks_of
 from evodesign.statics.balance import GRAVITY
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
@@ -137,11 +138,41 @@ def test_bodies_of_mjcf_have_the_inertia_of_their_links(problem: Problem) -> Non
             assert body.mass[0] == pytest.approx(link.inertia.mass, abs=TOLERANCE)
             if link.inertia.mass:
                 assert np.allclose(body.ipos, link.inertia.center, rtol=0.0, atol=TOLERANCE)
-                turn = np.zeros(9)
-                mujoco.mju_quat2Mat(turn, body.iquat)
-                axes = turn.reshape(3, 3)
+                axes = turned(body.iquat)
                 moments = axes @ np.diag(body.inertia) @ axes.T
                 assert np.allclose(moments, link.inertia.about_center, rtol=0.0, atol=TOLERANCE)
+
+
+def test_geoms_are_the_shapes_of_the_links(problem: Problem) -> None:
+    for case in cases(problem):
+        model = mujoco.MjModel.from_xml_string(mjcf_text(case.tree, GRAVITY, {}))
+        shown = [(link.name, shape, place) for link in case.tree.links for shape, place in looks_of(link)]
+        assert model.ngeom == len(shown) + 1, "and the ground"
+        for name, shape, place in shown:
+            assert any(
+                model.geom(index).bodyid[0] == model.body(name).id
+                and model.geom(index).type[0] == kind_of(shape)[0]
+                and np.allclose(model.geom(index).size, kind_of(shape)[1])
+                and np.allclose(model.geom(index).pos, place.translation)
+                and np.allclose(turned(model.geom(index).quat), place.rotation)
+                for index in range(model.ngeom)
+            ), name
+
+
+def kind_of(shape: Shape) -> tuple[int, list[float]]:
+    match shape:
+        case Sphere(radius):
+            return mujoco.mjtGeom.mjGEOM_SPHERE, [radius, 0.0, 0.0]
+        case Cylinder(radius, length):
+            return mujoco.mjtGeom.mjGEOM_CYLINDER, [radius, length / 2.0, 0.0]
+        case Box():
+            return mujoco.mjtGeom.mjGEOM_BOX, [side / 2.0 for side in shape.sides]
+
+
+def turned(quaternion: np.ndarray) -> np.ndarray:
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, quaternion)
+    return turn.reshape(3, 3)
 
 
 def test_mjcf_keeps_limits_and_efforts(problem: Problem) -> None:

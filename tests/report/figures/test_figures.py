@@ -11,6 +11,7 @@ from matplotlib.text import Annotation
 
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem
+from evodesign.report.figures.faces import Camera, faces_of
 from evodesign.report.figures.joint_torques import joint_torques
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
@@ -64,12 +65,33 @@ def test_posture_figure_has_a_panel_per_height_and_an_arrow_per_contact(problem:
         assert len(body.get_paths()) > 500
 
 
-def test_no_arrow_is_longer_than_the_scale_allows(problem: Problem) -> None:
-    figure = posture_figure(random_stages(problem, 5), "postures")
-    for axes in figure.axes:
-        arrows = [child for child in axes.get_children() if isinstance(child, Annotation)]
-        lengths = [np.hypot(*(np.array(arrow.xyann) - np.array(arrow.xy))) for arrow in arrows]
-        assert max(lengths) <= 0.451
+def test_arrows_begin_where_forces_act_and_follow_them_on_one_scale(problem: Problem) -> None:
+    stages, view = random_stages(problem, 5), Camera()
+    figure = posture_figure(stages, "postures", view)
+    for by_ground in (True, False):
+        wrenches = [w for stage in stages for w in stage.wrenches if w.by_ground == by_ground]
+        scale = 0.45 / max(float(np.linalg.norm(wrench.force)) for wrench in wrenches)
+        for axes, stage in zip(figure.axes, stages, strict=True):
+            arrows = {
+                arrow.xyann: np.array(arrow.xy) for arrow in axes.texts if isinstance(arrow, Annotation)
+            }
+            for wrench in stage.wrenches:
+                tail, way = (view.seen(np.array([v]))[0, :2] for v in (wrench.point, wrench.force))
+                if wrench.by_ground == by_ground and float(np.linalg.norm(scale * way)) > 0.03:
+                    tip = next(tip for begin, tip in arrows.items() if np.allclose(begin, tail))
+                    assert np.allclose(tip, tail + scale * way)
+
+
+def test_nearer_faces_are_painted_over_farther_ones(problem: Problem) -> None:
+    side = Camera(azimuth=-np.pi / 2.0, elevation=0.0)
+    stage = random_stages(problem, 5)[0]
+    (_, body) = posture_figure([stage], "postures", side).axes[0].collections
+    faces = [face for _, shape, place in stage.solids for face in faces_of(shape, place)]
+    facing = [f for f in faces if float(f.normal @ side.axes[2]) > 0.0]
+    assert len(body.get_paths()) == len(facing)
+    facing.sort(key=lambda face: float(face.corners[:, 1].mean()), reverse=True)  # the camera is at -y
+    for path, face in zip(body.get_paths(), facing, strict=True):
+        assert np.allclose(path.vertices[:-1].mean(axis=0), face.corners[:, [0, 2]].mean(axis=0))
 
 
 def test_design_without_a_posture_still_gives_figures() -> None:
