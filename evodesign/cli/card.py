@@ -10,9 +10,10 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from evodesign.cli.height_table import heights_table
 from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
-from evodesign.cli.tables import heading, heights_table
+from evodesign.cli.tables import heading
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.cli.height_table import heights_table
 from evodesign.cli.output import figure
-from evodesign.cli.tables import heading, heights_table
+from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import DesignResult
 from evodesign.records import Assessment
