@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
@@ -16,6 +16,7 @@ from evodesign.cli.output import figure
 from evodesign.cli.tables import heading
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter
+from evodesign.report.strain import most_strained
 
 __all__ = ["card"]
 
@@ -107,20 +108,11 @@ def _torques(heights: Sequence[HeightDetail]) -> Table:
     table = _height_table(("agent", "joint"), heights)
     for agent in heights[0].agents:
         by_height = [detail.agents[agent].torques_n_m for detail in heights]
-        shown = _largest(by_height)
+        shown = most_strained(by_height)[:JOINTS_SHOWN]
         for joint in shown:
             row = [figure(torques.get(joint)) for torques in by_height]
             table.add_row(agent, escape(on_one_line(joint)), *row, end_section=joint == shown[-1])
     return table
-
-
-def _largest(by_height: Sequence[Mapping[str, float]]) -> list[str]:
-    """The joints whose torque is largest at any height, largest first."""
-    peak: dict[str, float] = {}
-    for torques in by_height:
-        for joint, torque in torques.items():
-            peak[joint] = max(peak.get(joint, 0.0), abs(torque))
-    return sorted(peak, key=lambda joint: -peak[joint])[:JOINTS_SHOWN]
 
 
 def _contacts(heights: Sequence[HeightDetail]) -> Table:

@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from evodesign.analysis.front import front
 from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
-from evodesign.records import Evaluation, HeightDetail
+from evodesign.records import Evaluation, HeightDetail, RunHeader
+from evodesign.report.stage import Cast
 from evodesign.runlog.run import Run, read_run
 
 if TYPE_CHECKING:
-    from evodesign.report.stage import Cast
+    from evodesign.problem.build import Problem
 
-__all__ = ["OpenedDesign", "cast_of", "open_design"]
+__all__ = ["OpenedDesign", "RebuiltProblem", "cast_of", "open_design"]
+
+
+class RebuiltProblem:
+    """The problem of a run, built from the header's text when it is first asked for, and once."""
+
+    def __init__(self, header: RunHeader) -> None:
+        self._header = header
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem."""
+        from evodesign.problem.build import build_problem  # CasADi takes its time to load
+
+        return build_problem(self._header.problem)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,12 +43,14 @@ class OpenedDesign:
         evaluation: as logged.
         heights: its postures, from the log or solved anew.
         on_front: whether no design of the run beats it.
+        rebuilt: the run's problem.
     """
 
     run: Run
     evaluation: Evaluation
     heights: tuple[HeightDetail, ...]
     on_front: bool
+    rebuilt: RebuiltProblem
 
 
 def open_design(directory: Path, number: int) -> OpenedDesign:
@@ -52,25 +70,22 @@ def open_design(directory: Path, number: int) -> OpenedDesign:
         raise InputError("DESIGN", "", wanted, f"{number}")
     evaluation = by_number[number]
     best = front(run.header.objectives, run.evaluations)
-    return OpenedDesign(run, evaluation, _heights(run, evaluation), evaluation in best)
+    rebuilt = RebuiltProblem(run.header)
+    return OpenedDesign(run, evaluation, _heights(run, evaluation, rebuilt), evaluation in best, rebuilt)
 
 
-def _heights(run: Run, evaluation: Evaluation) -> tuple[HeightDetail, ...]:
+def _heights(run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem) -> tuple[HeightDetail, ...]:
     logged = {detail.evaluation: detail for detail in run.details}
     if evaluation.number in logged:
         return logged[evaluation.number].heights
     from evodesign.cli.ready import evaluator_of  # CasADi takes its time to load
-    from evodesign.problem.build import build_problem
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
-    return evaluator_of(build_problem(run.header.problem)).assess(evaluation.genome).heights
+    return evaluator_of(rebuilt.problem).assess(evaluation.genome).heights
 
 
 def cast_of(opened: OpenedDesign) -> Cast:
     """Robot of the design, person and load, built from the problem in the run's header."""
-    from evodesign.problem.build import build_problem
-    from evodesign.report.stage import Cast
-
-    problem = build_problem(opened.run.header.problem)
+    problem = opened.rebuilt.problem
     values = problem.space.values(opened.evaluation.genome)
     return Cast.of(problem.scene, problem.space.resized(problem.scene.robot.tree, values))

@@ -11,17 +11,18 @@ Source: MuJoCo XML reference (compiler, body, joint, inertial, geom, keyframe).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, Scalar
+from evodesign.body.placement import Placement
 from evodesign.body.quaternion import quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, JointKind, Link, Tree
+from evodesign.tree.xml_numbers import numbers_text
 
 __all__ = ["KeyPosture", "mjcf_text"]
 
@@ -57,7 +58,7 @@ def mjcf_text(tree: Tree, gravity: float, postures: Mapping[str, KeyPosture]) ->
     _check(tree)
     model = etree.Element("mujoco", model=tree.name)
     etree.SubElement(model, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
-    etree.SubElement(model, "option", gravity=_text([0.0, 0.0, -gravity]))
+    etree.SubElement(model, "option", gravity=numbers_text([0.0, 0.0, -gravity]))
     world = etree.SubElement(model, "worldbody")
     etree.SubElement(world, "light", pos="0 -2 4", dir="0 0.5 -1", directional="true")
     ground = {"contype": "1", "conaffinity": "0", "rgba": "0.9 0.9 0.9 1"}
@@ -66,7 +67,7 @@ def mjcf_text(tree: Tree, gravity: float, postures: Mapping[str, KeyPosture]) ->
     if postures:
         frame = etree.SubElement(model, "keyframe")
         for name, posture in postures.items():
-            etree.SubElement(frame, "key", name=name, qpos=_text(_coordinates(tree, posture)))
+            etree.SubElement(frame, "key", name=name, qpos=numbers_text(_coordinates(tree, posture)))
     text: bytes = etree.tostring(model, pretty_print=True, xml_declaration=True, encoding="utf-8")
     return text.decode("utf-8")
 
@@ -102,20 +103,26 @@ def _add_body(above: etree._Element, tree: Tree, name: str, place: Placement, jo
 
 
 def _add_joint(body: etree._Element, joint: Joint) -> None:
-    element = etree.SubElement(body, "joint", name=joint.name, type=KINDS[joint.kind], axis=_text(joint.axis))
+    element = etree.SubElement(
+        body, "joint", name=joint.name, type=KINDS[joint.kind], axis=numbers_text(joint.axis)
+    )
     if joint.kind is not JointKind.CONTINUOUS and math.isfinite(joint.upper - joint.lower):
-        element.set("range", _text([joint.lower, joint.upper]))
+        element.set("range", numbers_text([joint.lower, joint.upper]))
     if math.isfinite(joint.effort) and joint.effort > 0.0:
-        element.set("actuatorfrcrange", _text([-joint.effort, joint.effort]))
+        element.set("actuatorfrcrange", numbers_text([-joint.effort, joint.effort]))
 
 
 def _add_inertial(body: etree._Element, inertia: Inertia) -> None:
     if float(inertia.mass) == 0.0:
         return
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.about_center
-    moments = _text([xx, yy, zz, xy, xz, yz])
+    moments = numbers_text([xx, yy, zz, xy, xz, yz])
     etree.SubElement(
-        body, "inertial", pos=_text(inertia.center), mass=_text([inertia.mass]), fullinertia=moments
+        body,
+        "inertial",
+        pos=numbers_text(inertia.center),
+        mass=numbers_text([inertia.mass]),
+        fullinertia=moments,
     )
 
 
@@ -129,16 +136,16 @@ def _add_geoms(body: etree._Element, link: Link) -> None:
 def _add_geom(body: etree._Element, shape: Shape, place: Placement, touch: Mapping[str, str]) -> None:
     match shape:
         case Sphere(radius):
-            form = {"type": "sphere", "size": _text([radius])}
+            form = {"type": "sphere", "size": numbers_text([radius])}
         case Cylinder(radius, length):
-            form = {"type": "cylinder", "size": _text([radius, length / 2.0])}
+            form = {"type": "cylinder", "size": numbers_text([radius, length / 2.0])}
         case Box():
-            form = {"type": "box", "size": _text([side / 2.0 for side in shape.sides])}
+            form = {"type": "box", "size": numbers_text([side / 2.0 for side in shape.sides])}
     etree.SubElement(body, "geom", {**form, **_pose(place), "rgba": COLOR, **touch})
 
 
 def _pose(place: Placement) -> dict[str, str]:
-    return {"pos": _text(place.translation), "quat": _text(quaternion_wxyz(place.rotation))}
+    return {"pos": numbers_text(place.translation), "quat": numbers_text(quaternion_wxyz(place.rotation))}
 
 
 def _coordinates(tree: Tree, posture: KeyPosture) -> list[float]:
@@ -153,7 +160,3 @@ def _order(tree: Tree, link: str) -> Iterator[str]:
         if joint.kind is not JointKind.FIXED:
             yield joint.name
         yield from _order(tree, joint.child)
-
-
-def _text(numbers: Iterable[Scalar]) -> str:
-    return " ".join(repr(float(number) + 0.0) for number in numbers)

@@ -14,6 +14,7 @@ from typing import Any, Final
 from evodesign.records import HeightDetail
 from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
 from evodesign.report.stage import LOAD, Cast
+from evodesign.report.strain import most_strained
 from evodesign.statics.scene import HUMAN, ROBOT
 
 __all__ = ["layout_text"]
@@ -95,7 +96,7 @@ def _plot(agent: str, heights: Sequence[HeightDetail]) -> dict[str, Any]:
     torques = [detail.agents[agent].torques_n_m for detail in heights]
     return {
         "title": f"{agent}: joint torques [N m]; time [s] = 10 x height [m]",
-        "paths": [_path(agent, joint) for joint in _strained(torques)],
+        "paths": [_path(agent, joint) for joint in _plotted(torques)],
         "showLegend": True,
         "legendDisplay": "floating",
         "showPlotValuesInLegend": True,
@@ -118,11 +119,6 @@ def _path(agent: str, joint: str) -> dict[str, Any]:
     }
 
 
-def _strained(torques: Sequence[Mapping[str, float]]) -> list[str]:
-    """The joints with the largest torques, largest first, but for names that a message path cannot hold."""
-    largest: dict[str, float] = {}
-    for at_height in torques:
-        for joint, torque in at_height.items():
-            largest[joint] = max(largest.get(joint, 0.0), abs(torque))
-    sayable = [joint for joint in largest if not set(joint) & set('"\\{}')]
-    return sorted(sayable, key=lambda joint: -largest[joint])[:JOINTS_SHOWN]
+def _plotted(torques: Sequence[Mapping[str, float]]) -> list[str]:
+    """The most strained joints, but for names that a message path cannot hold."""
+    return [joint for joint in most_strained(torques) if not set(joint) & set('"\\{}')][:JOINTS_SHOWN]
