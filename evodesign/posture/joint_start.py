@@ -30,11 +30,7 @@ SPREAD = 0.3
 
 def standard_postures(forms: Sequence[Form], heights: int) -> dict[str, Array]:
     """Joints of every form at every height half-way to the middle of its range, by variable name."""
-    return {
-        _name(index, form): SHARE * _middle(form)
-        for index in range(heights)
-        for form in forms
-    }
+    return {_name(index, form): SHARE * _middle(form) for index in range(heights) for form in forms}
 
 
 def drawn_postures(forms: Sequence[Form], heights: int, genome: Genome) -> dict[str, Array]:

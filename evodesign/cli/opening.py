@@ -1,0 +1,92 @@
+"""Opening one design of a run: its evaluation and postures, and its robot where that is needed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from evodesign.analysis.front import front
+from evodesign.cli.output import show_notes
+from evodesign.errors import InputError, RunError
+from evodesign.records import Evaluation, HeightDetail, RunHeader
+from evodesign.report.stage import Cast
+from evodesign.runlog.run import Run, read_run
+
+if TYPE_CHECKING:
+    from evodesign.problem.build import Problem
+
+__all__ = ["OpenedDesign", "RebuiltProblem", "cast_of", "open_design"]
+
+
+class RebuiltProblem:
+    """The problem of a run, built from the header's text when it is first asked for, and once."""
+
+    def __init__(self, header: RunHeader) -> None:
+        self._header = header
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem."""
+        from evodesign.problem.build import build_problem  # CasADi takes its time to load
+
+        return build_problem(self._header.problem)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedDesign:
+    """One design of a run.
+
+    Args:
+        run: that holds it.
+        evaluation: as logged.
+        heights: its postures, from the log or solved anew.
+        on_front: whether no design of the run beats it.
+        rebuilt: the run's problem.
+    """
+
+    run: Run
+    evaluation: Evaluation
+    heights: tuple[HeightDetail, ...]
+    on_front: bool
+    rebuilt: RebuiltProblem
+
+
+def open_design(directory: Path, number: int) -> OpenedDesign:
+    """A design of a run by the number of its evaluation; one without logged postures is solved anew.
+
+    Raises:
+        RunError: the run cannot be read, or holds no evaluation yet.
+        InputError: it holds no evaluation of that number.
+    """
+    run = read_run(directory)
+    show_notes(run.notes)
+    if not run.evaluations:
+        raise RunError(f"{directory}: holds no evaluation yet, so there is no design to open")
+    by_number = {evaluation.number: evaluation for evaluation in run.evaluations}
+    if number not in by_number:
+        wanted = f"the number of an evaluation, {min(by_number)} to {max(by_number)}"
+        raise InputError("DESIGN", "", wanted, f"{number}")
+    evaluation = by_number[number]
+    best = front(run.header.objectives, run.evaluations)
+    rebuilt = RebuiltProblem(run.header)
+    return OpenedDesign(run, evaluation, _heights(run, evaluation), evaluation in best, rebuilt)
+
+
+def _heights(run: Run, evaluation: Evaluation) -> tuple[HeightDetail, ...]:
+    logged = {detail.evaluation: detail for detail in run.details}
+    if evaluation.number in logged:
+        return logged[evaluation.number].heights
+    from evodesign.cli.ready import problem_factory  # CasADi takes its time to load
+
+    show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
+    return problem_factory(run.header)()(evaluation.genome).heights
+
+
+def cast_of(opened: OpenedDesign) -> Cast:
+    """Robot of the design, person and load, built from the problem in the run's header."""
+    problem = opened.rebuilt.problem
+    design = opened.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
+    values = [design[parameter.name] for parameter in problem.space.parameters]
+    return Cast.of(problem.scene, problem.space.resized(problem.scene.robot.tree, values))
