@@ -1,8 +1,8 @@
 """Does evolution escape the local minima of the paper's gradient-based problem?
 
-Four ways minimise the same scalar cost, that of Sartore et al. 2022, Eq. 14, on problems/sartore2022.toml, with
-ten seeds each and the same number of solves over all heights: a start of the joint problem is one, a design
-evaluated height by height is one, and a polish is one.
+Four ways minimise the same scalar cost, that of Sartore et al. 2022, Eq. 14, on problems/sartore2022.toml,
+with ten seeds each and the same number of solves over all heights: a start of the joint problem is one, a
+design evaluated height by height is one, and a polish is one.
 
     joint      the joint problem from many starts: the named designs, then quasi-random ones
     cma-es     CMA-ES over designs, postures solved inside
@@ -145,7 +145,7 @@ ARMS: dict[str, Callable[[int], Iterator[Step]]] = {
 
 
 def trace(task: tuple[str, int, int]) -> tuple[str, int, list[Row], float | None]:
-    """One arm with one seed: its rows, and for the joint problem the best design of the first few evaluated anew."""
+    """One arm with one seed: its rows, and what the joint problem's best early design costs anew."""
     arm, seed, solves = task
     rows: list[Row] = []
     steps, spent = [], 0.0
@@ -294,8 +294,8 @@ def markdown(result: dict) -> str:
             if label.startswith("after"):
                 quartiles = f"{row['quartile_1']:.3f} to {row['quartile_3']:.3f}"
                 lines.append(
-                    f"| {arm} | {label.split()[1]} | {row['median']:.3f} | {quartiles} | {row['least']:.3f} | "
-                    f"{row['within_1_percent']:.0%} |"
+                    f"| {arm} | {label.split()[1]} | {row['median']:.3f} | {quartiles} | "
+                    f"{row['least']:.3f} | {row['within_1_percent']:.0%} |"
                 )
     lines += ["", "| arm | hypervolume, median | s per solve | failed or infeasible |", "|---|---|---|---|"]
     for arm, of in result["arms"].items():

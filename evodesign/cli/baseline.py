@@ -6,11 +6,10 @@ from collections import Counter
 from datetime import datetime
 from pathlib import Path
 
-from evodesign.cli.output import console
+from evodesign.cli.output import console, counted
 from evodesign.cli.searching import Wishes, start
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
-from evodesign.records import Status
 from evodesign.runlog.run import read_run
 from evodesign.search.base import JOINT_STARTS
 
@@ -31,5 +30,4 @@ def start_baseline(
     if json:
         return
     ended = Counter(evaluation.assessment.status for evaluation in read_run(directory).evaluations)
-    counts = ", ".join(f"{status} {ended[status]}" for status in Status if status in ended)
-    console().print(f"how the {sum(ended.values())} starts ended: {counts}", highlight=False)
+    console().print(f"how the {sum(ended.values())} starts ended: {counted(ended)}", highlight=False)

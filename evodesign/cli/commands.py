@@ -148,4 +148,32 @@ def baseline(
     start_baseline(problem, run, starts, seed, jobs, pool, json)
 
 
-COMMANDS = (search, resume, front, show, export, evaluate, check, baseline)
+def reproduce(
+    to: Annotated[
+        Path | None,
+        typer.Option(help="New folder for runs, figures and robots.", show_default="runs/reproduce-TIME"),
+    ] = None,
+    problem: Annotated[Path, typer.Option(metavar="FILE", help="The problem with physical limits.")] = Path(
+        "problems/sartore2022.toml"
+    ),
+    published: Annotated[
+        Path, typer.Option(metavar="FILE", help="The published setting, without limits.")
+    ] = Path("problems/sartore2022_as_published.toml"),
+    starts: Annotated[int, typer.Option(min=1, help="Starts of the joint problem.")] = 50,
+    evaluations: Annotated[int, typer.Option(min=1, help="Designs that the search evaluates.")] = 480,
+    seed: Annotated[int, typer.Option(min=0, help="Of starts and search.")] = 1,
+    minutes: Annotated[
+        float, typer.Option(min=0.1, help="After which both have ended, with what they have by then.")
+    ] = 12.0,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """Sartore et al. 2022 again: its table, claims and figures, with verdicts, then by evolution."""
+    from evodesign.cli.reproducing import reproduce_paper
+    from evodesign.cli.reproduction import Effort
+
+    reproduce_paper(problem, published, to, Effort(starts, evaluations, seed, minutes, jobs, pool), json)
+
+
+COMMANDS = (search, resume, front, show, export, evaluate, check, baseline, reproduce)
