@@ -120,8 +120,8 @@ class JointProblem:
         self._forms = symmetric_forms(scene) if settings.symmetric else both
         self._human = AgentModel.of(scene.human, scene.human.tree)
         design = _design_variable(space, settings.enforced, fixed)
-        program = _program(self._forms, scene, space, design, self._heights, settings)
-        self._solver = Solver(program, settings.options)
+        self.program = _program(self._forms, scene, space, design, self._heights, settings)
+        self._solver = Solver(self.program, settings.options)
 
     def solve(self, genome: Genome, *, drawn: bool) -> JointSolution:
         """The local optimum that a start leads to.
@@ -138,7 +138,7 @@ class JointProblem:
 
     def polish(self, genome: Genome, postures: Sequence[Mapping[str, AgentPosture]]) -> JointSolution:
         """The local optimum next to known postures, one pair per height."""
-        rows = {v.name: v.symbol.numel() for v in self._solver.program.variables}
+        rows = {v.name: v.symbol.numel() for v in self.program.variables}
         start = {GENOME: np.array(genome)}
         for index, agents in enumerate(postures):
             prefix = _prefix(index)
@@ -151,7 +151,7 @@ class JointProblem:
         return self._from(start)
 
     def _from(self, start: Mapping[str, Array]) -> JointSolution:
-        raw = self._solver.solve([], _inside(self._solver.program, start))
+        raw = self._solver.solve([], _inside(self.program, start))
         design = _values(self._space, raw.values[GENOME].tolist())
         return self._checked(design, raw) if raw.status is Status.SOLVED else self._failed(design, raw)
 
@@ -253,7 +253,7 @@ def _height_cost(block: AgentBlock, weight: float, settings: JointSettings) -> E
     """An agent's W1 t1 + W3 t3 + comfort at one height."""
     weights = settings.tasks.weights
     cost = weights.torque * weight * block.effort / TORQUE_UNIT**2 + block.posture_comfort
-    if weights.pressure:
+    if weights.center_of_pressure:
         feet = {v.name: v.value for v in block.variables if v.name.endswith("_foot")}
-        cost += weights.pressure * len(SIDES) / len(feet) * pressure_task(feet)
+        cost += weights.center_of_pressure * len(SIDES) / len(feet) * pressure_task(feet)
     return cost + block.wrench_comfort if settings.enforced.contact else cost

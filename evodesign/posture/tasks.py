@@ -39,7 +39,7 @@ class TaskWeights:
 
     torque: float = 1.0
     density: float = 0.0
-    pressure: float = 0.0
+    center_of_pressure: float = 0.0
     mass_height: float = 0.0
 
 

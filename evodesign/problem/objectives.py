@@ -115,12 +115,12 @@ def paper_cost(result: DesignResult) -> float | None:
         return None
     efforts, tasks = result.paper.efforts, result.paper.tasks
     strain = efforts.robot * np.square(robot) + efforts.human * np.square(human)
-    feet = [posture.foot_wrenches for height in result.heights for posture in height.postures.values()]
-    return float(
-        tasks.weights.torque * strain.sum() / TORQUE_UNIT**2
-        + tasks.of_design(result.space, result.values, result.robot, result.tree)
-        + sum(tasks.weights.pressure * pressure_task(wrenches) for wrenches in feet if tasks.weights.pressure)
-    )
+    cost = tasks.weights.torque * strain.sum() / TORQUE_UNIT**2
+    cost += tasks.of_design(result.space, result.values, result.robot, result.tree)
+    if tasks.weights.center_of_pressure:
+        feet = [posture.foot_wrenches for height in result.heights for posture in height.postures.values()]
+        cost += tasks.weights.center_of_pressure * sum(pressure_task(wrenches) for wrenches in feet)
+    return float(cost)
 
 
 OBJECTIVES: Mapping[str, ObjectiveKind] = {
