@@ -39,8 +39,13 @@ def problem() -> Problem:
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A cache of the tests' own, which commands started by tests use too."""
-    place = tmp_path_factory.mktemp("cache")
+    """A cache of the tests' own, which commands started by tests use too.
+
+    It is new in each session, unless $EVODESIGN_TEST_CACHE names a directory that keeps it: working out the
+    default problem takes a minute.
+    """
+    kept = os.environ.get("EVODESIGN_TEST_CACHE")
+    place = Path(kept) if kept else tmp_path_factory.mktemp("cache")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("EVODESIGN_CACHE", str(place))
         yield place

@@ -36,7 +36,9 @@ def test_raised_arms_reach_between_the_papers_heights(problem: Problem, evaluato
     assert 1.3 < highest < 1.5
 
 
-def test_postures_end_where_reach_ends(problem: Problem, evaluator: Evaluator) -> None:
+def test_postures_end_where_reach_ends(problem: Problem) -> None:
+    """Both from the fixed starts: at heights that are not required there are no seeds of postures."""
+    evaluator = Evaluator(problem)
     values = problem.space.unscaled(problem.scene.robot.tree)
     result = evaluator.solve(values)
     scene = problem.scene
@@ -52,7 +54,7 @@ def test_postures_end_where_reach_ends(problem: Problem, evaluator: Evaluator) -
 
 def test_height_out_of_reach_is_a_violation_and_has_no_torque(problem: Problem, evaluator: Evaluator) -> None:
     shortest = tuple(0.0 if p.kind == "length" else 0.5 for p in problem.space.parameters)
-    found = evaluator.assess(shortest)
+    found = evaluator.assess(shortest).assessment
     assert found.reach is not None
     assert found.reach.highest_m is not None
     expected = sum(max(0.0, height - found.reach.highest_m) for height in problem.heights)
