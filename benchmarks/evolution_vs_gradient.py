@@ -22,7 +22,6 @@ from __future__ import annotations
 import argparse
 import itertools
 import json
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -33,11 +32,13 @@ import msgspec
 import numpy as np
 
 from evodesign.analysis.hypervolume import hypervolume
-from evodesign.posture.cache import user_cache
+from evodesign.cli.ready import known_of
+from evodesign.pool.registry import make_pool
 from evodesign.posture.joint import JointSolution
+from evodesign.posture.preparation import Preparation
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import Evaluator, prepared
+from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Evaluation, Genome, Objective, SearchSettings, Sense, Status
@@ -59,6 +60,12 @@ Row = dict[str, float | None]
 Step = tuple[Genome, dict[str, float], float | None, float, DesignResult | None]
 
 
+def _known(problem: Problem) -> Preparation:
+    """Seeds and the person's part, from the cache or worked out now."""
+    with make_pool("joblib", 2) as pool:
+        return known_of(problem, pool)
+
+
 class Bench:
     """The inner problems, built once per process."""
 
@@ -66,7 +73,7 @@ class Bench:
         source = read_source(PROBLEM)
         source = msgspec.structs.replace(source, text=source.text + "\n[solver]\ncompile = true\n")
         self.problem: Problem = build_problem(source)
-        people = prepared(self.problem, user_cache("people", os.environ), lambda _: None)
+        people = _known(self.problem)
         self.evaluator = Evaluator(self.problem, people)
         self.baseline = Baseline(self.problem)
 

@@ -10,6 +10,7 @@ from evodesign.cli.output import console, counted
 from evodesign.cli.searching import Wishes, start
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
+from evodesign.runlog.directory import name_in_path
 from evodesign.runlog.run import read_run
 from evodesign.search.base import JOINT_STARTS
 
@@ -23,9 +24,9 @@ def start_baseline(
     problem: Path, run: Path | None, starts: int, seed: int | None, jobs: int, pool: str, json: bool
 ) -> None:
     """Solve the joint problem from many starts; print its front, and how the starts ended."""
-    name = build_problem(read_source(problem)).name
+    name = name_in_path(build_problem(read_source(problem)).name)
     directory = Path("runs") / f"{name}-baseline-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
-    wishes = Wishes(JOINT_STARTS, starts, min(starts, GENERATION), seed)
+    wishes = Wishes(JOINT_STARTS, starts, min(starts, GENERATION), seed, None)
     start(problem, directory, wishes, jobs, pool, json)
     if json:
         return

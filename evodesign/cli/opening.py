@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 from evodesign.analysis.front import front
 from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
+from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation, HeightDetail, RunHeader
 from evodesign.report.stage import Cast
 from evodesign.runlog.run import Run, read_run
@@ -81,7 +83,8 @@ def _heights(run: Run, evaluation: Evaluation) -> tuple[HeightDetail, ...]:
     from evodesign.cli.ready import problem_factory  # CasADi takes its time to load
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
-    return problem_factory(run.header)()(evaluation.genome).heights
+    with make_pool("joblib", os.cpu_count() or 1) as pool:
+        return problem_factory(run.header, pool)()(evaluation.genome).heights
 
 
 def cast_of(opened: OpenedDesign) -> Cast:

@@ -136,7 +136,7 @@ def reproduction(
     show_notes(["the published setting"])
     published = _published(without)
     show_notes(["the robot as it is"])
-    original, highest = _original(with_limits)
+    original, highest = _original(with_limits, effort.jobs)
     runs = []
     for name, algorithm, budget, share in (
         (GRADIENT, JOINT_STARTS, effort.starts, SHARE_OF_BASELINE),
@@ -200,9 +200,9 @@ def _robot(problem: Problem, name: str, title: str, solution: JointSolution) -> 
     return ReproducedRobot(name, title, Cast.of(problem.scene, tree), heights)
 
 
-def _original(problem: Problem) -> tuple[ReproducedRobot, float | None]:
+def _original(problem: Problem, jobs: int) -> tuple[ReproducedRobot, float | None]:
     """The unscaled robot at its own best postures, and its reach [m]."""
-    result = evaluator_of(problem).solve(problem.space.unscaled(problem.scene.robot.tree))
+    result = evaluator_of(problem, jobs).solve(problem.space.unscaled(problem.scene.robot.tree))
     heights = tuple(detail_of(height) for height in result.heights if height.solved)
     robot = ReproducedRobot(ORIGINAL, "the robot as it is", Cast.of(problem.scene, result.tree), heights)
     return robot, result.reach.highest
@@ -217,10 +217,11 @@ def _logged(
     def late() -> bool:
         return time.monotonic() > end
 
-    factory = problem_factory(header)
-    with make_pool(effort.pool, effort.jobs) as workers, observer() as watching:
+    with make_pool(effort.pool, effort.jobs) as workers:
+        factory = problem_factory(header, workers)
         try:
-            return evolve.start(directory, header, factory, workers, watching, stop=late)
+            with observer() as watching:
+                return evolve.start(directory, header, factory, workers, watching, stop=late)
         except Interrupted:
             if not late():
                 raise

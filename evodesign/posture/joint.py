@@ -134,7 +134,8 @@ class JointProblem:
         postures = (
             drawn_postures(self._forms, count, genome) if drawn else standard_postures(self._forms, count)
         )
-        return self._from({GENOME: np.array(genome), **postures})
+        name = "joint: drawn postures" if drawn else "joint: standard postures"
+        return self._from(name, {GENOME: np.array(genome), **postures})
 
     def polish(self, genome: Genome, postures: Sequence[Mapping[str, AgentPosture]]) -> JointSolution:
         """The local optimum next to known postures, one pair per height."""
@@ -148,20 +149,23 @@ class JointProblem:
             for form in self._forms:
                 values = form.start(agents[form.agent.name], own)
                 start |= {f"{prefix}{name}": value for name, value in values.items()}
-        return self._from(start)
+        return self._from("joint: polish", start)
 
-    def _from(self, start: Mapping[str, Array]) -> JointSolution:
+    def _from(self, name: str, start: Mapping[str, Array]) -> JointSolution:
         raw = self._solver.solve([], _inside(self.program, start))
         design = _values(self._space, raw.values[GENOME].tolist())
-        return self._checked(design, raw) if raw.status is Status.SOLVED else self._failed(design, raw)
+        if raw.status is Status.SOLVED:
+            return self._checked(name, design, raw)
+        return self._failed(design, checked(name, raw, {}))
 
-    def _failed(self, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
-        attempt = checked(raw, {})
-        reason = f"the joint problem was not solved: {raw.reason}"
-        heights = tuple(HeightSolution(h, raw.status, reason, {}, {}, (attempt,)) for h in self._heights)
+    def _failed(self, design: tuple[float, ...], attempt: Attempt) -> JointSolution:
+        reason = f"the joint problem was not solved: {attempt.reason}"
+        heights = tuple(
+            HeightSolution(height, attempt.status, reason, {}, {}, (attempt,), "") for height in self._heights
+        )
         return JointSolution(design, heights, ({},) * len(heights), attempt)
 
-    def _checked(self, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
+    def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
         checker = Checker(self._scene, tree, self._human)
         postures = [self._postures(raw, index) for index in range(len(self._heights))]
@@ -170,11 +174,11 @@ class JointProblem:
         everywhere = {
             f"{h:g} m, {n}": x for h, of in zip(self._heights, kept, strict=True) for n, x in of.items()
         }
-        attempt = checked(raw, everywhere)
+        attempt = checked(name, raw, everywhere)
         if attempt.status is not Status.SOLVED:
-            return self._failed(design, replace(raw, status=attempt.status, reason=attempt.reason))
+            return self._failed(design, attempt)
         heights = tuple(
-            HeightSolution(h, Status.SOLVED, "solved", p, of, (attempt,))
+            HeightSolution(h, Status.SOLVED, "solved", p, of, (attempt,), name)
             for h, p, of in zip(self._heights, postures, kept, strict=True)
         )
         missed = tuple(self._enforced.missed(residuals) for residuals in found)

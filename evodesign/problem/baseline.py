@@ -12,12 +12,12 @@ from dataclasses import dataclass, field, replace
 
 from evodesign.posture.check import TOLERANCE
 from evodesign.posture.joint import JointProblem, JointSolution
-from evodesign.posture.reach import ReachProblem
+from evodesign.posture.reach import Reach
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
 from evodesign.problem.objectives import DesignResult, objective_values
-from evodesign.records import Assessed, Assessment, Genome, ProblemSource
+from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
 __all__ = ["Baseline", "BaselineFactory"]
 
@@ -33,9 +33,6 @@ class Baseline:
     def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
         self._problem = problem
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
-        self._reach = ReachProblem(
-            problem.scene, problem.space, problem.options, symmetric=problem.joint.symmetric
-        )
 
     def solve(self, start: Genome) -> JointSolution:
         """Where a start leads; named designs begin with standard postures, others with drawn ones."""
@@ -70,17 +67,26 @@ class Baseline:
         return Assessed(assessment=assessment, heights=heights)
 
     def result(self, solution: JointSolution) -> DesignResult:
-        """A solution as the result of its design; reach is always the physical one."""
+        """A solution as the result of its design."""
         problem = self._problem
         return DesignResult(
             robot=problem.scene.robot,
             space=problem.space,
             values=solution.design,
             tree=problem.space.resized(problem.scene.robot.tree, solution.design),
-            reach=self._reach.solve(solution.design),
+            reach=_reach(solution),
             heights=solution.heights,
             paper=problem.joint,
         )
+
+
+def _reach(solution: JointSolution) -> Reach:
+    """The heights that a solution holds; beyond them nothing was tried."""
+    heights = [height.height for height in solution.heights]
+    if not solution.solved:
+        return Reach(None, None, solution.attempt.status, solution.attempt.reason)
+    reason = f"holds loads at {', '.join(f'{height:g}' for height in heights)} m; no others were tried"
+    return Reach(min(heights), max(heights), Status.SOLVED, reason)
 
 
 def _reason(height: HeightSolution, violations: Mapping[str, float]) -> str:

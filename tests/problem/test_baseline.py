@@ -1,4 +1,4 @@
-"""The gradient baseline as a run: starts are evaluations, failures are rows, and the same start ends alike."""
+"""The gradient baseline as a run: starts are evaluations, failures are rows, equal starts end alike."""
 
 from __future__ import annotations
 
@@ -104,9 +104,9 @@ def test_a_start_that_fails_is_a_row(repository: Path, tmp_path: Path) -> None:
 def test_limits_that_are_not_enforced_are_named(repository: Path) -> None:
     """In the reason of a height that is solved all the same, and not counted as residuals."""
     published = read_source(repository / "problems" / "sartore2022_as_published.toml")
-    problem = build_problem(at_one_height(published))
+    problem = build_problem(published)
     assessment = Baseline(problem).assess(problem.joint_start[0]).assessment
-    (height,) = assessment.heights
+    height = assessment.heights[0]
     assert assessment.status is Status.SOLVED
     assert assessment.violation == 0.0
     assert "limits not enforced and exceeded: " in height.reason
