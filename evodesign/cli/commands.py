@@ -17,6 +17,10 @@ ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem fi
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
 Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+SymmetryName = Annotated[
+    str | None,
+    typer.Option("--symmetry", help="Postures: on, off or polish.", show_default="as in the problem"),
+]
 Evaluations = Annotated[
     int | None, typer.Option(min=1, help="Total evaluations of the run.", show_default="as in the problem")
 ]
@@ -42,6 +46,7 @@ def search(
     seed: Annotated[
         int | None, typer.Option(min=0, help="Of the search.", show_default="as in the problem")
     ] = None,
+    symmetry: SymmetryName = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
     json: Json = False,
@@ -49,7 +54,7 @@ def search(
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
     from evodesign.cli.searching import Wishes, start
 
-    start(problem, run, Wishes(algorithm, evaluations, population, seed), jobs, pool, json)
+    start(problem, run, Wishes(algorithm, evaluations, population, seed, symmetry), jobs, pool, json)
 
 
 def resume(
@@ -81,6 +86,7 @@ def front(
 def show(
     run: RunPath,
     design: Design,
+    jobs: Jobs = CORES,
     json: Json = False,
     plot: Annotated[
         Path | None,
@@ -90,18 +96,19 @@ def show(
     """One design of a run: objectives, parameters, torques, contact forces."""
     from evodesign.cli.showing import show_design
 
-    show_design(run, design, json, plot)
+    show_design(run, design, jobs, json, plot)
 
 
 def export(
     run: RunPath,
     design: Design,
     to: Annotated[Path, typer.Option(metavar="DIR", help="A new or empty folder.")],
+    jobs: Jobs = CORES,
 ) -> None:
     """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
     from evodesign.cli.exporting import export_run_design
 
-    export_run_design(run, design, to)
+    export_run_design(run, design, to, jobs)
 
 
 def evaluate(
@@ -114,12 +121,14 @@ def evaluate(
         str | None,
         typer.Option(help="Which design of the file.", show_default="the file's only one"),
     ] = None,
+    symmetry: SymmetryName = None,
+    jobs: Jobs = CORES,
     json: Json = False,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals."""
     from evodesign.cli.designs import evaluate_design
 
-    evaluate_design(problem, design, name, json)
+    evaluate_design(problem, design, name, symmetry, jobs, json)
 
 
 def check(problem: ProblemPath, json: Json = False) -> None:
@@ -129,4 +138,11 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
-COMMANDS = (search, resume, front, show, export, evaluate, check)
+def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
+    """What a problem is solved from: its seeds, and how well they lead other designs."""
+    from evodesign.cli.seeding import show_seeds
+
+    show_seeds(problem, jobs, json)
+
+
+COMMANDS = (search, resume, front, show, export, evaluate, check, seeds)

@@ -53,9 +53,13 @@ class OpenedDesign:
     rebuilt: RebuiltProblem
 
 
-def open_design(directory: Path, number: int) -> OpenedDesign:
+def open_design(directory: Path, number: int, jobs: int) -> OpenedDesign:
     """A design of a run by the number of its evaluation; one without logged postures is solved anew.
 
+    Args:
+        directory: of the run.
+        number: of the evaluation.
+        jobs: that may work out what a solve needs first.
     Raises:
         RunError: the run cannot be read, or holds no evaluation yet.
         InputError: it holds no evaluation of that number.
@@ -71,17 +75,21 @@ def open_design(directory: Path, number: int) -> OpenedDesign:
     evaluation = by_number[number]
     best = front(run.header.objectives, run.evaluations)
     rebuilt = RebuiltProblem(run.header)
-    return OpenedDesign(run, evaluation, _heights(run, evaluation, rebuilt), evaluation in best, rebuilt)
+    return OpenedDesign(
+        run, evaluation, _heights(run, evaluation, rebuilt, jobs), evaluation in best, rebuilt
+    )
 
 
-def _heights(run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem) -> tuple[HeightDetail, ...]:
+def _heights(
+    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int
+) -> tuple[HeightDetail, ...]:
     logged = {detail.evaluation: detail for detail in run.details}
     if evaluation.number in logged:
         return logged[evaluation.number].heights
     from evodesign.cli.ready import evaluator_of  # CasADi takes its time to load
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
-    return evaluator_of(rebuilt.problem).assess(evaluation.genome).heights
+    return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
 
 
 def cast_of(opened: OpenedDesign) -> Cast:
