@@ -21,7 +21,13 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.pool.registry",
         "evodesign.evolve",
         "evodesign.cli.fronts",
+        "evodesign.cli.showing",
         "evodesign.report.front_figure",
+        "evodesign.report.figures.joint_torques",
+        "evodesign.report.figures.posture_figure",
+        "evodesign.report.figures.torque_boxes",
+        "evodesign.report.replay.layout",
+        "evodesign.report.replay.recording",
     ],
 )
 def test_module_loads_without_casadi(module: str) -> None:

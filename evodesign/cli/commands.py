@@ -15,6 +15,7 @@ __all__ = ["COMMANDS"]
 
 ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
+Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 SymmetryName = Annotated[
     str | None,
@@ -82,6 +83,34 @@ def front(
     show(run, json, plot)
 
 
+def show(
+    run: RunPath,
+    design: Design,
+    jobs: Jobs = CORES,
+    json: Json = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Also write figures of its torques and postures (SVG and PNG)."),
+    ] = None,
+) -> None:
+    """One design of a run: objectives, parameters, torques, contact forces."""
+    from evodesign.cli.showing import show_design
+
+    show_design(run, design, jobs, json, plot)
+
+
+def export(
+    run: RunPath,
+    design: Design,
+    to: Annotated[Path, typer.Option(metavar="DIR", help="A new or empty folder.")],
+    jobs: Jobs = CORES,
+) -> None:
+    """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
+    from evodesign.cli.exporting import export_run_design
+
+    export_run_design(run, design, to, jobs)
+
+
 def evaluate(
     problem: ProblemPath,
     design: Annotated[
@@ -116,4 +145,4 @@ def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
     show_seeds(problem, jobs, json)
 
 
-COMMANDS = (search, resume, front, evaluate, check, seeds)
+COMMANDS = (search, resume, front, show, export, evaluate, check, seeds)
