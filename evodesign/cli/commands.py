@@ -96,6 +96,22 @@ def front(
     show(run, Picking(knee, different, near, where or (), limit), Printing(json, csv, plot))
 
 
+def watch(
+    run: RunPath,
+    serve: Annotated[
+        bool, typer.Option("--serve", help="On a local page that refreshes itself, for this machine alone.")
+    ] = False,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0 for any free one.")] = 8765,
+    every: Annotated[float, typer.Option(min=0.1, help="Seconds between two looks.")] = 1.0,
+    once: Annotated[bool, typer.Option("--once", help="Show the present state and leave.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the present state as JSON and leave.")] = False,
+) -> None:
+    """Follow a running search; Ctrl-C leaves, and the search goes on."""
+    from evodesign.cli.watching import watch as follow
+
+    follow(run, every=every, serve=serve, port=port, once=once, json=json)
+
+
 def evaluate(
     problem: ProblemPath,
     design: Annotated[
@@ -121,4 +137,4 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
-COMMANDS = (search, resume, front, evaluate, check)
+COMMANDS = (search, resume, front, watch, evaluate, check)
