@@ -112,6 +112,19 @@ def watch(
     follow(run, every=every, serve=serve, port=port, once=once, json=json)
 
 
+def compare(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN RUN...", help="Directories of runs.")],
+    json: Json = False,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write a figure of the comparison (HTML).")
+    ] = None,
+) -> None:
+    """Several runs side by side: hypervolumes, rank tests over seeds, the best designs of all."""
+    from evodesign.cli.comparing import compare_runs
+
+    compare_runs(runs, json, plot)
+
+
 def evaluate(
     problem: ProblemPath,
     design: Annotated[
@@ -137,4 +150,4 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
-COMMANDS = (search, resume, front, watch, evaluate, check)
+COMMANDS = (search, resume, front, watch, compare, evaluate, check)
