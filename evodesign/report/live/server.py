@@ -11,7 +11,7 @@ from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 
-from evodesign.errors import InputError
+from evodesign.errors import EvodesignError, InputError
 
 __all__ = ["ADDRESS", "LiveServer"]
 
@@ -60,15 +60,23 @@ class _Handler(BaseHTTPRequestHandler):
         elif self.path == "/":
             self._answer("text/html; charset=utf-8", self.server.page)
         elif self.path == "/state.json":
-            self._answer("application/json", self.server.state())
+            self._state()
         else:
             self.send_error(404)
+
+    def _state(self) -> None:
+        try:
+            state = self.server.state()
+        except EvodesignError as error:  # the run has gone, or cannot be read
+            self._answer("text/plain; charset=utf-8", str(error).encode(), code=503)
+        else:
+            self._answer("application/json", state)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - as the base class has it
         """Keep the terminal quiet."""
 
-    def _answer(self, kind: str, content: bytes) -> None:
-        self.send_response(200)
+    def _answer(self, kind: str, content: bytes, *, code: int = 200) -> None:
+        self.send_response(code)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))
         self.send_header("Content-Security-Policy", POLICY)

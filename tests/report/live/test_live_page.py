@@ -15,7 +15,7 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.analysis.watched import Watched
-from evodesign.errors import InputError
+from evodesign.errors import InputError, RunError
 from evodesign.report.live.server import ADDRESS, LiveServer
 from evodesign.report.live.state import state_of
 from tests.runlog.toys import toy_evaluations, toy_generation, toy_header
@@ -94,6 +94,19 @@ def test_page_fetches_nothing_from_elsewhere(server: LiveServer) -> None:
     without_svg_names = page.replace('"http://www.w3.org/2000/svg"', "")
     assert "http" not in without_svg_names
     assert "src=" not in page
+
+
+def test_run_that_has_gone_is_said_without_a_traceback(capsys: pytest.CaptureFixture[str]) -> None:
+    def gone() -> bytes:
+        raise RunError("runs/first: there is no such run directory")
+
+    with LiveServer(0, gone) as served:
+        thread = threading.Thread(target=served.serve_forever, kwargs={"poll_interval": 0.05})
+        thread.start()
+        assert get(served, "/state.json") == (503, "runs/first: there is no such run directory")
+        served.shutdown()
+        thread.join()
+    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_port_that_is_taken_is_named(server: LiveServer) -> None:
