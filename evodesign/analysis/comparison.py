@@ -214,7 +214,7 @@ def _notes(runs: Sequence[Compared], count: int) -> tuple[str, ...]:
             f"{len(longer)} of {len(runs)} have more"
         )
     seen: set[tuple[str, int]] = set()
-    for each in runs:
+    for each in (each for each in runs if each.run.evaluations):
         key = (each.search, each.run.header.search.seed)
         if key in seen:
             notes.append(f"{each.run.directory}: seed {key[1]} of {key[0]} came before, and counts once")

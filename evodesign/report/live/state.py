@@ -64,7 +64,7 @@ def state_of(standing: Standing, *, ended: bool, now: float) -> dict[str, Any]:
         ],
         "front": [_point(header, each) for each in drawn],
         "front_size": len(standing.front),
-        "others": [_point(header, each)[1:] for each in standing.others],
+        "others": [_point(header, each) for each in standing.others],
         "knees": [_point(header, each) for each in knees(objectives, standing.front)[:MOST_KNEES]],
     }
 
