@@ -9,22 +9,27 @@ from pathlib import Path
 
 from evodesign.bridge.design import Design
 from evodesign.errors import InputError, nearest_name
-from evodesign.posture.cache import user_cache
+from evodesign.pool.registry import make_pool
+from evodesign.posture.cache import Cache, user_cache
 from evodesign.problem.build import build_problem
-from evodesign.problem.evaluate import Evaluator, prepared
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.prepare import prepared
 from evodesign.problem.source import read_source
 from evodesign.records import Objective, Parameter, ProblemSource
 
 __all__ = ["OpenedProblem", "open_problem"]
 
 
-def open_problem(path: str | os.PathLike[str]) -> OpenedProblem:
-    """Open a problem file and get its inner problems ready, which takes seconds the first time.
+def open_problem(path: str | os.PathLike[str], jobs: int = 1) -> OpenedProblem:
+    """Open a problem file and get its inner problems ready, which takes minutes the first time.
 
+    Args:
+        path: of the problem file.
+        jobs: how many processes work out what no cache holds yet.
     Raises:
         InputError: naming file, key, what was wanted and what was found.
     """
-    return OpenedProblem(read_source(Path(path)))
+    return OpenedProblem(read_source(Path(path)), jobs)
 
 
 class OpenedProblem:
@@ -32,13 +37,15 @@ class OpenedProblem:
 
     Args:
         source: the problem and its files, as text.
+        jobs: how many processes work out what no cache holds yet.
     """
 
-    def __init__(self, source: ProblemSource) -> None:
+    def __init__(self, source: ProblemSource, jobs: int = 1) -> None:
         self.source = source
         problem = build_problem(source)
-        people = prepared(problem, user_cache("people", os.environ), lambda sentence: None)
-        self._evaluator = Evaluator(problem, people)
+        with make_pool("joblib" if jobs > 1 else "serial", jobs) as pool:
+            known = prepared(problem, _cache(), pool, _Unwatched())
+        self._evaluator = Evaluator(problem, known)
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
@@ -79,3 +86,21 @@ class OpenedProblem:
             if not (math.isfinite(values[name]) and values[name] > 0.0):
                 raise InputError("design", name, "a positive number", f"{values[name]}")
         return tuple(float(values[name]) for name in names)
+
+
+class _Unwatched:
+    """Is shown what is worked out, and keeps still."""
+
+    def missing(self, pieces: int) -> None:
+        """Nothing."""
+
+    def done(self, piece: str) -> None:
+        """Nothing."""
+
+
+def _cache() -> Cache | None:
+    """Where what is worked out is kept; None where nothing can be."""
+    try:
+        return user_cache("prepared", os.environ)
+    except OSError:
+        return None

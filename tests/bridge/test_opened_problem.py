@@ -16,7 +16,7 @@ from evodesign.bridge.opened_problem import OpenedProblem
 from evodesign.bridge.opened_run import OpenedRun
 from evodesign.bridge.pymoo_problem import PymooProblem, as_pymoo_problem
 from evodesign.errors import InputError
-from evodesign.posture.human_value import HumanValue
+from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import FORMAT_VERSION, Evaluation, RunHeader
@@ -24,8 +24,8 @@ from evodesign.runlog.run import Run
 
 
 @pytest.fixture(scope="module")
-def opened(repository: Path, people: tuple[HumanValue, ...]) -> OpenedProblem:
-    assert people, "worked out before, so that the problem finds it in the cache"
+def opened(repository: Path, known: Preparation) -> OpenedProblem:
+    assert known.values, "worked out before, so that the problem finds it in the cache"
     return evodesign.open_problem(repository / "problems" / "icub_lifting.toml")
 
 
