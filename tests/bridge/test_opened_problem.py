@@ -6,12 +6,12 @@ import math
 import pickle
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
-import evodesign
 from evodesign.bridge.opened_problem import OpenedProblem
 from evodesign.bridge.opened_run import OpenedRun
 from evodesign.bridge.pymoo_problem import PymooProblem, as_pymoo_problem
@@ -19,14 +19,18 @@ from evodesign.errors import InputError
 from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.source import read_source
 from evodesign.records import FORMAT_VERSION, Evaluation, RunHeader
 from evodesign.runlog.run import Run
 
 
 @pytest.fixture(scope="module")
 def opened(repository: Path, known: Preparation) -> OpenedProblem:
+    """The default problem, without compiling: that takes longer than it saves these tests."""
     assert known.values, "worked out before, so that the problem finds it in the cache"
-    return evodesign.open_problem(repository / "problems" / "icub_lifting.toml")
+    source = read_source(repository / "problems" / "icub_lifting.toml")
+    text = f"{source.text}\n[solver]\ncompile = false\n"
+    return OpenedProblem(msgspec.structs.replace(source, text=text))
 
 
 @pytest.fixture(scope="module")
