@@ -12,10 +12,10 @@ from evodesign.report.export.folder import export_design, refuse_full
 __all__ = ["export_run_design"]
 
 
-def export_run_design(directory: Path, number: int, to: Path) -> None:
+def export_run_design(directory: Path, number: int, to: Path, jobs: int) -> None:
     """Write the folder of a design and say what is in it."""
     refuse_full(to)  # before anything takes time
-    opened = open_design(directory, number)
+    opened = open_design(directory, number, jobs)
     run, evaluation = opened.run, opened.evaluation
     design = ExportedDesign(directory.resolve().name, run.header, evaluation, cast_of(opened), opened.heights)
     done = export_design(design, to, on_front=opened.on_front)

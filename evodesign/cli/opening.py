@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -55,9 +54,13 @@ class OpenedDesign:
     rebuilt: RebuiltProblem
 
 
-def open_design(directory: Path, number: int) -> OpenedDesign:
+def open_design(directory: Path, number: int, jobs: int) -> OpenedDesign:
     """A design of a run by the number of its evaluation; one without logged postures is solved anew.
 
+    Args:
+        directory: of the run.
+        number: of the evaluation.
+        jobs: that may work out what a solve needs first.
     Raises:
         RunError: the run cannot be read, or holds no evaluation yet.
         InputError: it holds no evaluation of that number.
@@ -73,17 +76,17 @@ def open_design(directory: Path, number: int) -> OpenedDesign:
     evaluation = by_number[number]
     best = front(run.header.objectives, run.evaluations)
     rebuilt = RebuiltProblem(run.header)
-    return OpenedDesign(run, evaluation, _heights(run, evaluation), evaluation in best, rebuilt)
+    return OpenedDesign(run, evaluation, _heights(run, evaluation, jobs), evaluation in best, rebuilt)
 
 
-def _heights(run: Run, evaluation: Evaluation) -> tuple[HeightDetail, ...]:
+def _heights(run: Run, evaluation: Evaluation, jobs: int) -> tuple[HeightDetail, ...]:
     logged = {detail.evaluation: detail for detail in run.details}
     if evaluation.number in logged:
         return logged[evaluation.number].heights
     from evodesign.cli.ready import problem_factory  # CasADi takes its time to load
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
-    with make_pool("joblib", os.cpu_count() or 1) as pool:
+    with make_pool("joblib", jobs) as pool:
         return problem_factory(run.header, pool)()(evaluation.genome).heights
 
 

@@ -8,10 +8,11 @@ from typing import Any
 
 import msgspec
 from rich.console import Console
+from rich.markup import escape
 
 from evodesign.records import Status
 
-__all__ = ["console", "counted", "figure", "print_json", "show_notes"]
+__all__ = ["console", "counted", "figure", "print_json", "show_notes", "shown", "visible"]
 
 PLAIN_WIDTH = 110
 """Columns of a table that is not shown on a terminal."""
@@ -31,6 +32,16 @@ def figure(value: float | None) -> str:
 def counted(statuses: Mapping[Status, int]) -> str:
     """Statuses in words, such as `solved 48, infeasible 2`."""
     return ", ".join(f"{status} {statuses[status]}" for status in Status if statuses.get(status)) or "none"
+
+
+def visible(text: str) -> str:
+    """Text with control characters as their escapes: names in a user's file may hold them."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+
+
+def shown(name: str) -> str:
+    """A name from a user's file as rich's markup that shows it as it stands."""
+    return escape(visible(name))
 
 
 def print_json(value: Any) -> None:

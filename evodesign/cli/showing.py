@@ -13,11 +13,11 @@ from evodesign.report.export.design import design_json
 __all__ = ["show_design"]
 
 
-def show_design(directory: Path, number: int, json: bool, plot: Path | None) -> None:
+def show_design(directory: Path, number: int, jobs: int, json: bool, plot: Path | None) -> None:
     """Print one design; write its figures if asked."""
     if plot is not None:
         _make(plot)
-    opened = open_design(directory, number)
+    opened = open_design(directory, number, jobs)
     if plot is not None:
         _write_figures(opened, plot)
     if json:

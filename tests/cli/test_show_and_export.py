@@ -78,7 +78,7 @@ def cells(text: str) -> list[list[str]]:
 
 
 def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(run, 0, json=False, plot=None)
+    show_design(run, 0, jobs=1, json=False, plot=None)
     text = capsys.readouterr().out
     logged = read_run(run)
     evaluation, detail = logged.evaluations[0], logged.details[0]
@@ -108,7 +108,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
 
 
 def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(run, 0, json=True, plot=None)
+    show_design(run, 0, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()
     assert captured.err == ""
     found = json.loads(captured.out)
@@ -126,7 +126,7 @@ def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
 def test_design_without_logged_postures_is_solved_anew(
     run: Path, problem: Problem, evaluator: Evaluator, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    show_design(run, 1, json=True, plot=None)
+    show_design(run, 1, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()
     assert captured.err == "note: the log holds no postures of design 1, so it is solved anew\n"
     expected = evaluator.assess(problem.start[1]).heights
@@ -136,7 +136,7 @@ def test_design_without_logged_postures_is_solved_anew(
 def test_plot_writes_three_figures_twice(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    show_design(run, 0, json=False, plot=tmp_path / "new" / "figures")
+    show_design(run, 0, jobs=1, json=False, plot=tmp_path / "new" / "figures")
     names = sorted(path.name for path in (tmp_path / "new" / "figures").iterdir())
     stems = ("postures", "torques", "torques_by_joint")
     assert names == sorted(f"{stem}.{kind}" for stem in stems for kind in ("png", "svg"))
@@ -146,7 +146,7 @@ def test_plot_writes_three_figures_twice(
 def test_export_writes_the_logged_postures(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    export_run_design(run, 0, tmp_path / "design")
+    export_run_design(run, 0, tmp_path / "design", jobs=1)
     printed = capsys.readouterr().out.split()
     assert sorted(printed) == sorted(str(path) for path in (tmp_path / "design").iterdir())
     told = json.loads((tmp_path / "design" / "postures.json").read_text())
@@ -189,7 +189,7 @@ def hostile(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_hostile_names_are_text_on_the_terminal(hostile: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(hostile, 0, json=False, plot=None)
+    show_design(hostile, 0, jobs=1, json=False, plot=None)
     text = capsys.readouterr().out
     assert text.splitlines()[0] == f"{HOSTILE}: design 0"
     names = [row[0] for row in cells(text)]
@@ -199,8 +199,8 @@ def test_hostile_names_are_text_on_the_terminal(hostile: Path, capsys: pytest.Ca
 
 
 def test_hostile_names_stay_names_in_files(hostile: Path, tmp_path: Path) -> None:
-    show_design(hostile, 0, json=True, plot=tmp_path / "figures")
-    export_run_design(hostile, 0, tmp_path / "design")
+    show_design(hostile, 0, jobs=1, json=True, plot=tmp_path / "figures")
+    export_run_design(hostile, 0, tmp_path / "design", jobs=1)
     assert {path.name for path in tmp_path.iterdir()} == {"figures", "design"}
     for path in [*(tmp_path / "figures").iterdir(), *(tmp_path / "design").iterdir()]:
         assert re.fullmatch(r"[A-Za-z_]+\.[a-z]+", path.name)
@@ -243,7 +243,7 @@ def test_any_number_of_objectives_gives_a_card(
 ) -> None:
     place = toy_run(tmp_path / "run", objectives)
     for number in range(8):
-        show_design(place, number, json=False, plot=None)
+        show_design(place, number, jobs=1, json=False, plot=None)
         rows = cells(capsys.readouterr().out)
         named = [row[0] for row in rows[:objectives]]
         names = ["robot_torque", "reach_height", "third", "[bold]", "fifth"][:objectives]
@@ -254,7 +254,7 @@ def test_any_number_of_objectives_gives_a_card(
 def test_infeasible_design_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     place = toy_run(tmp_path / "run", count=12)
     number = next(e.number for e in read_run(place).evaluations if not e.feasible)
-    show_design(place, number, json=False, plot=None)
+    show_design(place, number, jobs=1, json=False, plot=None)
     text = capsys.readouterr().out
     assert "not feasible: too high by a third" in text
     assert "infeasible: too high by a" in text
@@ -270,19 +270,19 @@ def test_run_cut_by_a_crash_shows_what_it_holds(tmp_path: Path, capsys: pytest.C
         if len(kept) < 8:
             break
     assert len(kept) == 7
-    show_design(place, kept[-1].number, json=False, plot=None)
+    show_design(place, kept[-1].number, jobs=1, json=False, plot=None)
     captured = capsys.readouterr()
     assert captured.out.startswith(f"toy: design {kept[-1].number}\n")
     assert "without a footer" in captured.err
     with pytest.raises(InputError, match="0 to"):
-        show_design(place, 7, json=False, plot=None)
+        show_design(place, 7, jobs=1, json=False, plot=None)
 
 
 def test_empty_run_is_explained(tmp_path: Path) -> None:
     place = write_run(tmp_path / "run", toy_header(), [], [])
     for command in (
-        lambda: show_design(place, 0, json=False, plot=None),
-        lambda: export_run_design(place, 0, tmp_path / "design"),
+        lambda: show_design(place, 0, jobs=1, json=False, plot=None),
+        lambda: export_run_design(place, 0, tmp_path / "design", jobs=1),
     ):
         with pytest.raises(RunError, match="holds no evaluation yet"):
             command()
@@ -293,11 +293,14 @@ def test_places_that_cannot_be_written_are_explained(run: Path, tmp_path: Path) 
     file = tmp_path / "file"
     file.write_text("mine")
     for command, words in (
-        (lambda: show_design(run, 0, json=False, plot=file), "--plot: wanted a folder that can be written"),
-        (lambda: export_run_design(run, 0, file), "--to: wanted a new or empty folder"),
-        (lambda: export_run_design(run, 0, tmp_path), "which holds files"),
         (
-            lambda: export_run_design(run, 9, tmp_path / "new"),
+            lambda: show_design(run, 0, jobs=1, json=False, plot=file),
+            "--plot: wanted a folder that can be written",
+        ),
+        (lambda: export_run_design(run, 0, file, jobs=1), "--to: wanted a new or empty folder"),
+        (lambda: export_run_design(run, 0, tmp_path, jobs=1), "which holds files"),
+        (
+            lambda: export_run_design(run, 9, tmp_path / "new", jobs=1),
             "DESIGN: wanted the number of an evaluation, 0 to 1",
         ),
     ):
