@@ -135,18 +135,10 @@ def reproduction(
     """
     show_notes(["the published setting"])
     published = _published(without)
+    by_gradient = _searched(with_limits, GRADIENT, directory, effort, began)
     show_notes(["the robot as it is"])
     original, highest = _original(with_limits, effort.jobs)
-    runs = []
-    for name, algorithm, budget, share in (
-        (GRADIENT, JOINT_STARTS, effort.starts, SHARE_OF_BASELINE),
-        (EVOLUTION, with_limits.search.algorithm, effort.evaluations, 1.0),
-    ):
-        population = min(budget, GENERATION) if name == GRADIENT else with_limits.search.population
-        settings = with_limits.settings(algorithm, population, effort.seed)
-        end = began + 60.0 * effort.minutes * share
-        run = _logged(with_limits, settings, budget, directory / name, effort, end)
-        runs.append(_best(with_limits, run, name))
+    runs = (by_gradient, _searched(with_limits, EVOLUTION, directory, effort, began))
     claims = [
         table_claim(
             "published setting", published.original.strains, published.optimised.strains, published.broken
@@ -162,7 +154,19 @@ def reproduction(
             reduction_claim(name, *strains, least, len(every)),
             human_claim(name, *strains),
         ]
-    return Reproduction(published, original, highest, tuple(runs), tuple(claims))
+    return Reproduction(published, original, highest, runs, tuple(claims))
+
+
+def _searched(problem: Problem, name: str, directory: Path, effort: Effort, began: float) -> Found:
+    """The best robot of a new run: of the joint problem, or of the problem's search."""
+    if name == GRADIENT:
+        settings = problem.settings(JOINT_STARTS, min(effort.starts, GENERATION), effort.seed)
+        end = began + 60.0 * effort.minutes * SHARE_OF_BASELINE
+        return _best(problem, _logged(problem, settings, effort.starts, directory / name, effort, end), name)
+    table = problem.search
+    settings = problem.settings(table.algorithm, table.population, effort.seed)
+    end = began + 60.0 * effort.minutes
+    return _best(problem, _logged(problem, settings, effort.evaluations, directory / name, effort, end), name)
 
 
 def _robot_norm(evaluation: Evaluation, height: float) -> float:

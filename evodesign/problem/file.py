@@ -192,6 +192,7 @@ class BaselineTable(Table, frozen=True):
     """`[baseline]`: the paper's joint problem, postures of all heights and the design in one program.
 
     `start` names designs of the file `search.start` with which the starts begin; left out: all of it.
+    `compile` pays for hundreds of starts only: the program of all heights is long.
     """
 
     start: tuple[Name, ...] | None = None
@@ -201,6 +202,7 @@ class BaselineTable(Table, frozen=True):
     contact_limits: bool = True
     stance_limits: bool = True
     length_bounds: bool = True
+    compile: bool = False
     iterations: Annotated[int, Meta(ge=1)] = 1000
     seconds: Positive = 60.0
 

@@ -46,9 +46,7 @@ def joint_settings(
             preferred,
         ),
         enforced=Enforced(table.joint_limits, table.contact_limits, table.stance_limits, table.length_bounds),
-        options=IpoptOptions(
-            iterations=table.iterations, seconds=table.seconds, compiled=tables.solver.compile
-        ),
+        options=IpoptOptions(iterations=table.iterations, seconds=table.seconds, compiled=table.compile),
         symmetric=tables.solver.symmetry is not Symmetry.OFF,
     )
 
