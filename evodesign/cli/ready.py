@@ -42,9 +42,11 @@ def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
     factory: Evaluations
     if header.search.algorithm == JOINT_STARTS:
         factory = BaselineFactory(f"{_digest(header.problem)}-{JOINT_STARTS}", header.problem)
+        compiled = problem.joint.options.compiled
     else:
         factory = AssessmentFactory(_digest(header.problem), header.problem, known_of(problem, pool))
-    if problem.options.compiled:
+        compiled = problem.options.compiled
+    if compiled:
         _compile(factory)
     return factory
 
