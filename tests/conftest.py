@@ -14,6 +14,7 @@ from evodesign.posture.human_value import HumanValue
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator, prepared
 from evodesign.problem.source import read_source
+from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
@@ -52,3 +53,14 @@ def people(problem: Problem) -> tuple[HumanValue, ...]:
 def evaluator(problem: Problem, people: tuple[HumanValue, ...]) -> Evaluator:
     """The default problem's inner problems."""
     return Evaluator(problem, people)
+
+
+@pytest.fixture(scope="session")
+def cluster() -> Iterator[Cluster]:
+    """A Dask scheduler with two workers, of which one has a nanny."""
+    with Cluster() as made:
+        made.start_scheduler()
+        made.add_worker()
+        made.add_worker("--no-nanny")
+        made.wait_for(2)
+        yield made

@@ -26,7 +26,7 @@ def problem_factory(header: RunHeader) -> AssessmentFactory:
     """The evaluation of a header's problem as workers build it, with everything they share made ready."""
     digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
     problem = build_problem(header.problem)
-    factory = AssessmentFactory(digest, header.problem, _values(problem))
+    factory = AssessmentFactory(digest, header.problem, _values(problem), problem.limits)
     if problem.options.compiled:
         _compile(factory)
     return factory

@@ -6,14 +6,13 @@ dies or takes too long is replaced, and nothing else notices.
 
 from __future__ import annotations
 
-import time
 import weakref
 from collections.abc import Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 from evodesign.pool.base import Factory, Finished, Pool
 from evodesign.pool.cell import Cell
+from evodesign.pool.crew import Crew
 from evodesign.pool.dispatch import ends_of
 
 __all__ = ["JoblibPool"]
@@ -42,7 +41,7 @@ class JoblibPool(Pool):
         if not self._cells or self._cells[0].factory != factory:
             self._close_cells()
             self._cells = [Cell(factory, "local") for _ in range(self._jobs)]
-        ends = _ends(_Crew(self._cells), arguments)
+        ends = _ends(Crew(self._cells), arguments)
         self._current = weakref.ref(ends)
         return ends
 
@@ -62,44 +61,8 @@ class JoblibPool(Pool):
             cell.close()
 
 
-def _ends(crew: _Crew[A, R], arguments: Iterable[A]) -> Generator[Finished[R], None, None]:
+def _ends(crew: Crew[A, R], arguments: Iterable[A]) -> Generator[Finished[R], None, None]:
     try:
         yield from ends_of(crew, arguments)
     finally:
         crew.end_work()
-
-
-class _Crew(Generic[A, R]):
-    """Cells that are free, and those at work."""
-
-    def __init__(self, cells: Iterable[Cell[A, R]]) -> None:
-        self._free = list(cells)
-        self._busy: dict[Future[Finished[R]], tuple[int, Cell[A, R]]] = {}
-
-    def free(self) -> int:
-        """Cells without work."""
-        return len(self._free)
-
-    def begin(self, index: int, argument: A) -> None:
-        """Give an argument to a free cell."""
-        cell = self._free.pop()
-        self._busy[cell.begin(index, argument)] = index, cell
-
-    def next_end(self) -> Finished[R]:
-        """The first end to come, or the first that is too late."""
-        while True:
-            earliest = min(cell.due for _, cell in self._busy.values())
-            done, _ = wait(self._busy, max(0.0, earliest - time.perf_counter()), FIRST_COMPLETED)
-            late = (future for future, (_, cell) in self._busy.items() if cell.due <= time.perf_counter())
-            future = next(iter(done), None) or next(late, None)
-            if future is not None:
-                index, cell = self._busy.pop(future)
-                end = cell.end(index, future)
-                self._free.append(cell)
-                return end
-
-    def end_work(self) -> None:
-        """End what is still at work."""
-        for _, cell in self._busy.values():
-            cell.close()
-        self._busy.clear()

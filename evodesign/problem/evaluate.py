@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from evodesign.pool.base import Limits
 from evodesign.posture.cache import Cache
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.human_value import HumanValue
@@ -154,11 +155,13 @@ class AssessmentFactory:
         digest: of the source; two factories of equal digest build the same evaluation.
         source: the problem's text and files.
         human_values: the person's part, worked out beforehand; it follows from the source.
+        limits: of one evaluation; they follow from the source.
     """
 
     digest: str
     source: ProblemSource = field(compare=False)
     human_values: tuple[HumanValue, ...] = field(compare=False)
+    limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to what it is worth."""

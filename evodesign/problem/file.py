@@ -165,13 +165,15 @@ class SearchTable(Table, frozen=True):
 
 
 class SolverTable(Table, frozen=True):
-    """`[solver]`: limits of one inner solve, symmetric postures or not, compiled functions or not."""
+    """`[solver]`: limits of an inner solve and of a whole evaluation, symmetric or not, compiled or not."""
 
     symmetry: Symmetry = Symmetry.ON
     compile: bool = False
 
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0
+    evaluation_seconds: Positive = 600.0
+    evaluation_memory_gb: Annotated[float, Meta(ge=0.5)] = 8.0
 
 
 class ProblemFile(Table, frozen=True):
