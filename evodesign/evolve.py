@@ -2,34 +2,35 @@
 
 A search is told only what is on the disk. Starting and resuming are the same loop: it begins with a fresh
 search each time, and an evaluation that the log holds is compared and told instead of repeated (resume by
-replay). Whatever the number of workers, evaluations are logged in order of number, so that
+replay). An evaluation is on the disk as soon as it has arrived. Whatever the number of workers and the order
+of arrival,
 
     start with a budget of 2n  =  start with a budget of n, then resume with 2n,
 
 but for times and names of workers. The last generation is cut where the budget ends; a cut generation is
-neither concluded nor told, and a later session with a larger budget completes it.
+neither concluded nor told, and a later session with a larger budget completes it. A stop finishes what is in
+flight; what was not yet handed out is left to a later session as well.
 """
 
 from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
 
-from evodesign.analysis.front import RunningFront, front, minimised
-from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.analysis.front import RunningFront, minimised
+from evodesign.analysis.standing import Standing
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Factory, Pool
+from evodesign.pool.gate import run_gated
 from evodesign.records import (
     Assessed,
     Evaluation,
-    Front,
-    Generation,
     Genome,
     RunHeader,
     SearchSettings,
@@ -164,18 +165,17 @@ def _finished(directory: Path, observer: Observer) -> Run:
 
 def _evolve(session: _Session, search: Search) -> None:
     """Go through all generations, from the first one on, until the budget is used up."""
-    done: list[Evaluation] = []
-    reference: dict[str, float] | None = None
-    generation = 0
-    while len(done) < session.header.budget:
+    standing = Standing(session.header.objectives)
+    done = generation = 0
+    while done < session.header.budget:
+        _heed(session.stop)
         begun = time.perf_counter()
         genomes = _ask(session, search)
-        born = _evaluate(session, generation, len(done), genomes[: session.header.budget - len(done)])
-        done += born
+        born = _evaluate(session, generation, done, genomes[: session.header.budget - done])
+        done += len(born)
         if len(born) < len(genomes):
-            session.memory.commit()
             return
-        reference = _conclude(session, generation, done, born, reference, begun)
+        _conclude(session, generation, standing, born, begun)
         search.tell([_outcome(session.header, evaluation) for evaluation in born])
         generation += 1
 
@@ -212,35 +212,23 @@ def _evaluate(session: _Session, generation: int, first: int, genomes: Sequence[
 def _evaluate_missing(
     session: _Session, generation: int, missing: Mapping[int, Genome]
 ) -> dict[int, Evaluation]:
-    """Evaluate genomes by number; log them in order of number, whatever the order in which they arrive.
+    """Evaluate genomes by number; each evaluation is on the disk before the next is looked at.
 
     Raises:
-        KeyboardInterrupt: by Ctrl-C or because `stop` asks for it; everything that had arrived is logged.
+        KeyboardInterrupt: by Ctrl-C, or because `stop` asked for it and all that was in flight has arrived.
     """
-    numbers, genomes = list(missing), list(missing.values())
-    logged: dict[int, Evaluation] = {}
-    early: dict[int, Arrival] = {}
-    _heed(session.stop)
-    results = session.pool.run(session.factory(), genomes)
-    try:
+    numbers, parameters = list(missing), session.header.parameters
+    arrived: dict[int, Evaluation] = {}
+    results = run_gated(session.pool, session.factory(), list(missing.values()), session.stop)
+    with closing(results):
         for finished in results:
             number = numbers[finished.index]
-            parameters = session.header.parameters
-            early[number] = arrival_of(number, generation, missing[number], parameters, finished)
-            while len(logged) < len(numbers) and (due := numbers[len(logged)]) in early:
-                _remember(session, early[due])
-                logged[due] = early.pop(due).evaluation
-            if len(logged) < len(numbers):
-                _heed(session.stop)
-    except BaseException:
-        with suppress(RunError):  # the error on its way says more than a log that cannot be written
-            for number in sorted(early):
-                _remember(session, early[number])
-        raise
-    finally:
-        if isinstance(results, Generator):
-            results.close()
-    return logged
+            arrival = arrival_of(number, generation, missing[number], parameters, finished)
+            _remember(session, arrival)
+            arrived[number] = arrival.evaluation
+    if len(arrived) < len(missing):
+        raise KeyboardInterrupt
+    return arrived
 
 
 def _heed(stop: Callable[[], bool]) -> None:
@@ -257,31 +245,12 @@ def _remember(session: _Session, arrival: Arrival) -> None:
 
 
 def _conclude(
-    session: _Session,
-    generation: int,
-    done: Sequence[Evaluation],
-    born: Sequence[Evaluation],
-    reference: dict[str, float] | None,
-    begun: float,
-) -> dict[str, float] | None:
-    """Put a generation on the disk, with its state and front unless they are known; give the reference."""
-    known = session.memory.generation(generation)
-    if known is not None:
-        session.memory.commit()
-        return known.reference
-    objectives = session.header.objectives
-    reference = reference or reference_point(objectives, done)
-    state = Generation(
-        number=generation,
-        evaluations=len(done),
-        feasible_share=sum(evaluation.feasible for evaluation in born) / len(born),
-        hypervolume=None if reference is None else hypervolume(objectives, done, reference),
-        reference=reference,
-        best=best(objectives, done),
-        seconds=time.perf_counter() - begun,
-    )
-    numbers = tuple(evaluation.number for evaluation in front(objectives, done))
-    session.memory.conclude(state, Front(generation=generation, evaluations=numbers))
-    session.memory.commit()
+    session: _Session, generation: int, standing: Standing, born: Sequence[Evaluation], begun: float
+) -> None:
+    """Put a generation's state and front on the disk, unless they are known."""
+    standing.add(born)
+    if session.memory.concluded(generation):
+        return
+    state = standing.generation(generation, born, time.perf_counter() - begun)
+    session.memory.conclude(state, standing.front(generation))
     session.observer.generation_done(state)
-    return reference

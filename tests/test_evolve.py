@@ -194,19 +194,19 @@ def test_every_search_of_the_registry_resumes_as_if_never_interrupted(
     assert essence(parts) == essence(whole)
 
 
-def test_evaluations_are_logged_in_order_of_number_however_they_arrive(tmp_path: Path) -> None:
+def test_evaluations_are_on_the_disk_as_they_arrive(tmp_path: Path) -> None:
     witness = Witness(tmp_path / "run")
     pool = OrderedPool(lambda count: range(count - 1, -1, -1))
     begin(tmp_path / "run", toy_header(population=3, budget=6), pool, observer=witness)
     assert witness.seen == [
         ("started", 0),
-        ("evaluated", 0, 1, 6),
+        ("evaluated", 2, 1, 6),
         ("evaluated", 1, 2, 6),
-        ("evaluated", 2, 3, 6),
+        ("evaluated", 0, 3, 6),
         ("generation", 0),
-        ("evaluated", 3, 4, 6),
+        ("evaluated", 5, 4, 6),
         ("evaluated", 4, 5, 6),
-        ("evaluated", 5, 6, 6),
+        ("evaluated", 3, 6, 6),
         ("generation", 1),
         ("finished", 6),
     ]

@@ -1,9 +1,9 @@
 """Writing one segment of a run's log, so that nothing believed is ever lost.
 
-Every evaluation is a chunk of its own, handed to the operating system at once: it survives the death of
-this process. `commit` also reaches the disk: what came before survives a power cut. The price is a log of
-about 1.0 kB instead of 0.5 kB per evaluation of 16 parameters and 3 heights (1.8 kB as JSON), and 5 kB
-more for each design with its postures.
+Every record is a chunk of its own, handed to the operating system at once: it survives the death of this
+process. `commit` also reaches the disk: what came before survives a power cut. Memory commits after every
+evaluation, before anyone is told of it. The price is a log of about 1.0 kB instead of 0.5 kB per evaluation
+of 16 parameters and 3 heights (1.8 kB as JSON), and 5 kB more for each design with its postures.
 """
 
 from __future__ import annotations
