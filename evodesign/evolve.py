@@ -10,13 +10,17 @@ of arrival,
 but for times and names of workers. The last generation is cut where the budget ends; a cut generation is
 neither concluded nor told, and a later session with a larger budget completes it. A stop finishes what is in
 flight; what was not yet handed out is left to a later session as well.
+
+An asynchronous search has no generations to wait for: it is told every outcome as it comes, and asked for a
+genome whenever a worker is free. Its log says what the search knew at each turn, so that it is replayed too;
+a session that goes on from there asks again for what was in flight.
 """
 
 from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,6 +38,7 @@ from evodesign.records import (
     Genome,
     RunHeader,
     SearchSettings,
+    Turn,
 )
 from evodesign.runlog.arrival import Arrival, arrival_of
 from evodesign.runlog.directory import locked, make_directory, run_segments
@@ -43,6 +48,7 @@ from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
 from evodesign.search.base import Outcome, Search
+from evodesign.search.steady import SteadySearch
 
 __all__ = ["MakeSearch", "Observer", "Silent", "resume", "start"]
 
@@ -80,14 +86,14 @@ def start(
         RunError: the directory holds a run already, or cannot be written.
         Interrupted: stopped, by `stop` or by Ctrl-C; what had arrived is logged.
     """
-    search = make_search(header.search)
+    evolve = _loop(header.search, make_search)
     make_directory(directory)
     with locked(directory):
         log = RunWriter(directory, header)
         fresh = Run(directory, header, (), (), (), (), complete=False, notes=())
         with log, Memory(fresh, lambda: log) as memory:
             running = RunningFront(header.objectives)
-            _work(_Session(directory, header, memory, lambda: factory, pool, observer, stop, running), search)
+            _work(_Session(directory, header, memory, lambda: factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
 
 
@@ -123,11 +129,11 @@ def resume(
         run = read_run(directory)
         total = run.header.budget if budget is None else budget
         header = msgspec.structs.replace(renew(run.header), budget=total)
-        search = make_search(header.search)
+        evolve = _loop(header.search, make_search)
         factory = functools.cache(lambda: factory_of(header))
         with Memory(run, lambda: RunWriter.next_segment(directory, header)) as memory:
             running = RunningFront(header.objectives)
-            _work(_Session(directory, header, memory, factory, pool, observer, stop, running), search)
+            _work(_Session(directory, header, memory, factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
 
 
@@ -145,11 +151,18 @@ class _Session:
     front: RunningFront
 
 
-def _work(session: _Session, search: Search) -> None:
+def _loop(settings: SearchSettings, make_search: MakeSearch) -> Callable[[_Session], None]:
+    """The loop that suits the settings, with its search ready to ask."""
+    if settings.asynchronous:
+        return functools.partial(_evolve_steadily, search=registry.make_steady_search(settings))
+    return functools.partial(_evolve, search=make_search(settings))
+
+
+def _work(session: _Session, evolve: Callable[[_Session], None]) -> None:
     """Run the loop; a stop becomes an error that says how to go on."""
     session.observer.started(session.header, session.memory.evaluations)
     try:
-        _evolve(session, search)
+        evolve(session)
     except KeyboardInterrupt:
         raise Interrupted(
             f"stopped after {session.memory.evaluations} of {session.header.budget} evaluations; "
@@ -178,6 +191,73 @@ def _evolve(session: _Session, search: Search) -> None:
         _conclude(session, generation, standing, born, begun)
         search.tell([_outcome(session.header, evaluation) for evaluation in born])
         generation += 1
+
+
+def _evolve_steadily(session: _Session, search: SteadySearch) -> None:
+    """Keep all workers busy until the budget is used up: every end is told at once, every free worker asks.
+
+    So many evaluations as the population are a generation, in the order in which they came.
+    """
+    standing = Standing(session.header.objectives)
+    begun, born = time.perf_counter(), list[Evaluation]()
+    with closing(_steady_evaluations(session, search)) as evaluations:
+        for evaluation in evaluations:
+            born.append(evaluation)
+            if len(born) == session.header.search.population:
+                _conclude(session, evaluation.generation, standing, born, begun)
+                begun, born = time.perf_counter(), []
+
+
+def _steady_evaluations(session: _Session, search: SteadySearch) -> Generator[Evaluation, None, None]:
+    """Evaluations in the order in which they came, first those that are known; each is told when taken.
+
+    Raises:
+        KeyboardInterrupt: as in `_evaluate_missing`.
+    """
+    turns = session.memory.turns()
+    for evaluation in _replay(session, search, turns):
+        session.front.enters(evaluation)
+        yield evaluation
+    taken = {turn.number for turn in turns.values()}
+    missing = (number for number in range(session.header.budget) if number not in taken)
+    asked: dict[int, tuple[Turn, Genome]] = {}
+    told = len(turns)
+
+    def genomes() -> Iterator[Genome]:
+        for index, number in enumerate(missing):
+            genome = search.ask(number)
+            asked[index] = Turn(number=number, told=told), genome
+            yield genome
+
+    if told == session.header.budget:
+        return
+    parameters, population = session.header.parameters, session.header.search.population
+    with closing(run_gated(session.pool, session.factory(), genomes(), session.stop)) as results:
+        for finished in results:
+            turn, genome = asked.pop(finished.index)
+            arrival = arrival_of(told, told // population, genome, parameters, finished, turn)
+            _remember(session, arrival)
+            search.tell(turn.number, _outcome(session.header, arrival.evaluation))
+            told += 1
+            yield arrival.evaluation
+    if told < session.header.budget:
+        raise KeyboardInterrupt
+
+
+def _replay(session: _Session, search: SteadySearch, turns: Mapping[int, Turn]) -> Iterator[Evaluation]:
+    """Tell a fresh search what is known, asking for every genome when it was asked, and compare."""
+    by_told: dict[int, list[int]] = {}
+    for number, turn in turns.items():
+        by_told.setdefault(turn.told, []).append(number)
+    known: dict[int, Evaluation] = {}
+    for told, turn in turns.items():
+        for number in by_told.pop(told, ()):
+            evaluation = session.memory.recall(number, search.ask(turns[number].number))
+            if evaluation is not None:
+                known[number] = evaluation
+        evaluation = known.pop(told)
+        search.tell(turn.number, _outcome(session.header, evaluation))
+        yield evaluation
 
 
 def _ask(session: _Session, search: Search) -> list[Genome]:
@@ -219,7 +299,7 @@ def _evaluate_missing(
     """
     numbers, parameters = list(missing), session.header.parameters
     arrived: dict[int, Evaluation] = {}
-    results = run_gated(session.pool, session.factory(), list(missing.values()), session.stop)
+    results = run_gated(session.pool, session.factory(), missing.values(), session.stop)
     with closing(results):
         for finished in results:
             number = numbers[finished.index]

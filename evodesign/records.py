@@ -31,6 +31,7 @@ __all__ = [
     "SearchSettings",
     "Sense",
     "Status",
+    "Turn",
     "design_of",
     "worst_status",
 ]
@@ -182,8 +183,23 @@ class Detail(Record, frozen=True):
     heights: tuple[HeightDetail, ...]
 
 
+class Turn(Record, frozen=True):
+    """When an asynchronous search was asked for a genome.
+
+    Attributes:
+        number: in the order of asking.
+        told: how many evaluations the search had been told.
+    """
+
+    number: int
+    told: int
+
+
 class Evaluation(Record, frozen=True):
-    """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs."""
+    """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs.
+
+    An asynchronous run has a `turn`, and counts its evaluations in the order in which they came.
+    """
 
     number: int
     generation: int
@@ -191,6 +207,7 @@ class Evaluation(Record, frozen=True):
     assessment: Assessment
     seconds: float
     worker: str
+    turn: Turn | None = None
 
     @property
     def feasible(self) -> bool:
@@ -230,6 +247,7 @@ class SearchSettings(Record, frozen=True):
     population: int
     seed: int
     start: tuple[Genome, ...] = ()
+    asynchronous: bool = False
 
 
 class ProblemSource(Record, frozen=True):

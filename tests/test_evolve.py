@@ -111,7 +111,7 @@ def test_postures_of_a_front_survive_stops(tmp_path: Path) -> None:
     task = ToyTask(header)
     pool = OrderedPool(shuffled(3))
     with pytest.raises(Interrupted):
-        begin(tmp_path / "run", header, pool, task=task, stop=lambda: len(task.genomes) == 20)
+        begin(tmp_path / "run", header, pool, task=task, stop=lambda: len(task.genomes) >= 20)
     assert fronts_with_postures(go_on(tmp_path / "run")) == fronts_with_postures(
         begin(tmp_path / "whole", header)
     )
@@ -368,17 +368,16 @@ def test_a_stopped_search_goes_on_as_if_it_had_not_been(tmp_path: Path, asked_af
     assert essence(go_on(tmp_path / "run")) == essence(begin(tmp_path / "whole", header))
 
 
-def test_a_stop_keeps_what_arrived_out_of_order(tmp_path: Path) -> None:
+def test_ctrl_c_keeps_what_arrived_out_of_order(tmp_path: Path) -> None:
     header = toy_header(population=4, budget=8)
-    task = ToyTask(header)
+
+    def press_ctrl_c(call: int) -> None:
+        if call == 2:
+            raise KeyboardInterrupt
+
+    pool = OrderedPool(lambda count: [3, 1, 0, 2][:count])
     with pytest.raises(Interrupted, match="after 2 of 8"):
-        begin(
-            tmp_path / "run",
-            header,
-            OrderedPool(lambda count: [3, 1, 0, 2][:count]),
-            task=task,
-            stop=lambda: len(task.genomes) == 2,
-        )
+        begin(tmp_path / "run", header, pool, task=ToyTask(header, before=press_ctrl_c))
     assert [each.number for each in read_run(tmp_path / "run").evaluations] == [1, 3]
     second = ToyTask(header)
     run = go_on(tmp_path / "run", factory_of=lambda header: second)

@@ -20,6 +20,7 @@ from evodesign.records import (
     Genome,
     Parameter,
     Status,
+    Turn,
     design_of,
 )
 
@@ -40,6 +41,7 @@ def arrival_of(
     genome: Genome,
     parameters: tuple[Parameter, ...],
     finished: Finished[Assessed],
+    turn: Turn | None = None,
 ) -> Arrival:
     """What came of a genome, with its place in the run; a failure becomes a status with its reason."""
     assessed = _assessed(genome, parameters, finished)
@@ -50,6 +52,7 @@ def arrival_of(
         assessment=assessed.assessment,
         seconds=finished.seconds,
         worker=finished.worker,
+        turn=turn,
     )
     return Arrival(evaluation, Detail(evaluation=number, heights=assessed.heights))
 

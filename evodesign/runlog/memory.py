@@ -11,8 +11,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
-from evodesign.errors import ResumeMismatch
-from evodesign.records import Detail, Evaluation, Front, Generation, Genome
+from evodesign.errors import ResumeMismatch, RunError
+from evodesign.records import Detail, Evaluation, Front, Generation, Genome, Turn
 from evodesign.runlog.run import Run
 from evodesign.runlog.writer import RunWriter
 
@@ -40,6 +40,21 @@ class Memory:
     def evaluations(self) -> int:
         """How many evaluations are known."""
         return self._count
+
+    def turns(self) -> dict[int, Turn]:
+        """The turns, by number of evaluation, of all that is known of an asynchronous run.
+
+        Raises:
+            RunError: an evaluation is missing between others, and what was asked after it cannot be checked.
+        """
+        turns = {number: known.turn for number, known in sorted(self._evaluations.items()) if known.turn}
+        missing = next((place for place, number in enumerate(turns) if place != number), None)
+        if missing is not None:
+            raise RunError(
+                f"{self._directory}: evaluation {missing} cannot be read, and an asynchronous search "
+                f"cannot go on without it; see what it found with: evodesign front {self._directory}"
+            )
+        return turns
 
     def recall(self, number: int, genome: Genome) -> Evaluation | None:
         """The evaluation of a number, if an earlier session left it; it is given once and then let go.
