@@ -24,6 +24,7 @@ from pathlib import Path
 import msgspec
 
 from evodesign.analysis.front import RunningFront, minimised
+from evodesign.analysis.stagnation import stagnant
 from evodesign.analysis.standing import Standing
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Factory, Pool
@@ -164,7 +165,7 @@ def _finished(directory: Path, observer: Observer) -> Run:
 
 
 def _evolve(session: _Session, search: Search) -> None:
-    """Go through all generations, from the first one on, until the budget is used up."""
+    """Go through all generations, from the first one on, until the budget is used up or nothing is gained."""
     standing = Standing(session.header.objectives)
     done = generation = 0
     while done < session.header.budget:
@@ -176,6 +177,8 @@ def _evolve(session: _Session, search: Search) -> None:
         if len(born) < len(genomes):
             return
         _conclude(session, generation, standing, born, begun)
+        if stagnant(standing.hypervolumes, session.header.stagnation_generations):
+            return
         search.tell([_outcome(session.header, evaluation) for evaluation in born])
         generation += 1
 

@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import BinaryIO, Self
 
 import msgspec
+import zstandard
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import RunError
@@ -26,6 +27,7 @@ from evodesign.runlog.channels import (
     EVALUATION,
     FRONT,
     GENERATION,
+    HEADER_COPY,
     MESSAGE_ENCODING,
     RECORDS,
     RUN,
@@ -58,12 +60,14 @@ class RunWriter:
         self.path = segment_path(directory, segment)
         self._spoilt = False
         self._closed = False
+        self._time = 0
         with self._writing():
             self._file = self.path.open("xb")
             self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
             self._mcap.start(profile="", library="evodesign")
             self._channels = _register(self._mcap, header)
             self._add(RUN, header, sequence=segment)
+            self._add_header_copy(header)
             _to_disk(self._file)
             _entries_to_disk(directory, directory.parent)
 
@@ -124,9 +128,19 @@ class RunWriter:
 
     def _add(self, topic: str, record: msgspec.Struct, sequence: int) -> None:
         """A chunk with one message, handed to the operating system."""
-        now = time.time_ns()
+        now = self._now()
         self._mcap.add_message(self._channels[topic], now, msgspec.json.encode(record), now, sequence)
         self._mcap.flush()  # type: ignore[no-untyped-call]
+
+    def _add_header_copy(self, header: RunHeader) -> None:
+        now = self._now()
+        data = zstandard.compress(msgspec.json.encode(header))
+        self._mcap.add_attachment(now, now, HEADER_COPY, "application/zstd", data)
+
+    def _now(self) -> int:
+        """Time [ns since 1970] that never goes back within a segment, whatever the clock does."""
+        self._time = max(self._time, time.time_ns())
+        return self._time
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
