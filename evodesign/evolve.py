@@ -17,9 +17,10 @@ from __future__ import annotations
 import functools
 import time
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 import msgspec
 
@@ -29,6 +30,7 @@ from evodesign.analysis.standing import Standing
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Factory, Pool
 from evodesign.pool.gate import run_gated
+from evodesign.pool.serial import SerialPool
 from evodesign.records import (
     Assessed,
     Evaluation,
@@ -45,7 +47,7 @@ from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
 from evodesign.search.base import Outcome, Search
 
-__all__ = ["MakeSearch", "Observer", "Silent", "resume", "start"]
+__all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 
 MakeSearch = Callable[[SearchSettings], Search]
 Evaluate = Factory[Genome, Assessed]
@@ -130,6 +132,30 @@ def resume(
             running = RunningFront(header.objectives)
             _work(_Session(directory, header, memory, factory, pool, observer, stop, running), search)
         return _finished(directory, observer)
+
+
+class _EndOfLog(Exception):
+    """A replay has come to where the log ends."""
+
+
+def replay(run: Run, *, make_search: MakeSearch = registry.make_search) -> None:
+    """Ask and tell all that a run's log holds, as `resume` does, evaluating and writing nothing.
+
+    Raises:
+        ResumeMismatch: the log holds a genome that the rebuilt search does not ask for.
+    """
+
+    def end() -> NoReturn:
+        raise _EndOfLog
+
+    last = max((evaluation.number for evaluation in run.evaluations), default=-1)
+    header = msgspec.structs.replace(run.header, budget=1 + last, stagnation_generations=None)
+    running = RunningFront(header.objectives)
+    with Memory(run, end) as memory, SerialPool() as pool, suppress(_EndOfLog):
+        _evolve(
+            _Session(run.directory, header, memory, end, pool, Silent(), never, running),
+            make_search(header.search),
+        )
 
 
 @dataclass(frozen=True, slots=True)

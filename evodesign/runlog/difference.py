@@ -10,9 +10,9 @@ from collections.abc import Mapping
 
 import msgspec
 
-from evodesign.records import RunHeader
+from evodesign.records import ProblemSource, RunHeader
 
-__all__ = ["DECISIVE", "differences", "version_differences"]
+__all__ = ["DECISIVE", "differences", "source_differences", "version_differences"]
 
 DECISIVE = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore")
 """Packages on whose versions the results of a search depend."""
@@ -20,11 +20,7 @@ DECISIVE = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moo
 
 def differences(first: RunHeader, second: RunHeader) -> list[str]:
     """What differs in problem and search, a phrase each; where the problem file lay does not matter."""
-    found = []
-    if first.problem.text != second.problem.text:
-        line = _first_difference(first.problem.text, second.problem.text)
-        found.append(f"the problem file differs in line {line}")
-    found += [f"the file '{name}' differs" for name in _unequal(first.problem.files, second.problem.files)]
+    found = source_differences(first.problem, second.problem)
     found += [
         f"the search's {name} was {_short(getattr(first.search, name))}"
         f" and is {_short(getattr(second.search, name))}"
@@ -37,6 +33,15 @@ def differences(first: RunHeader, second: RunHeader) -> list[str]:
         if not found and getattr(first, name) != getattr(second, name)
     ]
     return found
+
+
+def source_differences(first: ProblemSource, second: ProblemSource) -> list[str]:
+    """What differs in a problem's files, a phrase each."""
+    found = []
+    if first.text != second.text:
+        line = _first_difference(first.text, second.text)
+        found.append(f"the problem file differs in line {line}")
+    return found + [f"the file of '{name}' differs" for name in _unequal(first.files, second.files)]
 
 
 def version_differences(first: Mapping[str, str], second: Mapping[str, str]) -> list[str]:

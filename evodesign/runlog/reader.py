@@ -17,7 +17,7 @@ import zstandard
 from evodesign.errors import RunError
 from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import HEADER_COPY, RECORDS, RUN
-from evodesign.runlog.scan import Gap, Scan, messages, scan, topics
+from evodesign.runlog.scan import Scan, messages, scan, topics
 
 __all__ = ["Entry", "Segment", "entries", "read_content", "read_segment"]
 
@@ -36,7 +36,7 @@ class Segment:
         headers: one of each session in it, a single one unless it is merged; none when even that is missing.
         evaluations, generations, fronts, details: in the order of the file.
         complete: whether the file is whole, to its last byte.
-        gaps: parts in the middle or at the end that cannot be read.
+        damaged: whether something is wrong that no kill explains.
         note: a sentence on what is missing; empty when nothing is.
     """
 
@@ -47,7 +47,7 @@ class Segment:
     fronts: tuple[Front, ...]
     details: tuple[Detail, ...]
     complete: bool
-    gaps: tuple[Gap, ...]
+    damaged: bool
     note: str
 
 
@@ -86,7 +86,7 @@ def read_segment(path: Path) -> Segment:
         fronts=_all(records, Front),
         details=_all(records, Detail),
         complete=found.sound,
-        gaps=found.gaps,
+        damaged=bool(found.damage) or (found.ended and not found.sound),
         note=_note(path, found, len(evaluations), bool(headers)),
     )
 
@@ -155,9 +155,8 @@ def _note(path: Path, found: Scan, evaluations: int, headed: bool) -> str:
     if found.sound:
         return ""
     where = f"after {evaluations} evaluations" if headed else "before its header"
-    inside = [gap for gap in found.gaps if found.ended or gap.end < found.size]
-    if inside:
-        places = ", ".join(f"{gap.end - gap.start} bytes at {gap.start}" for gap in inside)
+    if found.damage:
+        places = ", ".join(f"{gap.end - gap.start} bytes at {gap.start}" for gap in found.damage)
         return f"{path.name} is damaged: {places} cannot be read; {evaluations} evaluations can"
     if found.ended:
         return f"{path.name} does not match its checksums, though each of its {evaluations} evaluations does"

@@ -31,6 +31,7 @@ class Run:
         details: in order of evaluation, each once; every member of a front has one.
         complete: whether every segment is whole.
         notes: a sentence for everything that is missing or strange.
+        damaged: whether a segment has damage that no kill explains.
     """
 
     directory: Path
@@ -41,6 +42,7 @@ class Run:
     details: tuple[Detail, ...]
     complete: bool
     notes: tuple[str, ...]
+    damaged: bool = False
 
 
 def read_run(directory: Path) -> Run:
@@ -68,6 +70,7 @@ def read_run(directory: Path) -> Run:
         fronts=fronts,
         details=details,
         complete=all(segment.complete for segment in segments),
+        damaged=any(segment.damaged for segment in segments),
         notes=(*(segment.note for segment in segments if segment.note), *contradictions),
     )
 

@@ -87,6 +87,11 @@ class Scan:
     ended: bool
     sound: bool
 
+    @property
+    def damage(self) -> tuple[Gap, ...]:
+        """Gaps that no kill explains: all but one at the end of a file that lacks its last bytes."""
+        return tuple(gap for gap in self.gaps if self.ended or gap.end < self.size)
+
 
 def scan(content: bytes) -> Scan:
     """Everything sound in the bytes of a segment; never raises."""

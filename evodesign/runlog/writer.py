@@ -34,9 +34,9 @@ from evodesign.runlog.channels import (
     SCHEMA_ENCODING,
     described,
 )
-from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments
+from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
 
-__all__ = ["RunWriter"]
+__all__ = ["RunWriter", "add_header_copy", "register"]
 
 
 class RunWriter:
@@ -65,11 +65,11 @@ class RunWriter:
             self._file = self.path.open("xb")
             self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
             self._mcap.start(profile="", library="evodesign")
-            self._channels = _register(self._mcap, header)
+            self._channels = register(self._mcap, header)
             self._add(RUN, header, sequence=segment)
-            self._add_header_copy(header)
+            add_header_copy(self._mcap, header, self._now())
             _to_disk(self._file)
-            _entries_to_disk(directory, directory.parent)
+            synced(directory, directory.parent)
 
     @classmethod
     def next_segment(cls, directory: Path, header: RunHeader) -> RunWriter:
@@ -132,11 +132,6 @@ class RunWriter:
         self._mcap.add_message(self._channels[topic], now, msgspec.json.encode(record), now, sequence)
         self._mcap.flush()  # type: ignore[no-untyped-call]
 
-    def _add_header_copy(self, header: RunHeader) -> None:
-        now = self._now()
-        data = zstandard.compress(msgspec.json.encode(header))
-        self._mcap.add_attachment(now, now, HEADER_COPY, "application/zstd", data)
-
     def _now(self) -> int:
         """Time [ns since 1970] that never goes back within a segment, whatever the clock does."""
         self._time = max(self._time, time.time_ns())
@@ -154,8 +149,8 @@ class RunWriter:
         self._spoilt = False
 
 
-def _register(writer: Writer, header: RunHeader) -> dict[str, int]:
-    """Channel numbers by topic."""
+def register(writer: Writer, header: RunHeader) -> dict[str, int]:
+    """Describe all channels in a file; their numbers by topic."""
     channels = {}
     for topic, schema in described(header).items():
         number = writer.register_schema(RECORDS[topic].__name__, SCHEMA_ENCODING, schema)
@@ -163,16 +158,12 @@ def _register(writer: Writer, header: RunHeader) -> dict[str, int]:
     return channels
 
 
+def add_header_copy(writer: Writer, header: RunHeader, now: int) -> None:
+    """Attach the header once more, with a checksum of its own, at a time [ns since 1970]."""
+    data = zstandard.compress(msgspec.json.encode(header))
+    writer.add_attachment(now, now, HEADER_COPY, "application/zstd", data)
+
+
 def _to_disk(file: BinaryIO) -> None:
     file.flush()
     os.fsync(file.fileno())
-
-
-def _entries_to_disk(*directories: Path) -> None:
-    """Make new names in directories durable: syncing a file does not sync its name."""
-    for directory in directories:
-        descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
