@@ -12,11 +12,13 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
 import zstandard
+
+from evodesign.runlog.channels import HEADER_COPY
 
 __all__ = ["Attachment", "Chunk", "Gap", "Message", "Scan", "messages", "scan", "topics"]
 
@@ -27,6 +29,8 @@ RECORD: Final = struct.Struct("<BQ")
 CHUNK_START: Final = struct.Struct("<QQQI")
 CHUNK_MARK: Final = b"\x04\x00\x00\x00zstd"
 CHUNK_MARK_AT: Final = RECORD.size + CHUNK_START.size
+COPY_MARK: Final = struct.pack("<I", len(HEADER_COPY)) + HEADER_COPY.encode()
+COPY_MARK_AT: Final = RECORD.size + 16
 MESSAGE_START: Final = struct.Struct("<HIQQ")
 FOOTER_BODY: Final = struct.Struct("<QQI")
 INDEX_START: Final = struct.Struct("<HI")
@@ -101,7 +105,7 @@ def scan(content: bytes) -> Scan:
     ended = content.endswith(MAGIC) and len(content) > len(MAGIC)
     place = _after_header(content)
     if place is None:
-        place = _next_chunk(content, 0)
+        place = _next_sound(content, 0)
         gaps.append(Gap(0, place))
     while place < len(content):
         end, body = _record(content, place)
@@ -116,7 +120,7 @@ def scan(content: bytes) -> Scan:
         elif opcode == ATTACHMENT and (attachment := _attachment(body)) is not None:
             attachments.append(attachment)
         elif not (opcode == MESSAGE_INDEX and _is_index(body)):
-            end = _next_chunk(content, place + 1)
+            end = _next_sound(content, place + 1)
             gaps.append(Gap(place, end))
         place = end
     return Scan(tuple(chunks), tuple(attachments), tuple(gaps), len(content), ended=ended, sound=False)
@@ -168,14 +172,22 @@ def _after_header(content: bytes) -> int | None:
     return end if body else None
 
 
-def _next_chunk(content: bytes, place: int) -> int:
-    """Where the next sound chunk begins, from a place on; the length of the content if none does."""
-    mark = content.find(CHUNK_MARK, place + CHUNK_MARK_AT)
-    while mark >= 0:
-        start = mark - CHUNK_MARK_AT
-        if content[start] == CHUNK and _chunk_records(_record(content, start)[1]) is not None:
+def _next_sound(content: bytes, place: int) -> int:
+    """Where the next sound chunk or copy of the header begins, from a place on; the end if none does."""
+    chunk = _next(content, place, CHUNK, CHUNK_MARK, CHUNK_MARK_AT, _chunk_records)
+    return _next(content[:chunk], place, ATTACHMENT, COPY_MARK, COPY_MARK_AT, _attachment)
+
+
+def _next(
+    content: bytes, place: int, opcode: int, mark: bytes, mark_at: int, read: Callable[[bytes], object]
+) -> int:
+    """Where the next sound record of a kind begins, found by a mark that it bears; the end if none does."""
+    found = content.find(mark, place + mark_at)
+    while found >= 0:
+        start = found - mark_at
+        if content[start] == opcode and read(_record(content, start)[1]) is not None:
             return start
-        mark = content.find(CHUNK_MARK, mark + 1)
+        found = content.find(mark, found + 1)
     return len(content)
 
 
