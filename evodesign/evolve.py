@@ -10,50 +10,46 @@ of arrival,
 but for times and names of workers. The last generation is cut where the budget ends; a cut generation is
 neither concluded nor told, and a later session with a larger budget completes it. A stop finishes what is in
 flight; what was not yet handed out is left to a later session as well.
-
-An asynchronous search has no generations to wait for: it is told every outcome as it comes, and asked for a
-genome whenever a worker is free. Its log says what the search knew at each turn, so that it is replayed too;
-a session that goes on from there asks again for what was in flight.
 """
 
 from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import closing
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing, suppress
 from pathlib import Path
+from typing import NoReturn
 
 import msgspec
 
-from evodesign.analysis.front import RunningFront, minimised
+from evodesign.analysis.front import RunningFront
+from evodesign.analysis.stagnation import stagnant
 from evodesign.analysis.standing import Standing
 from evodesign.errors import Interrupted, RunError
-from evodesign.pool.base import Factory, Pool
+from evodesign.pool.base import Pool
 from evodesign.pool.gate import run_gated
+from evodesign.pool.serial import SerialPool
 from evodesign.records import (
-    Assessed,
     Evaluation,
     Genome,
     RunHeader,
     SearchSettings,
-    Turn,
 )
-from evodesign.runlog.arrival import Arrival, arrival_of
+from evodesign.runlog.arrival import arrival_of
 from evodesign.runlog.directory import locked, make_directory, run_segments
 from evodesign.runlog.memory import Memory
 from evodesign.runlog.observer import Observer, Silent
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
-from evodesign.search.base import Outcome, Search
-from evodesign.search.steady import SteadySearch
+from evodesign.search.base import Search
+from evodesign.session import Evaluate, Session, conclude, outcome_of, remember
+from evodesign.steady import evolve_steadily
 
-__all__ = ["MakeSearch", "Observer", "Silent", "resume", "start"]
+__all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 
 MakeSearch = Callable[[SearchSettings], Search]
-Evaluate = Factory[Genome, Assessed]
 
 
 def never() -> bool:
@@ -93,7 +89,7 @@ def start(
         fresh = Run(directory, header, (), (), (), (), complete=False, notes=())
         with log, Memory(fresh, lambda: log) as memory:
             running = RunningFront(header.objectives)
-            _work(_Session(directory, header, memory, lambda: factory, pool, observer, stop, running), evolve)
+            _work(Session(directory, header, memory, lambda: factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
 
 
@@ -133,32 +129,40 @@ def resume(
         factory = functools.cache(lambda: factory_of(header))
         with Memory(run, lambda: RunWriter.next_segment(directory, header)) as memory:
             running = RunningFront(header.objectives)
-            _work(_Session(directory, header, memory, factory, pool, observer, stop, running), evolve)
+            _work(Session(directory, header, memory, factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
 
 
-@dataclass(frozen=True, slots=True)
-class _Session:
-    """What the loop works with."""
-
-    directory: Path
-    header: RunHeader
-    memory: Memory
-    factory: Callable[[], Evaluate]
-    pool: Pool
-    observer: Observer
-    stop: Callable[[], bool]
-    front: RunningFront
+class _EndOfLog(Exception):
+    """A replay has come to where the log ends."""
 
 
-def _loop(settings: SearchSettings, make_search: MakeSearch) -> Callable[[_Session], None]:
+def replay(run: Run, *, make_search: MakeSearch = registry.make_search) -> None:
+    """Ask and tell all that a run's log holds, as `resume` does, evaluating and writing nothing.
+
+    Raises:
+        ResumeMismatch: the log holds a genome that the rebuilt search does not ask for.
+    """
+
+    def end() -> NoReturn:
+        raise _EndOfLog
+
+    last = max((evaluation.number for evaluation in run.evaluations), default=-1)
+    header = msgspec.structs.replace(run.header, budget=1 + last, stagnation_generations=None)
+    running = RunningFront(header.objectives)
+    with Memory(run, end) as memory, SerialPool() as pool, suppress(_EndOfLog):
+        evolve = _loop(header.search, make_search)
+        evolve(Session(run.directory, header, memory, end, pool, Silent(), never, running))
+
+
+def _loop(settings: SearchSettings, make_search: MakeSearch) -> Callable[[Session], None]:
     """The loop that suits the settings, with its search ready to ask."""
     if settings.asynchronous:
-        return functools.partial(_evolve_steadily, search=registry.make_steady_search(settings))
+        return functools.partial(evolve_steadily, search=registry.make_steady_search(settings))
     return functools.partial(_evolve, search=make_search(settings))
 
 
-def _work(session: _Session, evolve: Callable[[_Session], None]) -> None:
+def _work(session: Session, evolve: Callable[[Session], None]) -> None:
     """Run the loop; a stop becomes an error that says how to go on."""
     session.observer.started(session.header, session.memory.evaluations)
     try:
@@ -176,8 +180,8 @@ def _finished(directory: Path, observer: Observer) -> Run:
     return run
 
 
-def _evolve(session: _Session, search: Search) -> None:
-    """Go through all generations, from the first one on, until the budget is used up."""
+def _evolve(session: Session, search: Search) -> None:
+    """Go through all generations, from the first one on, until the budget is used up or nothing is gained."""
     standing = Standing(session.header.objectives)
     done = generation = 0
     while done < session.header.budget:
@@ -188,79 +192,14 @@ def _evolve(session: _Session, search: Search) -> None:
         done += len(born)
         if len(born) < len(genomes):
             return
-        _conclude(session, generation, standing, born, begun)
-        search.tell([_outcome(session.header, evaluation) for evaluation in born])
+        conclude(session, generation, standing, born, begun)
+        if stagnant(standing.hypervolumes, session.header.stagnation_generations):
+            return
+        search.tell([outcome_of(session.header, evaluation) for evaluation in born])
         generation += 1
 
 
-def _evolve_steadily(session: _Session, search: SteadySearch) -> None:
-    """Keep all workers busy until the budget is used up: every end is told at once, every free worker asks.
-
-    So many evaluations as the population are a generation, in the order in which they came.
-    """
-    standing = Standing(session.header.objectives)
-    begun, born = time.perf_counter(), list[Evaluation]()
-    with closing(_steady_evaluations(session, search)) as evaluations:
-        for evaluation in evaluations:
-            born.append(evaluation)
-            if len(born) == session.header.search.population:
-                _conclude(session, evaluation.generation, standing, born, begun)
-                begun, born = time.perf_counter(), []
-
-
-def _steady_evaluations(session: _Session, search: SteadySearch) -> Generator[Evaluation, None, None]:
-    """Evaluations in the order in which they came, first those that are known; each is told when taken.
-
-    Raises:
-        KeyboardInterrupt: as in `_evaluate_missing`.
-    """
-    turns = session.memory.turns()
-    for evaluation in _replay(session, search, turns):
-        session.front.enters(evaluation)
-        yield evaluation
-    taken = {turn.number for turn in turns.values()}
-    missing = (number for number in range(session.header.budget) if number not in taken)
-    asked: dict[int, tuple[Turn, Genome]] = {}
-    told = len(turns)
-
-    def genomes() -> Iterator[Genome]:
-        for index, number in enumerate(missing):
-            genome = search.ask(number)
-            asked[index] = Turn(number=number, told=told), genome
-            yield genome
-
-    if told == session.header.budget:
-        return
-    parameters, population = session.header.parameters, session.header.search.population
-    with closing(run_gated(session.pool, session.factory(), genomes(), session.stop)) as results:
-        for finished in results:
-            turn, genome = asked.pop(finished.index)
-            arrival = arrival_of(told, told // population, genome, parameters, finished, turn)
-            _remember(session, arrival)
-            search.tell(turn.number, _outcome(session.header, arrival.evaluation))
-            told += 1
-            yield arrival.evaluation
-    if told < session.header.budget:
-        raise KeyboardInterrupt
-
-
-def _replay(session: _Session, search: SteadySearch, turns: Mapping[int, Turn]) -> Iterator[Evaluation]:
-    """Tell a fresh search what is known, asking for every genome when it was asked, and compare."""
-    by_told: dict[int, list[int]] = {}
-    for number, turn in turns.items():
-        by_told.setdefault(turn.told, []).append(number)
-    known: dict[int, Evaluation] = {}
-    for told, turn in turns.items():
-        for number in by_told.pop(told, ()):
-            evaluation = session.memory.recall(number, search.ask(turns[number].number))
-            if evaluation is not None:
-                known[number] = evaluation
-        evaluation = known.pop(told)
-        search.tell(turn.number, _outcome(session.header, evaluation))
-        yield evaluation
-
-
-def _ask(session: _Session, search: Search) -> list[Genome]:
+def _ask(session: Session, search: Search) -> list[Genome]:
     """The next generation's genomes, of Python numbers, so that they are equal to their copies in the log."""
     genomes = [tuple(float(coordinate) for coordinate in genome) for genome in search.ask()]
     if not genomes:
@@ -269,12 +208,7 @@ def _ask(session: _Session, search: Search) -> list[Genome]:
     return genomes
 
 
-def _outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
-    values = minimised(header.objectives, evaluation.assessment)
-    return Outcome(objectives=values, violation=evaluation.assessment.violation)
-
-
-def _evaluate(session: _Session, generation: int, first: int, genomes: Sequence[Genome]) -> list[Evaluation]:
+def _evaluate(session: Session, generation: int, first: int, genomes: Sequence[Genome]) -> list[Evaluation]:
     """Evaluations of a generation's genomes, numbered from `first`; those that are known are not repeated."""
     known = {
         number: evaluation
@@ -290,7 +224,7 @@ def _evaluate(session: _Session, generation: int, first: int, genomes: Sequence[
 
 
 def _evaluate_missing(
-    session: _Session, generation: int, missing: Mapping[int, Genome]
+    session: Session, generation: int, missing: Mapping[int, Genome]
 ) -> dict[int, Evaluation]:
     """Evaluate genomes by number; each evaluation is on the disk before the next is looked at.
 
@@ -304,7 +238,7 @@ def _evaluate_missing(
         for finished in results:
             number = numbers[finished.index]
             arrival = arrival_of(number, generation, missing[number], parameters, finished)
-            _remember(session, arrival)
+            remember(session, arrival)
             arrived[number] = arrival.evaluation
     if len(arrived) < len(missing):
         raise KeyboardInterrupt
@@ -315,22 +249,3 @@ def _heed(stop: Callable[[], bool]) -> None:
     """Do as Ctrl-C does if a stop is asked for."""
     if stop():
         raise KeyboardInterrupt
-
-
-def _remember(session: _Session, arrival: Arrival) -> None:
-    """Put an evaluation on the disk, with its postures if nothing so far beats it."""
-    evaluation = arrival.evaluation
-    session.memory.remember(evaluation, arrival.detail if session.front.enters(evaluation) else None)
-    session.observer.evaluated(evaluation, session.memory.evaluations, session.header.budget)
-
-
-def _conclude(
-    session: _Session, generation: int, standing: Standing, born: Sequence[Evaluation], begun: float
-) -> None:
-    """Put a generation's state and front on the disk, unless they are known."""
-    standing.add(born)
-    if session.memory.concluded(generation):
-        return
-    state = standing.generation(generation, born, time.perf_counter() - begun)
-    session.memory.conclude(state, standing.front(generation))
-    session.observer.generation_done(state)

@@ -30,6 +30,7 @@ __all__ = [
     "RunHeader",
     "SearchSettings",
     "Sense",
+    "Stage",
     "Status",
     "Turn",
     "design_of",
@@ -238,8 +239,20 @@ class Front(Record, frozen=True):
     evaluations: tuple[int, ...]
 
 
+class Stage(Record, frozen=True):
+    """What a search was for its first so many generations, before a branch made it another one."""
+
+    algorithm: str
+    population: int
+    seed: int
+    generations: int
+
+
 class SearchSettings(Record, frozen=True):
-    """Everything that determines a search beside the evaluations it is told."""
+    """Everything that determines a search beside the evaluations it is told.
+
+    `past` holds the stages that a branch went through before, the earliest first; `start` is of the earliest.
+    """
 
     algorithm: str
     dimension: int
@@ -247,6 +260,7 @@ class SearchSettings(Record, frozen=True):
     population: int
     seed: int
     start: tuple[Genome, ...] = ()
+    past: tuple[Stage, ...] = ()
     asynchronous: bool = False
 
 
@@ -265,7 +279,11 @@ class ProblemSource(Record, frozen=True):
 
 
 class RunHeader(Record, frozen=True):
-    """First message of every segment of a run's log."""
+    """First message of every segment of a run's log.
+
+    `budget` counts evaluations of the run, `hours` wall time of each session, and `stagnation_generations`
+    generations in which the hypervolume may stand still.
+    """
 
     format_version: int
     problem: ProblemSource
@@ -277,3 +295,5 @@ class RunHeader(Record, frozen=True):
     versions: dict[str, str]
     git: str | None
     started: str
+    hours: float | None = None
+    stagnation_generations: int | None = None

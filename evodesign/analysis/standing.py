@@ -27,12 +27,19 @@ class Standing:
         self._members: tuple[Evaluation, ...] = ()
         self._reference: dict[str, float] | None = None
         self._shown = 0
+        self._hypervolumes: list[float | None] = []
+
+    @property
+    def hypervolumes(self) -> Sequence[float | None]:
+        """Hypervolume after each generation; None before the first feasible design."""
+        return self._hypervolumes
 
     def add(self, born: Sequence[Evaluation]) -> None:
         """Take in a generation. The first that holds a feasible design fixes the reference."""
         self._shown += len(born)
         self._reference = self._reference or reference_point(self._objectives, born)
         self._members = front(self._objectives, (*self._members, *born))
+        self._hypervolumes.append(self._hypervolume())
 
     def generation(self, number: int, born: Iterable[Evaluation], seconds: float) -> Generation:
         """The record of a generation that was added last, and took so long [s]."""
@@ -41,7 +48,7 @@ class Standing:
             number=number,
             evaluations=self._shown,
             feasible_share=sum(feasible) / len(feasible),
-            hypervolume=self._hypervolume(),
+            hypervolume=self._hypervolumes[-1],
             reference=self._reference,
             best=best(self._objectives, self._members),
             seconds=seconds,

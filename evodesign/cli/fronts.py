@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.front import front
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.tables import front_json, front_table
@@ -34,6 +35,8 @@ def show_run(run: Run, json: bool) -> None:
     out.print(front_table(run, designs))
     feasible = sum(evaluation.feasible for evaluation in run.evaluations)
     summary = f"{len(run.evaluations)} evaluations, {feasible} feasible, {len(designs)} on the front"
+    if counts := failures(run.evaluations):
+        summary += f", failed: {causes(counts)}"
     out.print(f"{summary}; the run lies in {run.directory}", highlight=False, markup=False, soft_wrap=True)
 
 

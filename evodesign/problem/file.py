@@ -161,6 +161,8 @@ class SearchTable(Table, frozen=True):
     population: Annotated[int, Meta(ge=2, le=100_000)] = 48
     evaluations: Annotated[int, Meta(ge=1)] = 1920
     seed: Annotated[int, Meta(ge=0)] = 1
+    hours: Positive | None = None
+    stagnation_generations: Annotated[int, Meta(ge=0)] | None = None
     start: Name | None = None
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings
 from evodesign.search.base import Search
+from evodesign.search.branched import Branched
 from evodesign.search.cma_es import CmaEs
 from evodesign.search.nsga2 import Nsga2
 from evodesign.search.quasi_random import QuasiRandom
@@ -38,6 +39,8 @@ def make_search(settings: SearchSettings) -> Search:
         InputError: an unknown algorithm, or settings that no search can use.
     """
     _check(settings, SEARCHES)
+    if settings.past:
+        return Branched(settings, make_search)
     return SEARCHES[settings.algorithm](settings)
 
 
