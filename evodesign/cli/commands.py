@@ -41,7 +41,16 @@ PopulationSize = Annotated[
 ]
 Seed = Annotated[int | None, typer.Option(min=0, help="Of the search.", show_default="as in the problem")]
 Jobs = Annotated[int, typer.Option(min=1, help="Evaluations that run at the same time.")]
-PoolName = Annotated[str, typer.Option("--pool", help="Where evaluations run: serial or joblib.")]
+PoolName = Annotated[str, typer.Option("--pool", help="Where evaluations run: serial, joblib or dask.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS", help="Of the Dask scheduler for --pool dask, such as tcp://127.0.0.1:8786."
+    ),
+]
+UseCache = Annotated[
+    bool, typer.Option("--cache", help="Look up designs that were evaluated before, and keep new ones.")
+]
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
@@ -68,15 +77,26 @@ def search(
     stagnation_generations: Stagnation = None,
     population: PopulationSize = None,
     seed: Seed = None,
+    asynchronous: Annotated[
+        bool | None,
+        typer.Option(
+            "--asynchronous/--generations",
+            help="Whether no worker waits for the slowest of a generation.",
+            show_default="as in the problem",
+        ),
+    ] = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
+    scheduler: Scheduler = None,
+    cache: UseCache = False,
     json: Json = False,
 ) -> None:
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
-    from evodesign.cli.searching import Budgets, Wishes, start
+    from evodesign.cli.searching import Budgets, Wishes, Workers, start
 
     budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
-    start(problem, run, Wishes(algorithm, population, seed), budgets, jobs, pool, json)
+    wishes = Wishes(algorithm, population, seed, asynchronous)
+    start(problem, run, wishes, budgets, Workers(pool, jobs, scheduler, cache), json)
 
 
 def resume(
@@ -86,16 +106,18 @@ def resume(
     stagnation_generations: Stagnation = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
+    scheduler: Scheduler = None,
+    cache: UseCache = False,
     accept_versions: Annotated[
         bool, typer.Option("--accept-versions", help="Go on although packages have other versions.")
     ] = False,
     json: Json = False,
 ) -> None:
     """Go on with a run that was stopped or killed, or give a finished one a larger budget."""
-    from evodesign.cli.searching import Budgets, go_on
+    from evodesign.cli.searching import Budgets, Workers, go_on
 
     budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
-    go_on(run, budgets, jobs, pool, accept_versions, json)
+    go_on(run, budgets, Workers(pool, jobs, scheduler, cache), accept_versions, json)
 
 
 def branch(
@@ -115,14 +137,17 @@ def branch(
     seed: Seed = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
+    scheduler: Scheduler = None,
+    cache: UseCache = False,
     json: Json = False,
 ) -> None:
     """Begin a new run with the first generations of another, and go on with another seed or search."""
-    from evodesign.cli.searching import Budgets, Turn, Wishes
+    from evodesign.cli.searching import Budgets, Turn, Wishes, Workers
     from evodesign.cli.searching import branch as begin
 
     budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
-    begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed), budgets, jobs, pool, json)
+    workers = Workers(pool, jobs, scheduler, cache)
+    begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed, None), budgets, workers, json)
 
 
 def front(

@@ -18,18 +18,21 @@ from evodesign.cli.progress import observer
 from evodesign.cli.ready import problem_factory
 from evodesign.cli.stopping import Stop
 from evodesign.errors import InputError, Interrupted, ResumeMismatch
+from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.notes import notes
+from evodesign.problem.remember import Remembering
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
 from evodesign.runlog.branch import begin_branch
 from evodesign.runlog.difference import source_differences, version_differences
 from evodesign.runlog.directory import refuse_run, segments
 from evodesign.runlog.run import Run, read_run
-from evodesign.search.registry import make_search
+from evodesign.search.registry import make_search, make_steady_search
+from evodesign.session import Evaluate
 
-__all__ = ["Budgets", "Turn", "Wishes", "branch", "go_on", "start"]
+__all__ = ["Budgets", "Turn", "Wishes", "Workers", "branch", "go_on", "start"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +62,7 @@ class Wishes:
     algorithm: str | None
     population: int | None
     seed: int | None
+    asynchronous: bool | None
 
     def applied(self, settings: SearchSettings) -> SearchSettings:
         """The settings as wished."""
@@ -67,7 +71,27 @@ class Wishes:
             algorithm=settings.algorithm if self.algorithm is None else self.algorithm,
             population=settings.population if self.population is None else self.population,
             seed=settings.seed if self.seed is None else self.seed,
+            asynchronous=settings.asynchronous if self.asynchronous is None else self.asynchronous,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Workers:
+    """Where evaluations run, and whether they are kept for other runs."""
+
+    pool: str
+    jobs: int
+    scheduler: str | None
+    cache: bool
+
+    def made(self) -> Pool:
+        """The pool, ready to work."""
+        return make_pool(self.pool, self.jobs, self.scheduler)
+
+    def factory(self, header: RunHeader) -> Evaluate:
+        """The evaluation of a header's problem."""
+        factory = problem_factory(header)
+        return Remembering(factory) if self.cache else factory
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,13 +103,14 @@ class Turn:
 
 
 def start(
-    path: Path, run: Path | None, wishes: Wishes, budgets: Budgets, jobs: int, pool: str, json: bool
+    path: Path, run: Path | None, wishes: Wishes, budgets: Budgets, workers: Workers, json: bool
 ) -> None:
     """Search a problem in a new run directory and print the front."""
     problem = build_problem(read_source(path))
     show_notes(notes(problem))
     table = problem.search
-    settings = wishes.applied(problem.settings(table.algorithm, table.population, table.seed))
+    settings = problem.settings(table.algorithm, table.population, table.seed, table.asynchronous)
+    settings = wishes.applied(settings)
     header = header_of(problem, settings, table.evaluations)
     header = msgspec.structs.replace(
         header, hours=table.hours, stagnation_generations=table.stagnation_generations
@@ -93,16 +118,16 @@ def start(
     header = budgets.applied(header)
     directory = _new_directory(problem.name) if run is None else run
     refuse_run(directory)  # before anything takes time; the search's settings too
-    make_search(settings)
+    (make_steady_search if settings.asynchronous else make_search)(settings)
     stop = Stop(header.hours)
-    with _resumable(directory, stop), make_pool(pool, jobs) as workers:
-        factory = problem_factory(header)
+    with _resumable(directory, stop), workers.made() as pool:
+        factory = workers.factory(header)
         with observer() as watching, stop.heeded():
-            done = evolve.start(directory, header, factory, workers, watching, stop=stop)
+            done = evolve.start(directory, header, factory, pool, watching, stop=stop)
     _show_result(done, json)
 
 
-def go_on(run: Path, budgets: Budgets, jobs: int, pool: str, accept_versions: bool, json: bool) -> None:
+def go_on(run: Path, budgets: Budgets, workers: Workers, accept_versions: bool, json: bool) -> None:
     """Resume a run and print the front."""
     header = read_run(run).header
     _note_changed_problem(header.problem)
@@ -113,26 +138,26 @@ def go_on(run: Path, budgets: Budgets, jobs: int, pool: str, accept_versions: bo
 
     with (
         _resumable(run, stop),
-        make_pool(pool, jobs) as workers,
+        workers.made() as pool,
         observer() as watching,
         stop.heeded(),
     ):
         try:
             done = evolve.resume(
-                run, problem_factory, workers, watching, budgets.evaluations, stop=stop, renew=renew
+                run, workers.factory, pool, watching, budgets.evaluations, stop=stop, renew=renew
             )
         except ResumeMismatch as mismatch:
             raise _explained(mismatch, header) from mismatch
     _show_result(done, json)
 
 
-def branch(run: Path, turn: Turn, wishes: Wishes, budgets: Budgets, jobs: int, pool: str, json: bool) -> None:
+def branch(run: Path, turn: Turn, wishes: Wishes, budgets: Budgets, workers: Workers, json: bool) -> None:
     """Begin a new run with the first generations of another one, go on with it and print the front."""
     old = read_run(run)
     directory = _new_directory(old.header.problem_name) if turn.directory is None else turn.directory
     past = begin_branch(old, directory, turn.generation, wishes.applied(old.header.search))
     show_notes([f"{past} evaluations taken over from {run}; the new run lies in {directory}"])
-    go_on(directory, budgets, jobs, pool, accept_versions=True, json=json)
+    go_on(directory, budgets, workers, accept_versions=True, json=json)
 
 
 def _note_changed_problem(source: ProblemSource) -> None:

@@ -57,7 +57,9 @@ class Problem:
     search: SearchTable
     start: tuple[Genome, ...]
 
-    def settings(self, algorithm: str, population: int, seed: int) -> SearchSettings:
+    def settings(
+        self, algorithm: str, population: int, seed: int, asynchronous: bool = False
+    ) -> SearchSettings:
         """Settings of a search over this problem."""
         return SearchSettings(
             algorithm=algorithm,
@@ -66,6 +68,7 @@ class Problem:
             population=population,
             seed=seed,
             start=self.start,
+            asynchronous=asynchronous,
         )
 
 

@@ -164,6 +164,7 @@ class SearchTable(Table, frozen=True):
     hours: Positive | None = None
     stagnation_generations: Annotated[int, Meta(ge=0)] | None = None
     start: Name | None = None
+    asynchronous: bool = False
 
 
 class SolverTable(Table, frozen=True):
