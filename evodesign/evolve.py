@@ -238,7 +238,7 @@ def _evaluate_missing(
         for finished in results:
             number = numbers[finished.index]
             arrival = arrival_of(number, generation, missing[number], parameters, finished)
-            remember(session, arrival)
+            remember(session, arrival, more=finished.more)
             arrived[number] = arrival.evaluation
     if len(arrived) < len(missing):
         raise KeyboardInterrupt

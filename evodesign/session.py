@@ -41,10 +41,11 @@ def outcome_of(header: RunHeader, evaluation: Evaluation) -> Outcome:
     return Outcome(objectives=values, violation=evaluation.assessment.violation)
 
 
-def remember(session: Session, arrival: Arrival) -> None:
-    """Put an evaluation on the disk, with its postures if nothing so far beats it."""
+def remember(session: Session, arrival: Arrival, *, more: bool) -> None:
+    """Put an evaluation on the disk, with its postures if nothing so far beats it; or soon, with `more`."""
     evaluation = arrival.evaluation
-    session.memory.remember(evaluation, arrival.detail if session.front.enters(evaluation) else None)
+    detail = arrival.detail if session.front.enters(evaluation) else None
+    session.memory.remember(evaluation, detail, more=more)
     session.observer.evaluated(evaluation, session.memory.evaluations, session.header.budget)
 
 

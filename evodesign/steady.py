@@ -68,7 +68,7 @@ def _steady_evaluations(session: Session, search: SteadySearch) -> Generator[Eva
         for finished in results:
             turn, genome = asked.pop(finished.index)
             arrival = arrival_of(told, told // population, genome, parameters, finished, turn)
-            remember(session, arrival)
+            remember(session, arrival, more=finished.more)
             search.tell(turn.number, outcome_of(session.header, arrival.evaluation))
             told += 1
             yield arrival.evaluation

@@ -61,6 +61,7 @@ class Finished(Generic[R]):
         worker: name of the worker.
         out_of_time: whether the worker was ended because the argument took too long.
         out_of_memory: whether the task could not have the memory that it asked for.
+        more: whether the next end is there already.
     """
 
     index: int
@@ -71,6 +72,7 @@ class Finished(Generic[R]):
     worker: str
     out_of_time: bool = False
     out_of_memory: bool = False
+    more: bool = False
 
 
 class Pool(Protocol):
@@ -82,8 +84,8 @@ class Pool(Protocol):
     def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, once each, in the order in which they come; a task's error never raises.
 
-        Arguments are taken one by one, each when a worker is free for it and only while the caller waits
-        for the next end: an argument may be made from all ends given so far.
+        Arguments are taken one by one, only while the caller waits for the next end, and only as many as
+        workers need to be kept busy: an argument may be made from all ends given so far.
         """
 
     def close(self) -> None:

@@ -163,6 +163,10 @@ class _Crowd(Generic[A, R]):
         self._begun[index] = argument, time.perf_counter()
         self._submit(index)
 
+    def more(self) -> bool:
+        """Whether other ends have come back."""
+        return bool(self._ends) or not self._done.empty()
+
     def next_end(self) -> Finished[R]:
         """The next end to come back; what was forgotten with a scheduler is handed out anew."""
         while not self._ends:

@@ -30,6 +30,9 @@ class Hands(Protocol[A_in, R]):
     def begin(self, index: int, argument: A_in) -> None:
         """Begin an argument."""
 
+    def more(self) -> bool:
+        """Whether the next end is there already."""
+
     def next_end(self) -> Finished[R]:
         """Wait for the end of one of the arguments begun; whatever happens to a worker is an end."""
 
@@ -39,18 +42,21 @@ def ends_of(hands: Hands[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]
     source = enumerate(arguments)
     begun: dict[int, A] = {}
     again: dict[int, A] = {}
-    while True:
+
+    def hand_out() -> None:
         for index, argument in itertools.islice(source, hands.free()):
             begun[index] = argument
             hands.begin(index, argument)
-        if not begun:
-            break
+
+    hand_out()
+    while begun:
         end = hands.next_end()
         argument = begun.pop(end.index)
+        hand_out()
         if end.worker_lost or end.out_of_memory:
             again[end.index] = argument
         else:
-            yield end
+            yield dataclasses.replace(end, more=True) if hands.more() else end
     for index, argument in again.items():
         hands.begin(index, argument)
         yield _second(hands.next_end())

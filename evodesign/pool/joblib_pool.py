@@ -41,7 +41,7 @@ class JoblibPool(Pool):
         if not self._cells or self._cells[0].factory != factory:
             self._close_cells()
             self._cells = [Cell(factory, "local") for _ in range(self._jobs)]
-        ends = _ends(Crew(self._cells), arguments)
+        ends = _ends(Crew(self._cells, door=self._jobs), arguments)
         self._current = weakref.ref(ends)
         return ends
 

@@ -7,6 +7,7 @@ record, so that a run with nothing left to do is left as it is.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from types import TracebackType
 from typing import Self
@@ -17,6 +18,9 @@ from evodesign.runlog.run import Run
 from evodesign.runlog.writer import RunWriter
 
 __all__ = ["Memory"]
+
+LONGEST_WAIT = 0.1
+"""Longest time [s] for which evaluations wait for others to reach the disk with them."""
 
 
 class Memory:
@@ -35,6 +39,7 @@ class Memory:
         self._fronts = {front.generation for front in run.fronts}
         self._open_log = open_log
         self._opened: RunWriter | None = None
+        self._committed = time.monotonic()
 
     @property
     def evaluations(self) -> int:
@@ -74,12 +79,17 @@ class Memory:
         """Whether the state and the front after a generation are known."""
         return generation in self._generations and generation in self._fronts
 
-    def remember(self, evaluation: Evaluation, detail: Detail | None) -> None:
-        """Put a new evaluation on the disk, after its postures if there are any to keep."""
+    def remember(self, evaluation: Evaluation, detail: Detail | None, *, more: bool = False) -> None:
+        """Put a new evaluation on the disk, after its postures if there are any to keep.
+
+        With `more` to come at once, it may wait for them, so that they reach the disk together.
+        """
         if detail is not None:
             self._log().detail(detail)
         self._log().evaluation(evaluation)
-        self._log().commit()
+        if not more or time.monotonic() - self._committed > LONGEST_WAIT:
+            self._log().commit()
+            self._committed = time.monotonic()
         self._count += 1
 
     def conclude(self, generation: Generation, front: Front) -> None:

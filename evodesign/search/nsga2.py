@@ -77,7 +77,11 @@ class Nsga2:
 
 
 def nsga2_algorithm(
-    settings: SearchSettings, start: NDArray[np.float64], seed: np.random.SeedSequence
+    settings: SearchSettings,
+    start: NDArray[np.float64],
+    seed: np.random.SeedSequence,
+    *,
+    eliminate_duplicates: bool = True,
 ) -> NSGA2:
     """NSGA-II of pymoo over the unit cube, ready to ask.
 
@@ -85,6 +89,7 @@ def nsga2_algorithm(
         settings: dimension, objectives and population.
         start: the first generation [genomes x dimension].
         seed: of its random state.
+        eliminate_duplicates: whether children that equal members are left out.
     """
     Config.warnings["not_compiled"] = False  # pymoo would print a hint on standard output
     problem = Problem(n_var=settings.dimension, n_obj=settings.objectives, n_ieq_constr=1, xl=0.0, xu=1.0)
@@ -94,6 +99,7 @@ def nsga2_algorithm(
         crossover=SBX(prob=CROSSOVER_SHARE, eta=CROSSOVER_INDEX),
         mutation=PM(eta=MUTATION_INDEX),
         seed=seed,
+        eliminate_duplicates=eliminate_duplicates,
         output=None,
     )
     algorithm.setup(problem, termination=NoTermination())

@@ -26,6 +26,9 @@ __all__ = ["SteadyNsga2"]
 JOINING = 32
 """The population divided by this, and one, is how many newcomers join at a time."""
 
+TRIES = 100
+"""How often a child that equals a member is replaced, before a random point is."""
+
 
 class SteadyNsga2:
     """NSGA-II, one genome at a time, with simulated binary crossover and polynomial mutation.
@@ -39,8 +42,10 @@ class SteadyNsga2:
         self._settings = settings
         points = SobolPoints(settings.dimension, stream_seed)
         self._beginning = Beginning(settings.start, settings.population, points)
-        self._algorithm = nsga2_algorithm(settings, np.empty((0, settings.dimension)), algorithm_seed)
+        nobody = np.empty((0, settings.dimension))
+        self._algorithm = nsga2_algorithm(settings, nobody, algorithm_seed, eliminate_duplicates=False)
         self._population = Population.new()
+        self._members: frozenset[Genome] = frozenset()
         self._newcomers: list[Individual] = []
         self._asked: dict[int, Genome] = {}
         self._told = 0
@@ -75,17 +80,20 @@ class SteadyNsga2:
             algorithm=algorithm,
             random_state=algorithm.random_state,
         )
+        self._members = frozenset(tuple(row) for row in self._population.get("X").tolist())
 
     def _child(self, turn: int) -> Genome:
         algorithm = self._algorithm
         algorithm.random_state = generator_of(self._settings.seed, turn)
-        children = algorithm.mating.do(
-            algorithm.problem,
-            self._population,
-            1,
-            algorithm=algorithm,
-            random_state=algorithm.random_state,
-        )
-        if not len(children):  # all children equalled members: no genome is asked twice for that
-            return tuple(algorithm.random_state.random(self._settings.dimension).tolist())
-        return tuple(children[0].X.tolist())
+        for _ in range(TRIES):
+            children = algorithm.mating.do(
+                algorithm.problem,
+                self._population,
+                1,
+                algorithm=algorithm,
+                random_state=algorithm.random_state,
+            )
+            genome = tuple(children[0].X.tolist())
+            if genome not in self._members:
+                return genome
+        return tuple(algorithm.random_state.random(self._settings.dimension).tolist())

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +13,7 @@ from evodesign.evolve import Silent, start
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.pool.serial import SerialPool
-from evodesign.records import RunHeader, Status
+from evodesign.records import Evaluation, RunHeader, Status
 from tests.pool.cluster import Cluster
 from tests.pool.faulty import HANGS, KILLS, NOT_A_NUMBER, Faulty, Slow, fault, worth
 from tests.runlog.toys import essence, toy_header
@@ -64,6 +62,25 @@ def test_every_tenth_design_kills_every_tenth_hangs_every_tenth_is_not_a_number(
             assert evaluation.assessment == worth(header.parameters, evaluation.genome)
 
 
+class Trouble(Silent):
+    """Kills workers when some evaluations are done, adds one, and later kills and restarts the scheduler."""
+
+    def __init__(self, cluster: Cluster) -> None:
+        self._cluster = cluster
+
+    def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
+        cluster = self._cluster
+        if done == 20:
+            cluster.kill_worker()
+            cluster.kill_worker()
+            cluster.add_worker("--no-nanny")
+        if done == 60:
+            cluster.kill_scheduler()
+            cluster.start_scheduler()
+            for _ in range(3):
+                cluster.add_worker("--no-nanny")
+
+
 def test_workers_and_a_scheduler_that_come_and_go_change_nothing(tmp_path: Path) -> None:
     header = header_of("nsga2", population=24, budget=120)
     alone = start(tmp_path / "alone", header, Slow(header.parameters, 0.0), SerialPool(), Silent())
@@ -72,26 +89,12 @@ def test_workers_and_a_scheduler_that_come_and_go_change_nothing(tmp_path: Path)
         for _ in range(4):
             cluster.add_worker("--no-nanny")
         cluster.wait_for(4)
-        trouble = threading.Thread(target=come_and_go, args=(cluster,))
         with make_pool("dask", 1, cluster.address) as pool:
-            trouble.start()
-            together = start(tmp_path / "together", header, Slow(header.parameters, 0.15), pool, Silent())
-            trouble.join()
+            slow = Slow(header.parameters, 0.05)
+            together = start(tmp_path / "together", header, slow, pool, Trouble(cluster))
     assert essence(together) == essence(alone)
-    workers = {evaluation.worker for evaluation in together.evaluations}
-    assert len(workers) > 5, "those started after the scheduler's end worked too"
-    assert "dask-lost" not in workers
-
-
-def come_and_go(cluster: Cluster) -> None:
-    """What happens to a cluster within some seconds."""
-    time.sleep(1.5)
-    cluster.kill_worker()
-    cluster.kill_worker()
-    cluster.add_worker("--no-nanny")
-    time.sleep(2.0)
-    cluster.kill_scheduler()
-    time.sleep(0.5)
-    cluster.start_scheduler()
-    for _ in range(3):
-        cluster.add_worker("--no-nanny")
+    workers = [
+        {each.worker for each in part} for part in (together.evaluations[:20], together.evaluations[96:])
+    ]
+    assert workers[0].isdisjoint(workers[1]), "the last ones ran on workers started after the scheduler's end"
+    assert not any("lost" in each.worker for each in together.evaluations)
