@@ -41,6 +41,8 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 
 bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
+	$(BIN)/python benchmarks/idle_share.py
+	$(BIN)/python benchmarks/overhead.py
 
 faults: $(VENV)/installed-dev  ## kill searches and damage logs, hundreds of times (half an hour)
 	$(BIN)/python -m tests.faults.campaign

@@ -20,7 +20,7 @@ from tests.runlog.toys import essence, toy_header
 
 REASONS = {
     KILLS: "the worker process died (signal 9), also when retried alone",
-    HANGS: "no result after 0.4 s, so the worker process was ended",
+    HANGS: "no result after 2 s, so the worker process was ended",
     NOT_A_NUMBER: "not a finite number: assessment.objectives.robot_torque is nan",
 }
 
@@ -43,7 +43,7 @@ def test_every_tenth_design_kills_every_tenth_hangs_every_tenth_is_not_a_number(
 ) -> None:
     header = header_of("random", population=20, budget=60)
     calls = tmp_path / "calls"
-    factory = Faulty(header.parameters, str(calls), Limits(seconds=0.4))
+    factory = Faulty(header.parameters, str(calls), Limits(seconds=2.0))
     run = start(tmp_path / "run", header, factory, pool, Silent())
     expected = Counter(fault(evaluation.genome) for evaluation in run.evaluations)
     assert all(expected[kind] >= 3 for kind in REASONS)
