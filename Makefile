@@ -11,7 +11,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test check bench robot clean
+.PHONY: help install search test check bench faults robot clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST)
@@ -41,6 +41,11 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 
 bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
+	$(BIN)/python benchmarks/idle_share.py
+	$(BIN)/python benchmarks/overhead.py
+
+faults: $(VENV)/installed-dev  ## kill searches and damage logs, hundreds of times (half an hour)
+	$(BIN)/python -m tests.faults.campaign
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py

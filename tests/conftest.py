@@ -17,6 +17,7 @@ from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.prepare import prepared
 from evodesign.problem.source import read_source
+from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
@@ -72,3 +73,14 @@ class Unwatched:
 def evaluator(problem: Problem, known: Preparation) -> Evaluator:
     """The default problem's inner problems."""
     return Evaluator(problem, known)
+
+
+@pytest.fixture(scope="session")
+def cluster() -> Iterator[Cluster]:
+    """A Dask scheduler with two workers, of which one has a nanny."""
+    with Cluster() as made:
+        made.start_scheduler()
+        made.add_worker()
+        made.add_worker("--no-nanny")
+        made.wait_for(2)
+        yield made

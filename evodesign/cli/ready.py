@@ -34,7 +34,8 @@ def problem_factory(header: RunHeader, pool: Pool) -> AssessmentFactory:
         pool: where what is missing is worked out.
     """
     problem = build_problem(header.problem)
-    factory = AssessmentFactory(_digest(header.problem), header.problem, known_of(problem, pool))
+    known = known_of(problem, pool)
+    factory = AssessmentFactory(_digest(header.problem), header.problem, known, problem.limits)
     if problem.options.compiled:
         _compile(factory)
     return factory

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from evodesign.pool.base import Limits
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
@@ -142,11 +143,13 @@ class AssessmentFactory:
         digest: of the source; two factories of equal digest build the same evaluation.
         source: the problem's text and files.
         known: what was worked out beforehand; it follows from the source.
+        limits: of one evaluation; they follow from the source.
     """
 
     digest: str
     source: ProblemSource = field(compare=False)
     known: Preparation = field(compare=False)
+    limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to what it is worth."""

