@@ -22,7 +22,9 @@ Evaluations = Annotated[
 ]
 Hours = Annotated[
     float | None,
-    typer.Option(help="Wall time of this session; then it stops, resumable.", show_default="no limit"),
+    typer.Option(
+        help="Wall time of a session; then it stops, resumable. 0 for no limit.", show_default="no limit"
+    ),
 ]
 Stagnation = Annotated[
     int | None,
@@ -46,14 +48,14 @@ PoolName = Annotated[str, typer.Option("--pool", help="Where evaluations run: se
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def positive_hours(hours: float | None) -> float | None:
+def checked_hours(hours: float | None) -> float | None:
     """The hours given, if any.
 
     Raises:
-        typer.BadParameter: no positive finite number.
+        typer.BadParameter: a negative number, or none.
     """
-    if hours is not None and not 0.0 < hours < math.inf:
-        raise typer.BadParameter(f"wanted a positive number of hours, found {hours:g}", param_hint="--hours")
+    if hours is not None and not 0.0 <= hours < math.inf:
+        raise typer.BadParameter(f"wanted a number of hours from 0, found {hours:g}", param_hint="--hours")
     return hours
 
 
@@ -75,7 +77,7 @@ def search(
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
     from evodesign.cli.searching import Budgets, Wishes, start
 
-    budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
+    budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     start(problem, run, Wishes(algorithm, population, seed), budgets, jobs, pool, json)
 
 
@@ -94,7 +96,7 @@ def resume(
     """Go on with a run that was stopped or killed, or give a finished one a larger budget."""
     from evodesign.cli.searching import Budgets, go_on
 
-    budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
+    budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     go_on(run, budgets, jobs, pool, accept_versions, json)
 
 
@@ -121,7 +123,7 @@ def branch(
     from evodesign.cli.searching import Budgets, Turn, Wishes
     from evodesign.cli.searching import branch as begin
 
-    budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
+    budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed), budgets, jobs, pool, json)
 
 
