@@ -11,6 +11,7 @@ import sys
 import tempfile
 import threading
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -59,6 +60,7 @@ class Session:
             cwd=ROOT,
             stdout=subprocess.PIPE,
             env=os.environ | {"PYTHONPATH": str(ROOT)},
+            start_new_session=True,
         )
         self.reported: list[int] = []
         self.first_report = threading.Event()
@@ -82,10 +84,13 @@ class Session:
 
     def kill(self) -> None:
         self.process.kill()
+        self.process.wait()
 
     def close(self) -> None:
-        self.process.kill()
-        self.process.wait()
+        """End the session with all its workers."""
+        self.kill()
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
         self._reader.join()
         assert self.process.stdout is not None
         self.process.stdout.close()
