@@ -493,10 +493,11 @@ def test_a_session_lets_go_of_what_it_has_told(tmp_path: Path) -> None:
 
     class Counter(Silent):
         def generation_done(self, generation: Generation) -> None:
-            counts.append(sum(isinstance(each, Evaluation) for each in gc.get_objects()))
+            if generation.number in (4, 29):
+                counts.append(sum(isinstance(each, Evaluation) for each in gc.get_objects()))
 
     gc.collect()
     before = sum(isinstance(each, Evaluation) for each in gc.get_objects())
-    begin(tmp_path / "run", toy_header(population=10, budget=400), observer=Counter())
-    assert len(counts) == 40
-    assert 10 <= max(counts) - before < 80, "a generation and the front, not the run"
+    begin(tmp_path / "run", toy_header(population=10, budget=300), observer=Counter())
+    early, late = (count - before for count in counts)
+    assert 10 <= early <= late < 80, "a generation and the front, not the run"
