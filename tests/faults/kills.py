@@ -29,8 +29,8 @@ DURING_START = 0.2
 """Share of kills whose moment is counted from the start of the process, not from its first evaluation."""
 
 RECOVERED_PER_JOB = 16
-"""Evaluations per job after which a search has got over a kill: what was in flight was retried alone before. A
-worker that is killed again during the retry is rightly given up, which would not equal an undisturbed run."""
+"""Evaluations per job after which a search has got over a kill, and what was in flight was retried alone. One
+that loses its worker during the retry too is rightly given up, which would not equal an undisturbed run."""
 
 START_SECONDS = 60.0
 """How long a session may take to report its first evaluation."""
@@ -64,7 +64,7 @@ class Session:
             [sys.executable, "-m", "tests.faults.session", *arguments],
             cwd=ROOT,
             stdout=subprocess.PIPE,
-            env=os.environ | {"PYTHONPATH": str(ROOT)},
+            env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"},
             start_new_session=True,
         )
         self.reported: list[int] = []
