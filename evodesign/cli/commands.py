@@ -17,6 +17,10 @@ __all__ = ["COMMANDS"]
 ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+SymmetryName = Annotated[
+    str | None,
+    typer.Option("--symmetry", help="Postures: on, off or polish.", show_default="as in the problem"),
+]
 Evaluations = Annotated[
     int | None, typer.Option(min=1, help="Total evaluations of the run.", show_default="as in the problem")
 ]
@@ -70,6 +74,7 @@ def search(
     stagnation_generations: Stagnation = None,
     population: PopulationSize = None,
     seed: Seed = None,
+    symmetry: SymmetryName = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
     json: Json = False,
@@ -78,7 +83,7 @@ def search(
     from evodesign.cli.searching import Budgets, Wishes, start
 
     budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
-    start(problem, run, Wishes(algorithm, population, seed), budgets, jobs, pool, json)
+    start(problem, run, Wishes(algorithm, population, seed, symmetry), budgets, jobs, pool, json)
 
 
 def resume(
@@ -124,7 +129,7 @@ def branch(
     from evodesign.cli.searching import branch as begin
 
     budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
-    begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed), budgets, jobs, pool, json)
+    begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed, None), budgets, jobs, pool, json)
 
 
 def front(
@@ -150,12 +155,14 @@ def evaluate(
         str | None,
         typer.Option(help="Which design of the file.", show_default="the file's only one"),
     ] = None,
+    symmetry: SymmetryName = None,
+    jobs: Jobs = CORES,
     json: Json = False,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals."""
     from evodesign.cli.designs import evaluate_design
 
-    evaluate_design(problem, design, name, json)
+    evaluate_design(problem, design, name, symmetry, jobs, json)
 
 
 def check(problem: ProblemPath, json: Json = False) -> None:
@@ -198,4 +205,11 @@ def merge(
     merge_run(run, to, json)
 
 
-COMMANDS = (search, resume, branch, front, evaluate, check, verify, recover, merge)
+def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
+    """What a problem is solved from: its seeds, and how well they lead other designs."""
+    from evodesign.cli.seeding import show_seeds
+
+    show_seeds(problem, jobs, json)
+
+
+COMMANDS = (search, resume, branch, front, evaluate, check, seeds, verify, recover, merge)

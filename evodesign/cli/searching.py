@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -59,6 +60,7 @@ class Wishes:
     algorithm: str | None
     population: int | None
     seed: int | None
+    symmetry: str | None
 
     def applied(self, settings: SearchSettings) -> SearchSettings:
         """The settings as wished."""
@@ -82,7 +84,7 @@ def start(
     path: Path, run: Path | None, wishes: Wishes, budgets: Budgets, jobs: int, pool: str, json: bool
 ) -> None:
     """Search a problem in a new run directory and print the front."""
-    problem = build_problem(read_source(path))
+    problem = build_problem(read_source(path, wishes.symmetry))
     show_notes(notes(problem))
     table = problem.search
     settings = wishes.applied(problem.settings(table.algorithm, table.population, table.seed))
@@ -96,7 +98,7 @@ def start(
     make_search(settings)
     stop = Stop(header.hours)
     with _resumable(directory, stop), make_pool(pool, jobs) as workers:
-        factory = problem_factory(header)
+        factory = problem_factory(header, workers)
         with observer() as watching, stop.heeded():
             done = evolve.start(directory, header, factory, workers, watching, stop=stop)
     _show_result(done, json)
@@ -119,7 +121,13 @@ def go_on(run: Path, budgets: Budgets, jobs: int, pool: str, accept_versions: bo
     ):
         try:
             done = evolve.resume(
-                run, problem_factory, workers, watching, budgets.evaluations, stop=stop, renew=renew
+                run,
+                partial(problem_factory, pool=workers),
+                workers,
+                watching,
+                budgets.evaluations,
+                stop=stop,
+                renew=renew,
             )
         except ResumeMismatch as mismatch:
             raise _explained(mismatch, header) from mismatch

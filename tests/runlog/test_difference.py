@@ -52,3 +52,9 @@ def test_only_versions_that_decide_results_count() -> None:
     first = {"python": "3.11.1", "numpy": "2.0", "casadi": "3.7", "joblib": "1.4", "pymoo": "0.6"}
     second = {"python": "3.11.2", "numpy": "2.1", "casadi": "3.7", "joblib": "1.5", "cma": "4"}
     assert version_differences(first, second) == ["numpy 2.0 (now 2.1)"]
+
+
+def test_another_symmetry_is_told() -> None:
+    problem = msgspec.structs.replace(HEADER.problem, symmetry="off")
+    free = msgspec.structs.replace(HEADER, problem=problem)
+    assert differences(HEADER, free) == ["the symmetry was None and is off"]
