@@ -74,12 +74,18 @@ def disk_time() -> Iterator[list[float]]:
         os.fsync = fsync
 
 
-def memory_of_a_long_search(folder: Path, evaluations: int) -> dict[str, Any]:
+def memory_of_a_long_search(folder: Path, algorithm: str, evaluations: int) -> dict[str, Any]:
     """A search of a cheap problem in this process, with its memory and pace."""
-    header = synthetic_header(evaluations, seed=1, population=48)
+    header = synthetic_header(evaluations, seed=1, algorithm=algorithm, population=48)
     gauge = Gauge()
-    start(folder / "long", header, Synthetic(header, 0.0), SerialPool(), gauge)
-    return {"evaluations": evaluations, "memory_mb": gauge.memory, "processor_s": gauge.seconds}
+    run = start(folder / algorithm, header, Synthetic(header, 0.0), SerialPool(), gauge)
+    front = len(run.fronts[-1].evaluations)
+    return {
+        "evaluations": evaluations,
+        "front": front,
+        "memory_mb": gauge.memory,
+        "processor_s": gauge.seconds,
+    }
 
 
 def opening(folder: Path, evaluations: int) -> dict[str, Any]:
@@ -135,7 +141,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory(dir=ROOT / "runs") as name:
         folder = Path(name)
         results = {
-            "search": memory_of_a_long_search(folder, options.evaluations),
+            "random": memory_of_a_long_search(folder, "random", options.evaluations),
+            "nsga2": memory_of_a_long_search(folder, "nsga2", options.evaluations),
             "opening": opening(folder, options.open),
             "disk": cost_of_the_disk(folder, options.real),
         }
