@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
@@ -462,3 +463,40 @@ def test_a_killed_session_is_resumed_as_if_nothing_had_happened(killed: Path, tm
     assert essence(run) == essence(begin(tmp_path / "whole", toy_header(population=5, budget=40)))
     assert sorted(path.name for path in killed.iterdir()) == ["000.mcap", "001.mcap", "lock"]
     assert (killed / "lock").read_bytes() == b"", "no pickles: the run is its log"
+
+
+def test_a_search_whose_hypervolume_stands_still_ends_and_can_be_told_to_go_on(tmp_path: Path) -> None:
+    class Stubborn(ToySearch):
+        def tell(self, outcomes: Sequence[Any]) -> None:
+            """Learn nothing: ask for the same designs for ever."""
+
+    header = msgspec.structs.replace(toy_header(population=4, budget=60), stagnation_generations=3)
+
+    def patient(header: RunHeader) -> RunHeader:
+        return msgspec.structs.replace(header, stagnation_generations=6)
+
+    run = start(tmp_path / "run", header, ToyTask(header), OrderedPool(), Silent(), make_search=Stubborn)
+    assert len(run.evaluations) == 16, "one generation, and three that add nothing"
+    assert run.complete
+    again = resume(tmp_path / "run", ToyTask, OrderedPool(), Silent(), None, make_search=Stubborn)
+    assert len(again.evaluations) == 16, "it still stands still"
+    further = resume(
+        tmp_path / "run", ToyTask, OrderedPool(), Silent(), None, make_search=Stubborn, renew=patient
+    )
+    assert len(further.evaluations) == 28
+
+
+def test_a_session_lets_go_of_what_it_has_told(tmp_path: Path) -> None:
+    """Only the front is carried on: a session of any length needs the same memory."""
+    counts = []
+
+    class Counter(Silent):
+        def generation_done(self, generation: Generation) -> None:
+            if generation.number in (4, 29):
+                counts.append(sum(isinstance(each, Evaluation) for each in gc.get_objects()))
+
+    gc.collect()
+    before = sum(isinstance(each, Evaluation) for each in gc.get_objects())
+    begin(tmp_path / "run", toy_header(population=10, budget=300), observer=Counter())
+    early, late = (count - before for count in counts)
+    assert 10 <= early <= late < 80, "a generation and the front, not the run"

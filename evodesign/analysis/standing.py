@@ -1,12 +1,14 @@
 """Where a run stands: its front, best values and hypervolume, carried on from generation to generation.
 
-A design that is beaten once never counts again, so that only the front is carried on; the work and the memory
-of a generation do not grow with the evaluations before it.
+A design that is beaten once never counts again, so that only the front is carried on, and of its members what
+they are compared by. The work and the memory of a generation grow with the front, not with the run.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+
+import msgspec
 
 from evodesign.analysis.front import front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
@@ -38,7 +40,7 @@ class Standing:
         """Take in a generation. The first that holds a feasible design fixes the reference."""
         self._shown += len(born)
         self._reference = self._reference or reference_point(self._objectives, born)
-        self._members = front(self._objectives, (*self._members, *born))
+        self._members = front(self._objectives, (*self._members, *map(_bare, born)))
         self._hypervolumes.append(self._hypervolume())
 
     def generation(self, number: int, born: Iterable[Evaluation], seconds: float) -> Generation:
@@ -62,3 +64,9 @@ class Standing:
         if self._reference is None:
             return None
         return hypervolume(self._objectives, self._members, self._reference)
+
+
+def _bare(evaluation: Evaluation) -> Evaluation:
+    """An evaluation with no more than what a front needs."""
+    assessment = msgspec.structs.replace(evaluation.assessment, design={}, reach=None, heights=())
+    return msgspec.structs.replace(evaluation, genome=(), assessment=assessment)

@@ -27,7 +27,9 @@ Evaluations = Annotated[
 ]
 Hours = Annotated[
     float | None,
-    typer.Option(help="Wall time of this session; then it stops, resumable.", show_default="no limit"),
+    typer.Option(
+        help="Wall time of a session; then it stops, resumable. 0 for no limit.", show_default="no limit"
+    ),
 ]
 Stagnation = Annotated[
     int | None,
@@ -60,14 +62,14 @@ UseCache = Annotated[
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def positive_hours(hours: float | None) -> float | None:
+def checked_hours(hours: float | None) -> float | None:
     """The hours given, if any.
 
     Raises:
-        typer.BadParameter: no positive finite number.
+        typer.BadParameter: a negative number, or none.
     """
-    if hours is not None and not 0.0 < hours < math.inf:
-        raise typer.BadParameter(f"wanted a positive number of hours, found {hours:g}", param_hint="--hours")
+    if hours is not None and not 0.0 <= hours < math.inf:
+        raise typer.BadParameter(f"wanted a number of hours from 0, found {hours:g}", param_hint="--hours")
     return hours
 
 
@@ -100,7 +102,7 @@ def search(
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
     from evodesign.cli.searching import Budgets, Wishes, Workers, start
 
-    budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
+    budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     wishes = Wishes(algorithm, population, seed, asynchronous)
     start(problem, run, wishes, budgets, Workers(pool, jobs, scheduler, cache), symmetry, json)
 
@@ -122,7 +124,7 @@ def resume(
     """Go on with a run that was stopped or killed, or give a finished one a larger budget."""
     from evodesign.cli.searching import Budgets, Workers, go_on
 
-    budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
+    budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     go_on(run, budgets, Workers(pool, jobs, scheduler, cache), accept_versions, json)
 
 
@@ -151,7 +153,7 @@ def branch(
     from evodesign.cli.searching import Budgets, Turn, Wishes, Workers
     from evodesign.cli.searching import branch as begin
 
-    budgets = Budgets(evaluations, positive_hours(hours), stagnation_generations)
+    budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     workers = Workers(pool, jobs, scheduler, cache)
     begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed, None), budgets, workers, json)
 

@@ -55,7 +55,7 @@ def merge_run(directory: Path, to: Path | None, json: bool) -> None:
         print_json(_summary(run) | {"merged": count})
         return
     place = run.directory / "000.mcap" if to is None else to
-    _print([f"{count} segments merged into {place}", *_sentences(run)])
+    _print([f"segments merged into {place}: {count}", *_sentences(run)])
 
 
 def _replay_faults(run: Run) -> list[str]:
@@ -82,7 +82,7 @@ def _sentences(run: Run) -> list[str]:
     summary = _summary(run)
     return [
         f"{run.directory}: {summary['evaluations']} evaluations, {summary['generations']} generations, "
-        f"postures of {summary['postures']} designs, {summary['segments']} segments, "
+        f"postures of {summary['postures']} designs, segments: {summary['segments']}, "
         f"format {summary['format_version']}",
         f"digest {summary['digest']}",
     ]

@@ -46,7 +46,7 @@ class Budgets:
 
     def applied(self, header: RunHeader) -> RunHeader:
         """The header with these budgets."""
-        hours = header.hours if self.hours is None else self.hours
+        hours = header.hours if self.hours is None else self.hours or None
         stagnation = self.stagnation_generations
         return msgspec.structs.replace(
             header,

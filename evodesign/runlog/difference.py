@@ -21,6 +21,8 @@ DECISIVE = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moo
 def differences(first: RunHeader, second: RunHeader) -> list[str]:
     """What differs in problem and search, a phrase each; where the problem file lay does not matter."""
     found = source_differences(first.problem, second.problem)
+    if first.problem.symmetry != second.problem.symmetry:
+        found.append(f"the symmetry was {first.problem.symmetry} and is {second.problem.symmetry}")
     found += [
         f"the search's {name} was {_short(getattr(first.search, name))}"
         f" and is {_short(getattr(second.search, name))}"

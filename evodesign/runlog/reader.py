@@ -33,7 +33,7 @@ class Segment:
 
     Args:
         path: the file.
-        headers: one of each session in it, a single one unless it is merged; none when even that is missing.
+        headers: a single one, or of a merged segment one of each; none when even that is missing.
         evaluations, generations, fronts, details: in the order of the file.
         complete: whether the file is whole, to its last byte.
         damaged: whether something is wrong that no kill explains.

@@ -58,17 +58,15 @@ def merge(directory: Path, to: Path | None) -> Run:
     """
     if to is not None:
         run = _undamaged(directory)
-        if to.exists():
-            raise RunError(f"{to}: exists already; choose another file with --to")
         _write(to, directory, run)
         return run
     paths = run_segments(directory)
     with locked(directory):
         run = _undamaged(directory)
         unfinished = directory / UNFINISHED
-        unfinished.unlink(missing_ok=True)
-        _write(unfinished, directory, run)
         try:
+            unfinished.unlink(missing_ok=True)  # of a merge that was killed
+            _write(unfinished, directory, run)
             unfinished.replace(segment_path(directory, 0))
             synced(directory)
             for number, path in paths.items():
@@ -110,7 +108,10 @@ def _write(path: Path, directory: Path, run: Run) -> None:
             writer.finish()  # type: ignore[no-untyped-call]
             file.flush()
             os.fsync(file.fileno())
+    except FileExistsError as error:
+        raise RunError(f"{path}: exists already") from error
     except OSError as error:
+        path.unlink(missing_ok=True)
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 

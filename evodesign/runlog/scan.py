@@ -102,6 +102,7 @@ def scan(content: bytes) -> Scan:
     chunks: list[Chunk] = []
     attachments: list[Attachment] = []
     gaps: list[Gap] = []
+    unpack = _Unpacker()
     ended = content.endswith(MAGIC) and len(content) > len(MAGIC)
     place = _after_header(content)
     if place is None:
@@ -115,7 +116,7 @@ def scan(content: bytes) -> Scan:
             return Scan(
                 tuple(chunks), tuple(attachments), tuple(gaps), len(content), ended=ended, sound=sound
             )
-        if opcode == CHUNK and (records := _chunk_records(body)) is not None:
+        if opcode == CHUNK and (records := unpack.records(body)) is not None:
             chunks.append(Chunk(place, end, records))
         elif opcode == ATTACHMENT and (attachment := _attachment(body)) is not None:
             attachments.append(attachment)
@@ -174,7 +175,7 @@ def _after_header(content: bytes) -> int | None:
 
 def _next_sound(content: bytes, place: int) -> int:
     """Where the next sound chunk or copy of the header begins, from a place on; the end if none does."""
-    chunk = _next(content, place, CHUNK, CHUNK_MARK, CHUNK_MARK_AT, _chunk_records)
+    chunk = _next(content, place, CHUNK, CHUNK_MARK, CHUNK_MARK_AT, _Unpacker().records)
     return _next(content[:chunk], place, ATTACHMENT, COPY_MARK, COPY_MARK_AT, _attachment)
 
 
@@ -191,23 +192,29 @@ def _next(
     return len(content)
 
 
-def _chunk_records(body: bytes) -> bytes | None:
-    """The uncompressed records of a chunk; None unless sizes and checksum are right."""
-    data_at = CHUNK_START.size + len(CHUNK_MARK) + 8
-    if len(body) < data_at or body[CHUNK_START.size : CHUNK_START.size + len(CHUNK_MARK)] != CHUNK_MARK:
-        return None
-    _, _, size, checksum = CHUNK_START.unpack_from(body)
-    (stored,) = struct.unpack_from("<Q", body, data_at - 8)
-    data = body[data_at:]
-    if len(data) != stored:
-        return None
-    try:
-        if zstandard.frame_content_size(data) != size:
+class _Unpacker:
+    """Unpacks chunks, all with one decompressor, which takes longer to make than a chunk to unpack."""
+
+    def __init__(self) -> None:
+        self._zstd = zstandard.ZstdDecompressor()
+
+    def records(self, body: bytes) -> bytes | None:
+        """The uncompressed records of a chunk; None unless sizes and checksum are right."""
+        data_at = CHUNK_START.size + len(CHUNK_MARK) + 8
+        if len(body) < data_at or body[CHUNK_START.size : CHUNK_START.size + len(CHUNK_MARK)] != CHUNK_MARK:
             return None
-        records = zstandard.ZstdDecompressor().decompress(data)
-    except (zstandard.ZstdError, MemoryError):
-        return None
-    return records if zlib.crc32(records) == checksum else None
+        _, _, size, checksum = CHUNK_START.unpack_from(body)
+        (stored,) = struct.unpack_from("<Q", body, data_at - 8)
+        data = body[data_at:]
+        if len(data) != stored:
+            return None
+        try:
+            if zstandard.frame_content_size(data) != size:
+                return None
+            records = self._zstd.decompress(data)
+        except (zstandard.ZstdError, MemoryError):
+            return None
+        return records if zlib.crc32(records) == checksum else None
 
 
 def _attachment(body: bytes) -> Attachment | None:

@@ -1,4 +1,4 @@
-"""Writing one segment of a run's log, so that nothing believed is ever lost.
+"""Writing the segments of a run's log, so that nothing believed is ever lost.
 
 Every record is a chunk of its own, handed to the operating system at once: it survives the death of this
 process. `commit` also reaches the disk: what came before survives a power cut. Memory commits after every
@@ -36,11 +36,14 @@ from evodesign.runlog.channels import (
 )
 from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
 
-__all__ = ["RunWriter", "add_header_copy", "register"]
+__all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "register"]
+
+LONGEST_SEGMENT = 4096
+"""Messages after which `commit` begins the next segment: an open one keeps its index in memory, 2 kB each."""
 
 
 class RunWriter:
-    """Writes a new segment; a context manager that ends it.
+    """Writes a new segment, and the next one when it has grown long; a context manager that ends the last.
 
     A write that fails or is broken off spoils the segment: it then ends without a footer, after its last
     whole chunk, and the reader takes it so.
@@ -57,19 +60,34 @@ class RunWriter:
         if segment == 0:
             refuse_run(directory)
         make_directory(directory)
-        self.path = segment_path(directory, segment)
+        self._directory = directory
+        self._header = header
+        self._segment = segment
         self._spoilt = False
         self._closed = False
         self._time = 0
+        self.path = segment_path(directory, segment)
         with self._writing():
-            self._file = self.path.open("xb")
-            self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
-            self._mcap.start(profile="", library="evodesign")
-            self._channels = register(self._mcap, header)
-            self._add(RUN, header, sequence=segment)
-            add_header_copy(self._mcap, header, self._now())
-            _to_disk(self._file)
-            synced(directory, directory.parent)
+            self._begin()
+
+    def _begin(self) -> None:
+        """Open the file of the present segment and put its header on the disk."""
+        self.path = segment_path(self._directory, self._segment)
+        self._file = self.path.open("xb")
+        self._messages = 0
+        self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
+        self._mcap.start(profile="", library="evodesign")
+        self._channels = register(self._mcap, self._header)
+        self._add(RUN, self._header, sequence=self._segment)
+        add_header_copy(self._mcap, self._header, self._now())
+        _to_disk(self._file)
+        synced(self._directory, self._directory.parent)
+
+    def _end(self) -> None:
+        """Finish the present segment with its index and footer."""
+        self._mcap.finish()  # type: ignore[no-untyped-call]
+        _to_disk(self._file)
+        self._file.close()
 
     @classmethod
     def next_segment(cls, directory: Path, header: RunHeader) -> RunWriter:
@@ -97,9 +115,13 @@ class RunWriter:
             self._add(FRONT, front, front.generation)
 
     def commit(self) -> None:
-        """Return when all that was appended is on the disk."""
+        """Return when all that was appended is on the disk; the place where a long segment ends."""
         with self._writing():
             _to_disk(self._file)
+            if self._messages >= LONGEST_SEGMENT:
+                self._end()
+                self._segment += 1
+                self._begin()
 
     def close(self) -> None:
         """End the segment with its index and footer, unless it is spoilt; a second call does nothing."""
@@ -109,8 +131,7 @@ class RunWriter:
         try:
             if not self._spoilt:
                 with self._writing():
-                    self._mcap.finish()  # type: ignore[no-untyped-call]
-                    _to_disk(self._file)
+                    self._end()
         finally:
             with suppress(OSError):
                 self._file.close()
@@ -131,6 +152,7 @@ class RunWriter:
         now = self._now()
         self._mcap.add_message(self._channels[topic], now, msgspec.json.encode(record), now, sequence)
         self._mcap.flush()  # type: ignore[no-untyped-call]
+        self._messages += 1
 
     def _now(self) -> int:
         """Time [ns since 1970] that never goes back within a segment, whatever the clock does."""

@@ -1,9 +1,9 @@
 """A search that was another one for its first generations.
 
 The past is rebuilt by asking and telling the earlier search, as ever. Then the next search begins with the
-fittest of all that the past knew as its first generation, told at once, so that nothing is evaluated again.
-The fittest are those that NSGA-II would let survive: feasible ones first, then by rank of domination, then by
-crowding distance.
+fittest of all that the past knew as its first generation, told at once, so that nothing is evaluated again
+(unless the past knew too few different ones: then that generation is evaluated). The fittest are those that
+NSGA-II would let survive: feasible ones first, then by rank of domination, then by crowding distance.
 """
 
 from __future__ import annotations
@@ -64,7 +64,9 @@ class Branched:
         settings = _of_stage(self._settings, self._stage, ())
         start = fittest(self._told, settings.population, settings.objectives)
         search = self._make(msgspec.structs.replace(settings, start=start))
-        search.tell([self._told[genome] for genome in search.ask()])
+        asked = search.ask()
+        if all(genome in self._told for genome in asked):
+            search.tell([self._told[genome] for genome in asked])
         return search
 
 

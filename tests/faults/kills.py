@@ -11,12 +11,14 @@ import sys
 import tempfile
 import threading
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from evodesign.errors import RunError
 from evodesign.evolve import Silent, start
 from evodesign.pool.serial import SerialPool
+from evodesign.records import Status
 from evodesign.runlog.run import Run, read_run
 from tests.faults.synthetic import Synthetic, synthetic_header
 from tests.runlog.toys import essence
@@ -25,6 +27,10 @@ ROOT = Path(__file__).parents[2]
 
 DURING_START = 0.2
 """Share of kills whose moment is counted from the start of the process, not from its first evaluation."""
+
+RECOVERED_PER_JOB = 16
+"""Evaluations per job after which a search has got over a kill, and what was in flight was retried alone. One
+that loses its worker during the retry too is rightly given up, which would not equal an undisturbed run."""
 
 START_SECONDS = 60.0
 """How long a session may take to report its first evaluation."""
@@ -58,7 +64,8 @@ class Session:
             [sys.executable, "-m", "tests.faults.session", *arguments],
             cwd=ROOT,
             stdout=subprocess.PIPE,
-            env=os.environ | {"PYTHONPATH": str(ROOT)},
+            env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"},
+            start_new_session=True,
         )
         self.reported: list[int] = []
         self.first_report = threading.Event()
@@ -82,10 +89,13 @@ class Session:
 
     def kill(self) -> None:
         self.process.kill()
+        self.process.wait()
 
     def close(self) -> None:
-        self.process.kill()
-        self.process.wait()
+        """End the session with all its workers."""
+        self.kill()
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
         self._reader.join()
         assert self.process.stdout is not None
         self.process.stdout.close()
@@ -170,7 +180,7 @@ def kill_workers(folder: Path, kills: int, size: Size, seed: int) -> Tally:
         try:
             while not session.ended_within(generator.uniform(0.01, 0.2)):
                 workers = session.workers()
-                recovered = len(session.reported) >= seen + 4 * size.jobs
+                recovered = len(session.reported) >= seen + RECOVERED_PER_JOB * size.jobs
                 if workers and recovered and tally.kills < kills:
                     seen = len(session.reported)
                     if _killed(generator.choice(workers)):
@@ -180,6 +190,8 @@ def kill_workers(folder: Path, kills: int, size: Size, seed: int) -> Tally:
         assert session.process.returncode == 0
         run = read_run(directory)
         assert sorted(session.reported) == list(range(size.budget)), "each is reported once"
+        lost = [each for each in run.evaluations if each.assessment.status is Status.WORKER_LOST]
+        assert not lost, f"given up after a retry: {lost}"
         assert essence(run) == essence(uninterrupted(seed + tally.runs, size.budget))
         tally.reported += len(session.reported)
         shutil.rmtree(directory)
