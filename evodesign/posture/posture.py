@@ -39,7 +39,7 @@ from evodesign.posture.start import STARTS, joint_starts
 from evodesign.records import Status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["EffortWeights", "PostureProblem", "Symmetry"]
+__all__ = ["EffortWeights", "PostureProblem", "Symmetry", "posture_program"]
 
 
 class Symmetry(StrEnum):
@@ -139,7 +139,7 @@ class _Postures:
         options: IpoptOptions,
     ) -> None:
         self._forms = forms
-        self._solver = Solver(_program(forms, scene, space, weights), options)
+        self._solver = Solver(posture_program(forms, scene, space, weights), options)
         self._starts = tuple(joint_starts(self._solver, shares) for shares in STARTS)
 
     def tries(self, parameters: Sequence[float], checker: Checker) -> list[Candidate]:
@@ -164,7 +164,10 @@ class _Postures:
         return Candidate(checked(raw, found), postures, found)
 
 
-def _program(forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights) -> Program:
+def posture_program(
+    forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights
+) -> Program:
+    """The program over both agents; its parameters are the design's, then the height."""
     design = ca.SX.sym("design", len(space.parameters))
     height = ca.SX.sym("height")
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))

@@ -24,10 +24,13 @@ from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["Reach", "ReachProblem"]
+__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem"]
 
 COMFORT = 1e-4
 """Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
+
+HIGHEST, LOWEST = -1.0, 1.0
+"""Senses of a reach solve: the sign of the height in the cost."""
 
 START_HEIGHTS = (1.0, 0.6)
 """Heights [m] at which a solve begins; the best result counts."""
@@ -62,10 +65,15 @@ class ReachProblem:
         form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         self._solver = Solver(_program(form, scene, space), options)
 
+    @property
+    def program(self) -> Program:
+        """What is solved; its parameters are the design's, then the sense."""
+        return self._solver.program
+
     def solve(self, values: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
-        highest, high = self._extreme(values, -1.0)
-        lowest, low = self._extreme(values, 1.0)
+        highest, high = self._extreme(values, HIGHEST)
+        lowest, low = self._extreme(values, LOWEST)
         status = worst_status([high.status, low.status])
         if status is not Status.SOLVED:
             which = "highest" if high.status is not Status.SOLVED else "lowest"
@@ -73,9 +81,13 @@ class ReachProblem:
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
         return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
 
+    def solves(self, values: Sequence[float], sense: float) -> list[RawSolution]:
+        """The result of every start in one sense."""
+        return [self._solver.solve([*values, sense], {"height": [start]}) for start in START_HEIGHTS]
+
     def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
-        """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
-        solves = [self._solver.solve([*values, sense], {"height": [start]}) for start in START_HEIGHTS]
+        """The extreme height in one sense and the solve that found it."""
+        solves = self.solves(values, sense)
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
         if not solved:
             return None, solves[0]

@@ -32,7 +32,7 @@ from evodesign.posture.start import STARTS, joint_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["SplitPostures"]
+__all__ = ["SplitPostures", "robot_program"]
 
 
 class SplitPostures:
@@ -50,7 +50,7 @@ class SplitPostures:
         self._forms = forms
         self._scene = scene
         self._values = {value.height: value for value in values}
-        self._robot = Solver(_program(forms[0], scene, space, weights[0]), options)
+        self._robot = Solver(robot_program(forms[0], scene, space, weights[0]), options)
         self._human = HumanProblem(forms[1], scene, weights[1], options)
         self._starts = [joint_starts(self._robot, {ROBOT: shares[ROBOT]}) for shares in STARTS]
 
@@ -95,7 +95,8 @@ def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolut
     )
 
 
-def _program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
+def robot_program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
+    """The robot's program; its parameters are the design's, the height and V's coefficients."""
     design = ca.SX.sym("design", len(space.parameters))
     height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", TERMS)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))

@@ -1,0 +1,81 @@
+"""Sentences on where a design's results stop moving smoothly.
+
+A solution is one of several local optima, held by some of its limits. Its derivative holds as long as the
+same optimum wins and the same limits hold; what is said here is how far that is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from evodesign.posture.reach_tangent import HeightTangent
+from evodesign.posture.sensitivity import Kink, Limit
+from evodesign.posture.solution import HeightSolution
+from evodesign.posture.tangent import PostureTangent
+from evodesign.problem.build import Problem
+from evodesign.records import Status
+
+__all__ = ["end_kinks", "height_kinks"]
+
+NEAR = 0.01
+"""Share of a parameter's range within which a change of limits is worth a sentence."""
+
+DISTINCT = 1e-5
+"""Relative difference of costs above which two optima are not the same."""
+
+
+def height_kinks(problem: Problem, height: HeightSolution, tangent: PostureTangent | Kink) -> Iterator[str]:
+    """What is to be said of the posture at one height that was solved."""
+    place = f"at {height.height:g} m"
+    yield f"{place}: {_winner(height)}"
+    if isinstance(tangent, Kink):
+        yield f"{place}: no gradient, for {tangent.reason}"
+    else:
+        yield from _near(problem, place, tangent.limits)
+
+
+def end_kinks(problem: Problem, which: str, tangent: HeightTangent | Kink) -> Iterator[str]:
+    """What is to be said of the highest or the lowest load."""
+    place = f"{which} load"
+    if isinstance(tangent, Kink):
+        yield f"{place}: no gradient, for {tangent.reason}"
+        return
+    other = (
+        "the starts agree" if tangent.runner_up is None else f"the next best is {tangent.runner_up:.2g} m off"
+    )
+    yield f"{place}: start {tangent.start + 1} won, {other}"
+    yield from _near(problem, place, tangent.limits)
+
+
+def _winner(height: HeightSolution) -> str:
+    """Which start won, and by how much."""
+    solved = {n: a.cost for n, a in enumerate(height.attempts, 1) if a.status is Status.SOLVED}
+    best = min(solved, key=lambda number: solved[number])
+    won = f"start {best} of {len(height.attempts)} won"
+    behind = [cost / solved[best] - 1.0 for cost in solved.values()]
+    others = [share for share in behind if share > DISTINCT]
+    return (
+        f"{won}, the next best optimum costs {min(others):.2%} more"
+        if others
+        else f"{won}, no other optimum was met"
+    )
+
+
+def _near(problem: Problem, place: str, limits: Sequence[Limit]) -> Iterator[str]:
+    """The change of limits that the least change of one parameter brings about, if it is near."""
+    parameters = problem.space.parameters
+    ranges = np.array([parameter.upper - parameter.lower for parameter in parameters])
+    nearest, which, where = np.inf, None, 0
+    for limit in limits:
+        with np.errstate(divide="ignore"):
+            shares = limit.margin / np.abs(limit.slope * ranges)
+        position = int(np.argmin(shares))
+        if shares[position] < nearest:
+            nearest, which, where = float(shares[position]), limit, position
+    if which is not None and nearest < NEAR:
+        verb = "leaves" if which.active else "reaches"
+        toward = "less" if which.slope[where] > 0.0 else "more"
+        much = f"{nearest * ranges[where]:.2g} {toward} {parameters[where].name}"
+        yield f"{place}: {which.name} {verb} its limit with {much} ({nearest:.1%} of its range)"
