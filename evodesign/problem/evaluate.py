@@ -45,10 +45,16 @@ def prepared(problem: Problem, cache: Cache | None, say: Callable[[str], None]) 
 
 
 class Evaluator:
-    """The inner problems of a problem, built once and solved for any number of designs."""
+    """The inner problems of a problem, built once and solved for any number of designs.
+
+    Attributes:
+        problem: whose designs they are.
+        human_values: the person's part, worked out beforehand.
+    """
 
     def __init__(self, problem: Problem, human_values: Sequence[HumanValue] = ()) -> None:
         self.problem = problem
+        self.human_values = tuple(human_values)
         scene, space, options = problem.scene, problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
         self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry, human_values)
