@@ -41,6 +41,7 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 
 bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
+	$(BIN)/python benchmarks/gradients.py
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py

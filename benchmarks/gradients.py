@@ -27,12 +27,14 @@ from evodesign.problem.evaluate import Evaluator, prepared
 from evodesign.problem.objectives import OBJECTIVES, DesignResult
 from evodesign.problem.sensitivities import DesignTangent, Sensitivities
 from evodesign.problem.source import read_source
-from evodesign.records import Status
 
 HERE = Path(__file__).parent
 TOLERANCE = 1e-12
 STEP = 1e-4
 """Larger step of the differences, as a share of a parameter's range; the other is half of it."""
+
+OTHER = 0.02
+"""Difference of a joint [rad] between neighbours above which a posture is another one."""
 
 ZERO = 1e-6
 """Gradient per range, relative to its objective, that counts as none."""
@@ -65,10 +67,8 @@ class Comparer:
             return Comparison({}, left_out)
         ranges = np.array([p.upper - p.lower for p in self._problem.space.parameters])
         neighbours = [self._around(values, np.array(direction) * ranges) for direction in directions]
-        if any(
-            _winners(other) != _winners(result) for pairs in neighbours for pair in pairs for other in pair
-        ):
-            return Comparison({}, "another start wins at a neighbour")
+        if any(_elsewhere(result, other) for pairs in neighbours for pair in pairs for other in pair):
+            return Comparison({}, "another optimum wins at a neighbour")
         errors = {}
         for name, found in tangent.sensitivities().items():
             gradient = np.array(directions) @ (np.array(list(found.gradient.values())) * ranges)
@@ -109,17 +109,14 @@ def _extrapolated(name: str, pairs: Sequence[tuple[DesignResult, DesignResult]])
     return (4.0 * near - far) / 3.0
 
 
-def _winners(result: DesignResult) -> list[int | None]:
-    """Which start is the cheapest at each height, where their costs differ."""
-    return [
-        _distinct([a.cost if a.status is Status.SOLVED else np.inf for a in height.attempts])
-        for height in result.heights
-    ]
-
-
-def _distinct(costs: Sequence[float]) -> int | None:
-    best = min(costs)
-    return costs.index(best) if max(costs) > best * (1.0 + 1e-6) else None
+def _elsewhere(result: DesignResult, neighbour: DesignResult) -> bool:
+    """Whether a neighbour's postures are others, and not the same ones a little moved."""
+    return any(
+        not other.solved or abs(other.postures[agent].joints[joint] - position) > OTHER
+        for height, other in zip(result.heights, neighbour.heights, strict=True)
+        for agent, posture in height.postures.items()
+        for joint, position in posture.joints.items()
+    )
 
 
 def main() -> None:

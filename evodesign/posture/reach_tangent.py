@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.program import IpoptOptions
 from evodesign.posture.reach import ReachProblem
-from evodesign.posture.sensitivity import Array, Kink, Limit, Sensitivity
+from evodesign.posture.sensitivity import Limit, Sensitivity
 from evodesign.records import Status
 
 __all__ = ["HeightTangent", "ReachTangents"]

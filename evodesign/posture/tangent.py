@@ -24,9 +24,10 @@ from numpy.polynomial import Chebyshev
 from evodesign.design.space import DesignSpace
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
+from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.posture import EffortWeights, Symmetry, posture_program
 from evodesign.posture.program import IpoptOptions, Program
-from evodesign.posture.sensitivity import Array, Kink, Limit, Optimum, Sensitivity
+from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import robot_program
 from evodesign.statics.scene import ROBOT, SIDES, Scene

@@ -10,8 +10,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from evodesign.posture.kkt import Kink
 from evodesign.posture.reach_tangent import HeightTangent
-from evodesign.posture.sensitivity import Kink, Limit
+from evodesign.posture.sensitivity import Limit
 from evodesign.posture.solution import HeightSolution
 from evodesign.posture.tangent import PostureTangent
 from evodesign.problem.build import Problem

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from evodesign.errors import InputError, nearest_name
+from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.reach_tangent import HeightTangent
-from evodesign.posture.sensitivity import Array, Kink
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult

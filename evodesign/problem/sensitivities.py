@@ -21,10 +21,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from evodesign.posture.human_value import HumanValue
+from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.posture import Symmetry
 from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.reach_tangent import HeightTangent, ReachTangents
-from evodesign.posture.sensitivity import Array, Kink
 from evodesign.posture.solution import HeightSolution
 from evodesign.posture.tangent import PostureTangent, PostureTangents
 from evodesign.problem.build import Problem

@@ -6,8 +6,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.posture.kkt import Kink
 from evodesign.posture.program import Constraint, IpoptOptions, Program, Solver, Variable
-from evodesign.posture.sensitivity import Kink, Optimum, Sensitivity
+from evodesign.posture.sensitivity import Optimum, Sensitivity
 
 
 def nearest_point() -> Program:

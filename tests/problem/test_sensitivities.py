@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from evodesign.posture.human_value import HumanValue
-from evodesign.posture.sensitivity import Kink
+from evodesign.posture.kkt import Kink
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES
