@@ -59,11 +59,15 @@ class Reach:
 
 
 class ReachProblem:
-    """One reach program for all designs of a scene."""
+    """One reach program for all designs of a scene.
+
+    Attributes:
+        form: of the robot.
+    """
 
     def __init__(self, scene: Scene, space: DesignSpace, options: IpoptOptions, *, symmetric: bool) -> None:
-        form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
-        self._solver = Solver(_program(form, scene, space), options)
+        self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
+        self._solver = Solver(_program(self.form, scene, space), options)
 
     @property
     def program(self) -> Program:

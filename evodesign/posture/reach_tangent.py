@@ -16,6 +16,7 @@ from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.program import IpoptOptions
 from evodesign.posture.reach import ReachProblem
 from evodesign.posture.sensitivity import Limit, Sensitivity
+from evodesign.posture.tangent import labels_of
 from evodesign.records import Status
 
 __all__ = ["HeightTangent", "ReachTangents"]
@@ -48,7 +49,7 @@ class ReachTangents:
 
     def __init__(self, reach: ReachProblem, options: IpoptOptions) -> None:
         self._reach = reach
-        self._sensitivity = Sensitivity(reach.program, options, {})
+        self._sensitivity = Sensitivity(reach.program, options, labels_of((reach.form,)))
 
     def at(self, design: Sequence[float], sense: float) -> HeightTangent | Kink:
         """The tangent of a design's highest or lowest load, or why it has none."""

@@ -32,7 +32,7 @@ from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import robot_program
 from evodesign.statics.scene import ROBOT, SIDES, Scene
 
-__all__ = ["PostureTangent", "PostureTangents"]
+__all__ = ["PostureTangent", "PostureTangents", "labels_of"]
 
 SAME = 1e-2
 """Difference of torques [N m] below which a posture that is found again is the same one."""
@@ -135,7 +135,7 @@ class _Joint:
     ) -> None:
         self._forms = forms
         program = posture_program(forms, scene, space, weights)
-        self._both = Sensitivity(program, options, _labels(forms))
+        self._both = Sensitivity(program, options, labels_of(forms))
 
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this program might have found."""
@@ -167,7 +167,7 @@ class _Split:
         values: Mapping[float, HumanValue],
     ) -> None:
         self._forms, self._scene, self._values = forms, scene, values
-        labels = _labels(forms)
+        labels = labels_of(forms)
         self._robot = Sensitivity(robot_program(forms[0], scene, space, weights.robot), options, labels)
         self._human = Sensitivity(human_program(forms[1], scene, weights.human), options, labels)
 
@@ -239,9 +239,10 @@ def _determined(tangent: PostureTangent) -> bool:
     )
 
 
-def _labels(forms: Forms) -> dict[str, tuple[str, ...]]:
-    """Joint names for the rows of joint blocks."""
-    return {f"{form.agent.name}.{part}": form.joints for form in forms for part in ("joints", "torques")}
+def labels_of(forms: Sequence[Form]) -> dict[str, tuple[str, ...]]:
+    """Names of joints and trunk frames for the rows of variables and constraints about them."""
+    joints = {f"{form.agent.name}.{part}": form.joints for form in forms for part in ("joints", "torques")}
+    return joints | {f"{form.agent.name}.trunk_clear": form.trunk for form in forms}
 
 
 def _of(form: Form, values: Mapping[str, Array]) -> dict[str, Array]:
