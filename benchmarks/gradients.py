@@ -2,7 +2,7 @@
 
     python benchmarks/gradients.py [--designs N]
 
-Random designs of the default problem are evaluated as a search evaluates them, from the fixed starts, with a
+Random designs of the default problem are evaluated as a search evaluates them, from the seeds, with a
 tighter tolerance; so are their neighbours along every parameter. Central differences at two steps,
 extrapolated to none, are compared with the gradients, each component times its parameter's range, relative to
 the largest. A design is left out, and counted, where a kink lies between the neighbours.
@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,21 +19,27 @@ from pathlib import Path
 
 import numpy as np
 
-from evodesign.posture.cache import user_cache
-from evodesign.posture.human_value import HumanValue
+from evodesign.cli.ready import evaluator_of
+from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import Evaluator, prepared
+from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES, DesignResult
 from evodesign.problem.sensitivities import DesignTangent, Sensitivities
 from evodesign.problem.source import read_source
 
 HERE = Path(__file__).parent
 TOLERANCE = 1e-12
-STEP = 1e-4
+STEP = 2e-5
 """Larger step of the differences, as a share of a parameter's range; the other is half of it."""
 
 OTHER = 0.02
 """Difference of a joint [rad] between neighbours above which a posture is another one."""
+
+OTHER_REACH = 0.001
+"""Difference of the reach [m] between neighbours above which another optimum was found."""
+
+CLEAR = 10.0
+"""Steps within which no limit may change."""
 
 ZERO = 1e-6
 """Gradient per range, relative to its objective, that counts as none."""
@@ -51,10 +56,12 @@ class Comparison:
 class Comparer:
     """Gradients and differences of a problem's designs."""
 
-    def __init__(self, problem: Problem, people: Sequence[HumanValue]) -> None:
-        self._problem = replace(problem, options=replace(problem.options, tolerance=TOLERANCE))
-        self._evaluator = Evaluator(self._problem, people)
-        self._sensitivities = Sensitivities(self._problem, people)
+    def __init__(self, problem: Problem, known: Preparation) -> None:
+        self._problem = replace(
+            problem, options=replace(problem.options, tolerance=TOLERANCE, compiled=False)
+        )
+        self._evaluator = Evaluator(self._problem, known)
+        self._sensitivities = Sensitivities(self._problem, known)
 
     def compare(self, values: Sequence[float], directions: Sequence[Sequence[float]]) -> Comparison:
         """Errors of a design's gradients along directions of the unit cube."""
@@ -94,8 +101,8 @@ class Comparer:
             if not hasattr(part, "limits"):
                 return part.reason
             for limit in part.limits:
-                if (np.abs(directions @ (limit.slope * ranges)) * STEP > limit.margin / 2.0).any():
-                    return "a limit is reached or left at a neighbour"
+                if (np.abs(directions @ (limit.slope * ranges)) * STEP > limit.margin / CLEAR).any():
+                    return f"a limit is reached or left within {CLEAR:g} steps"
         return ""
 
 
@@ -110,8 +117,8 @@ def _extrapolated(name: str, pairs: Sequence[tuple[DesignResult, DesignResult]])
 
 
 def _elsewhere(result: DesignResult, neighbour: DesignResult) -> bool:
-    """Whether a neighbour's postures are others, and not the same ones a little moved."""
-    return any(
+    """Whether a neighbour's postures or reach are others, and not the same ones a little moved."""
+    return abs(result.reach.highest - neighbour.reach.highest) > OTHER_REACH or any(
         not other.solved or abs(other.postures[agent].joints[joint] - position) > OTHER
         for height, other in zip(result.heights, neighbour.heights, strict=True)
         for agent, posture in height.postures.items()
@@ -125,8 +132,8 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=20)
     wanted = parser.parse_args().designs
     problem = build_problem(read_source(HERE.parent / "problems" / "icub_lifting.toml"))
-    people = prepared(problem, user_cache("people", os.environ), print)
-    comparer = Comparer(problem, people)
+    known = evaluator_of(problem, 2).known
+    comparer = Comparer(problem, known)
     rng = np.random.default_rng(11)
     compared, left_out = [], Counter()
     while len(compared) < wanted:

@@ -21,12 +21,12 @@ from pathlib import Path
 
 import msgspec
 
-from evodesign.analysis.front import front, minimised
+from evodesign.analysis.front import RunningFront, front, minimised
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Factory, Pool
 from evodesign.records import (
-    Assessment,
+    Assessed,
     Evaluation,
     Front,
     Generation,
@@ -34,7 +34,7 @@ from evodesign.records import (
     RunHeader,
     SearchSettings,
 )
-from evodesign.runlog.arrival import evaluation_of
+from evodesign.runlog.arrival import Arrival, arrival_of
 from evodesign.runlog.directory import locked, make_directory, run_segments
 from evodesign.runlog.memory import Memory
 from evodesign.runlog.observer import Observer, Silent
@@ -46,7 +46,7 @@ from evodesign.search.base import Outcome, Search
 __all__ = ["MakeSearch", "Observer", "Silent", "resume", "start"]
 
 MakeSearch = Callable[[SearchSettings], Search]
-Evaluate = Factory[Genome, Assessment]
+Evaluate = Factory[Genome, Assessed]
 
 
 def never() -> bool:
@@ -83,9 +83,10 @@ def start(
     make_directory(directory)
     with locked(directory):
         log = RunWriter(directory, header)
-        fresh = Run(directory, header, (), (), (), complete=False, notes=())
+        fresh = Run(directory, header, (), (), (), (), complete=False, notes=())
         with log, Memory(fresh, lambda: log) as memory:
-            _work(_Session(directory, header, memory, lambda: factory, pool, observer, stop), search)
+            running = RunningFront(header.objectives)
+            _work(_Session(directory, header, memory, lambda: factory, pool, observer, stop, running), search)
         return _finished(directory, observer)
 
 
@@ -124,7 +125,8 @@ def resume(
         search = make_search(header.search)
         factory = functools.cache(lambda: factory_of(header))
         with Memory(run, lambda: RunWriter.next_segment(directory, header)) as memory:
-            _work(_Session(directory, header, memory, factory, pool, observer, stop), search)
+            running = RunningFront(header.objectives)
+            _work(_Session(directory, header, memory, factory, pool, observer, stop, running), search)
         return _finished(directory, observer)
 
 
@@ -139,6 +141,7 @@ class _Session:
     pool: Pool
     observer: Observer
     stop: Callable[[], bool]
+    front: RunningFront
 
 
 def _work(session: _Session, search: Search) -> None:
@@ -198,6 +201,8 @@ def _evaluate(session: _Session, generation: int, first: int, genomes: Sequence[
         for number, genome in enumerate(genomes, first)
         if (evaluation := session.memory.recall(number, genome)) is not None
     }
+    for evaluation in known.values():
+        session.front.enters(evaluation)
     missing = {number: genome for number, genome in enumerate(genomes, first) if number not in known}
     if missing:
         known |= _evaluate_missing(session, generation, missing)
@@ -214,17 +219,17 @@ def _evaluate_missing(
     """
     numbers, genomes = list(missing), list(missing.values())
     logged: dict[int, Evaluation] = {}
-    early: dict[int, Evaluation] = {}
+    early: dict[int, Arrival] = {}
     _heed(session.stop)
     results = session.pool.run(session.factory(), genomes)
     try:
         for finished in results:
             number = numbers[finished.index]
             parameters = session.header.parameters
-            early[number] = evaluation_of(number, generation, missing[number], parameters, finished)
+            early[number] = arrival_of(number, generation, missing[number], parameters, finished)
             while len(logged) < len(numbers) and (due := numbers[len(logged)]) in early:
                 _remember(session, early[due])
-                logged[due] = early.pop(due)
+                logged[due] = early.pop(due).evaluation
             if len(logged) < len(numbers):
                 _heed(session.stop)
     except BaseException:
@@ -244,8 +249,10 @@ def _heed(stop: Callable[[], bool]) -> None:
         raise KeyboardInterrupt
 
 
-def _remember(session: _Session, evaluation: Evaluation) -> None:
-    session.memory.remember(evaluation)
+def _remember(session: _Session, arrival: Arrival) -> None:
+    """Put an evaluation on the disk, with its postures if nothing so far beats it."""
+    evaluation = arrival.evaluation
+    session.memory.remember(evaluation, arrival.detail if session.front.enters(evaluation) else None)
     session.observer.evaluated(evaluation, session.memory.evaluations, session.header.budget)
 
 

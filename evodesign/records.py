@@ -13,11 +13,15 @@ import msgspec
 
 __all__ = [
     "FORMAT_VERSION",
+    "AgentDetail",
+    "Assessed",
     "Assessment",
+    "Detail",
     "Evaluation",
     "Front",
     "Generation",
     "Genome",
+    "HeightDetail",
     "HeightOutcome",
     "Objective",
     "Parameter",
@@ -137,6 +141,47 @@ class Assessment(Record, frozen=True):
     heights: tuple[HeightOutcome, ...] = ()
 
 
+class AgentDetail(Record, frozen=True):
+    """How an agent stands and what it bears, in its own frame (looking along +x at the load).
+
+    Attributes:
+        base_position_m: origin of the root link, three coordinates.
+        base_rpy_rad: roll, pitch and yaw of the root link.
+        joints_rad: position of each joint that moves.
+        torques_n_m: torque of each joint that moves.
+        hand_wrenches: by side, force [N] and moment about the grasp point [N m] on the hand.
+        foot_wrenches: by side, force [N] and moment [N m] on the foot, in the sole frame.
+    """
+
+    base_position_m: tuple[float, ...]
+    base_rpy_rad: tuple[float, ...]
+    joints_rad: dict[str, float]
+    torques_n_m: dict[str, float]
+    hand_wrenches: dict[str, tuple[float, ...]]
+    foot_wrenches: dict[str, tuple[float, ...]]
+
+
+class HeightDetail(Record, frozen=True):
+    """The postures at one height of the load, by the agents' names."""
+
+    height_m: float
+    agents: dict[str, AgentDetail]
+
+
+class Assessed(Record, frozen=True):
+    """What a worker gives back: what a genome is worth, and its postures at the heights that were solved."""
+
+    assessment: Assessment
+    heights: tuple[HeightDetail, ...] = ()
+
+
+class Detail(Record, frozen=True):
+    """The postures of an evaluation that no earlier one dominates: every design of a front has one."""
+
+    evaluation: int
+    heights: tuple[HeightDetail, ...]
+
+
 class Evaluation(Record, frozen=True):
     """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs."""
 
@@ -194,11 +239,13 @@ class ProblemSource(Record, frozen=True):
         path: where the problem file was read, for messages.
         text: the problem file.
         files: the files that it names, by the name that it uses.
+        symmetry: of postures, if it was chosen beside the file.
     """
 
     path: str
     text: str
     files: dict[str, str]
+    symmetry: str | None = None
 
 
 class RunHeader(Record, frozen=True):

@@ -31,6 +31,7 @@ from tests.runlog.toys import (
     essence,
     shuffled,
     toy_assessment,
+    toy_detail,
     toy_header,
 )
 
@@ -87,6 +88,33 @@ def test_evaluations_are_what_the_task_makes_of_the_genomes(tmp_path: Path) -> N
     for evaluation in run.evaluations:
         assert evaluation.assessment == toy_assessment(evaluation.genome, header)
         assert (evaluation.seconds, evaluation.worker) == (0.25, "here")
+
+
+def fronts_with_postures(run: Run) -> set[int]:
+    """Members of all fronts, each of which must have its own postures in the log."""
+    details = {detail.evaluation: detail for detail in run.details}
+    members = {number for front in run.fronts for number in front.evaluations}
+    for number in members:
+        assert details[number] == toy_detail(run.evaluations[number])
+    return members
+
+
+def test_every_design_of_a_front_is_logged_with_its_postures(tmp_path: Path) -> None:
+    run = begin(tmp_path / "run", toy_header(population=6, budget=60), OrderedPool(shuffled(3)))
+    members = fronts_with_postures(run)
+    assert members
+    assert len(run.details) < 30, "a design that is beaten on arrival is logged in short"
+
+
+def test_postures_of_a_front_survive_stops(tmp_path: Path) -> None:
+    header = toy_header(population=6, budget=60)
+    task = ToyTask(header)
+    pool = OrderedPool(shuffled(3))
+    with pytest.raises(Interrupted):
+        begin(tmp_path / "run", header, pool, task=task, stop=lambda: len(task.genomes) == 20)
+    assert fronts_with_postures(go_on(tmp_path / "run")) == fronts_with_postures(
+        begin(tmp_path / "whole", header)
+    )
 
 
 def test_generations_tell_the_state_of_the_run(tmp_path: Path) -> None:
@@ -293,7 +321,10 @@ class FailingPool(OrderedPool):
 
     def finish(self, task: Callable[[Any], Any], index: int, argument: Any) -> Finished[Any]:
         value = task(argument)
-        infinite = msgspec.structs.replace(value, objectives={"robot_torque": float("nan")})
+        infinite = msgspec.structs.replace(
+            value,
+            assessment=msgspec.structs.replace(value.assessment, objectives={"robot_torque": float("nan")}),
+        )
         ends = (
             Finished(0, None, "the worker process died (signal 9)", True, 0.5, "gone"),
             Finished(1, None, "ValueError: no root", False, 0.5, "here"),

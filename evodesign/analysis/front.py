@@ -13,7 +13,7 @@ import numpy as np
 
 from evodesign.records import Assessment, Evaluation, Objective, Sense
 
-__all__ = ["comparable", "front", "minimised", "to_minimise"]
+__all__ = ["RunningFront", "comparable", "front", "minimised", "to_minimise"]
 
 
 def to_minimise(objective: Objective, value: float) -> float:
@@ -48,3 +48,27 @@ def front(objectives: Sequence[Objective], evaluations: Iterable[Evaluation]) ->
         return ()
     kept = moocore.is_nondominated(np.array([values for _, values in candidates]))
     return tuple(evaluation for (evaluation, _), keep in zip(candidates, kept, strict=True) if keep)
+
+
+class RunningFront:
+    """The front of the evaluations shown to it so far, of which it remembers the minimised values.
+
+    Args:
+        objectives: of the run.
+    """
+
+    def __init__(self, objectives: Sequence[Objective]) -> None:
+        self._objectives = tuple(objectives)
+        self._values = np.empty((0, len(self._objectives)))
+
+    def enters(self, evaluation: Evaluation) -> bool:
+        """Whether none shown before dominates or equals this one, which is shown by asking."""
+        values = minimised(self._objectives, evaluation.assessment)
+        if not evaluation.feasible or values is None:
+            return False
+        new = np.array(values)
+        if np.any(np.all(self._values <= new, axis=1)):
+            return False
+        beaten = np.all(new <= self._values, axis=1)
+        self._values = np.vstack([self._values[~beaten], new])
+        return True

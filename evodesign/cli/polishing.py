@@ -28,6 +28,7 @@ def polish_design(
     weights: str | None,
     evaluations: int,
     to: Path | None,
+    jobs: int,
     json: bool,
 ) -> None:
     """Polish a design of a run, write it to a file of designs, and print what changed."""
@@ -38,7 +39,7 @@ def polish_design(
     aim = _aim(problem, objective, weights)
     file = run.directory / f"polished-{number}.toml" if to is None else to
     _refuse_existing(file)
-    evaluator = evaluator_of(problem)
+    evaluator = evaluator_of(problem, jobs)
     done = polish(evaluator, genome, aim, evaluations, lambda step: _show(step, evaluations))
     name = f"polished_{number}"
     remark = f"Design {number} of {problem.name}, polished for {', '.join(aim.weights)}."

@@ -2,8 +2,9 @@
 
     maximise (minimise) h subject to the robot's constraints and the load's balance,
 
-with the person's hands free to push as they must: the robot's side alone decides. It is an order of
-magnitude cheaper than a posture, so it is solved first and spares the heights that are out of reach.
+with the person's hands free to push as they must: the robot's side alone decides. It is cheaper than a
+posture, so it is solved first and spares the heights that are out of reach. It has several optima (arms
+forward, arms raised sideways over the head), so it begins at seeds as a posture does.
 
 Source: DESIGN 3 (reach); feasibility constraints of Sartore et al. 2022, Eq. 14.
 """
@@ -20,7 +21,10 @@ from evodesign.posture.agent import agent_block
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.load import load_constraints
 from evodesign.posture.partner import free_hands
+from evodesign.posture.portfolio import Landscape
+from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
@@ -30,10 +34,13 @@ COMFORT = 1e-4
 """Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
 
 HIGHEST, LOWEST = -1.0, 1.0
-"""Senses of a reach solve: the sign of the height in the cost."""
+"""Sense in which the height is extreme: the sign with which it is minimised."""
 
-START_HEIGHTS = (1.0, 0.6)
-"""Heights [m] at which a solve begins; the best result counts."""
+FIXED: tuple[Start, ...] = ({"height": [1.0]}, {"height": [0.6]})
+"""Starts where there are no seeds; the best result counts."""
+
+NEAR_HEIGHT = 0.005
+"""How far [m] from the best known extreme another one is still good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +72,27 @@ class ReachProblem:
         form: of the robot.
     """
 
-    def __init__(self, scene: Scene, space: DesignSpace, options: IpoptOptions, *, symmetric: bool) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        space: DesignSpace,
+        options: IpoptOptions,
+        *,
+        symmetric: bool,
+        known: Preparation = NOTHING_KNOWN,
+    ) -> None:
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         self._solver = Solver(_program(self.form, scene, space), options)
+        self._seeds = {HIGHEST: known.highest.seeds, LOWEST: known.lowest.seeds}
 
     @property
     def program(self) -> Program:
         """What is solved; its parameters are the design's, then the sense."""
         return self._solver.program
+
+    def landscape(self, sense: float) -> Landscape:
+        """Minus the highest (sense -1) or plus the lowest (sense 1) height [m], of which seeds are made."""
+        return Landscape(self._solver, (sense,), FIXED, 0.0, NEAR_HEIGHT)
 
     def solve(self, values: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
@@ -87,10 +107,10 @@ class ReachProblem:
 
     def solves(self, values: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense."""
-        return [self._solver.solve([*values, sense], {"height": [start]}) for start in START_HEIGHTS]
+        return [self._solver.solve([*values, sense], start) for start in self._seeds[sense] or FIXED]
 
     def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
-        """The extreme height in one sense and the solve that found it."""
+        """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
         solves = self.solves(values, sense)
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
         if not solved:
@@ -103,7 +123,7 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
     design = ca.SX.sym("design", len(space.parameters))
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
-    height = Variable.column("height", [floor], [5.0], [START_HEIGHTS[0]], 1.0)
+    height = Variable.column("height", [floor], [5.0], [1.0], 1.0)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = agent_block(form, tree, scene, height.value)
     partner = free_hands(form, scene)

@@ -33,6 +33,7 @@ class HeightTangent:
         height: [m].
         slope: its derivative with respect to each parameter.
         start: which start won, from zero.
+        starts: how many there were.
         runner_up: how far the next best other optimum falls short [m]; None when there is no other.
         limits: every inequality, with slopes per parameter.
     """
@@ -40,6 +41,7 @@ class HeightTangent:
     height: float
     slope: Array
     start: int
+    starts: int
     runner_up: float | None
     limits: tuple[Limit, ...]
 
@@ -63,7 +65,7 @@ class ReachTangents:
             return Kink("no posture was found")
         start = min(heights, key=lambda number: sense * heights[number])
         if self._at_end(heights[start]):
-            return HeightTangent(heights[start], np.zeros(len(design)), start, None, ())
+            return HeightTangent(heights[start], np.zeros(len(design)), start, len(solves), None, ())
         found = self._sensitivity.at([*design, sense], solves[start].values)
         if isinstance(found, Kink):
             return found
@@ -76,6 +78,7 @@ class ReachTangents:
             height=float(found.values["height"][0]),
             slope=slope,
             start=start,
+            starts=len(solves),
             runner_up=min((much for much in short if much > DISTINCT), default=None),
             limits=tuple(Limit(x.name, x.active, x.margin, x.slope[own]) for x in found.limits),
         )

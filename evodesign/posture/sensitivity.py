@@ -108,7 +108,8 @@ class Sensitivity:
     def __init__(self, program: Program, options: IpoptOptions, labels: Mapping[str, Sequence[str]]) -> None:
         self.program = program
         self._names = _names(program, labels)
-        self._solver = Solver(program, replace(options, tolerance=NEAR_TOLERANCE, near=True))
+        few = replace(options, tolerance=NEAR_TOLERANCE, near=True, compiled=False)  # too few to compile for
+        self._solver = Solver(program, few)
         self._conditions = Conditions(program)
 
     def at(self, parameters: Sequence[float], start: Mapping[str, Any]) -> Optimum | Kink:

@@ -13,7 +13,7 @@ Source: implicit function theorem and envelope theorem, see `sensitivity`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
@@ -25,11 +25,11 @@ from evodesign.design.space import DesignSpace
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
 from evodesign.posture.kkt import Array, Kink
-from evodesign.posture.posture import EffortWeights, Symmetry, posture_program
+from evodesign.posture.posture import SYMMETRIC, EffortWeights, posture_program
 from evodesign.posture.program import IpoptOptions, Program
 from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
 from evodesign.posture.solution import AgentPosture, HeightSolution
-from evodesign.posture.split import robot_program
+from evodesign.posture.split import SPLIT, robot_program
 from evodesign.statics.scene import ROBOT, SIDES, Scene
 
 __all__ = ["PostureTangent", "PostureTangents", "labels_of"]
@@ -50,6 +50,7 @@ class PostureTangent:
         slopes: their derivatives with respect to the design's parameters, shape (rows, parameters).
         cost: the least cost of the posture problem.
         cost_slope: its derivative, one per parameter.
+        compared: the cost by which starts are compared: with V(X) where the person is solved after the robot.
         limits: every inequality, with slopes per parameter.
     """
 
@@ -58,6 +59,7 @@ class PostureTangent:
     slopes: Mapping[str, Array]
     cost: float
     cost_slope: Array
+    compared: float
     limits: tuple[Limit, ...]
 
     def postures(self, step: Array) -> dict[str, AgentPosture]:
@@ -82,12 +84,10 @@ class PostureTangents:
         space: DesignSpace,
         weights: EffortWeights,
         options: IpoptOptions,
-        symmetry: Symmetry,
-        human_values: Sequence[HumanValue] = (),
+        values: Sequence[HumanValue],
     ) -> None:
-        self._symmetry = symmetry
         self._ingredients = (scene, space, weights, options)
-        self._values = {value.height: value for value in human_values}
+        self._values = {value.height: value for value in values}
 
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a design's solved posture, or why it has none.
@@ -96,21 +96,19 @@ class PostureTangents:
             design: one number per parameter.
             solution: of that design, solved.
         """
-        for way in self._ways(solution.height):
-            found = way.at(design, solution)
-            if isinstance(found, Kink):
-                return found
-            if _same(found, solution):
-                return found if _determined(found) else Kink("the posture can move at no cost")
-        return Kink("the posture was not found again")
+        found = self._way(solution).at(design, solution)
+        if isinstance(found, Kink):
+            return found
+        if not _same(found, solution):
+            return Kink("the posture was not found again")
+        return found if _determined(found) else Kink("the posture can move at no cost")
 
-    def _ways(self, height: float) -> Iterator[_Way]:
-        """The ways in which a posture may have been found, likely ones first, each built when needed."""
-        if self._symmetry is not Symmetry.OFF:
-            if height in self._values:
-                yield self._split
-            yield self._half
-        yield self._full
+    def _way(self, solution: HeightSolution) -> _Way:
+        """The program that found a posture, differentiated; built when it is first needed."""
+        program = solution.start.partition(":")[0]
+        if program == SPLIT:
+            return self._split
+        return self._half if program == SYMMETRIC else self._full
 
     @cached_property
     def _split(self) -> _Way:
@@ -150,6 +148,7 @@ class _Joint:
             slopes={name: slope[:, own] for name, slope in found.slopes.items()},
             cost=found.cost,
             cost_slope=found.cost_slope[own],
+            compared=found.cost,
             limits=tuple(_in(limit, np.eye(len(found.cost_slope))[:, own]) for limit in found.limits),
         )
 
@@ -196,6 +195,7 @@ class _Split:
             },
             cost=robot.cost - float(expected(push)) + human.cost,
             cost_slope=robot.cost_slope @ own + surprise * follow[1],
+            compared=robot.cost,
             limits=(
                 *(_in(limit, own) for limit in robot.limits),
                 *(_in(limit, follow) for limit in human.limits),

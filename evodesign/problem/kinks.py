@@ -30,7 +30,7 @@ DISTINCT = 1e-5
 def height_kinks(problem: Problem, height: HeightSolution, tangent: PostureTangent | Kink) -> Iterator[str]:
     """What is to be said of the posture at one height that was solved."""
     place = f"at {height.height:g} m"
-    yield f"{place}: {_winner(height)}"
+    yield f"{place}: {_winner(height, tangent)}"
     if isinstance(tangent, Kink):
         yield f"{place}: no gradient, for {tangent.reason}"
     else:
@@ -46,21 +46,25 @@ def end_kinks(problem: Problem, which: str, tangent: HeightTangent | Kink) -> It
     other = (
         "the starts agree" if tangent.runner_up is None else f"the next best is {tangent.runner_up:.2g} m off"
     )
-    yield f"{place}: start {tangent.start + 1} won, {other}"
+    yield f"{place}: start {tangent.start + 1} of {tangent.starts} won, {other}"
     yield from _near(problem, place, tangent.limits)
 
 
-def _winner(height: HeightSolution) -> str:
-    """Which start won, and by how much."""
-    solved = {n: a.cost for n, a in enumerate(height.attempts, 1) if a.status is Status.SOLVED}
-    best = min(solved, key=lambda number: solved[number])
-    won = f"start {best} of {len(height.attempts)} won"
-    behind = [cost / solved[best] - 1.0 for cost in solved.values()]
-    others = [share for share in behind if share > DISTINCT]
+def _winner(height: HeightSolution, tangent: PostureTangent | Kink) -> str:
+    """Which start won, and how far behind the next best optimum of the same program is."""
+    won = f"{height.start} won"
+    if isinstance(tangent, Kink):
+        return won
+    program = height.start.partition(":")[0]
+    others = [a for a in height.attempts if a.start.partition(":")[0] == program and a.start != height.start]
+    behind = [a.cost / tangent.compared - 1.0 for a in others if a.status is Status.SOLVED]
+    distinct = [share for share in behind if share > DISTINCT]
+    if not others:
+        return f"{won}, the only start"
     return (
-        f"{won}, the next best optimum costs {min(others):.2%} more"
-        if others
-        else f"{won}, no other optimum was met"
+        f"{won}, the next best optimum costs {min(distinct):.2%} more"
+        if distinct
+        else f"{won}, no other was met"
     )
 
 

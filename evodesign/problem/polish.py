@@ -141,7 +141,7 @@ class _Slope:
     def __init__(self, evaluator: Evaluator, genome: Genome, aim: Aim) -> None:
         self._evaluator, self._aim = evaluator, aim
         self._problem = problem = evaluator.problem
-        self._sensitivities = Sensitivities(problem, evaluator.human_values)
+        self._sensitivities = Sensitivities(problem, evaluator.known)
         self._ranges = np.array([p.upper - p.lower for p in problem.space.parameters])
         self._signs = {o.name: 1.0 if o.sense is Sense.MINIMISE else -1.0 for o in problem.objectives}
         self.known: dict[bytes, _Evaluated] = {}

@@ -20,9 +20,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evodesign.posture.human_value import HumanValue
 from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.posture import Symmetry
+from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.reach_tangent import HeightTangent, ReachTangents
 from evodesign.posture.solution import HeightSolution
@@ -130,14 +130,14 @@ class DesignTangent:
 class Sensitivities:
     """Tangents of a problem's designs; built when somebody asks, for no search needs them."""
 
-    def __init__(self, problem: Problem, human_values: Sequence[HumanValue] = ()) -> None:
+    def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
         self._problem = problem
         scene, space, options = problem.scene, problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
-        self._reach = ReachTangents(ReachProblem(scene, space, options, symmetric=symmetric), options)
-        self._postures = PostureTangents(
-            scene, space, problem.weights, options, problem.symmetry, human_values
+        self._reach = ReachTangents(
+            ReachProblem(scene, space, options, symmetric=symmetric, known=known), options
         )
+        self._postures = PostureTangents(scene, space, problem.weights, options, known.values)
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignTangent:
         """The tangent of a design from its results."""

@@ -11,10 +11,11 @@ from typing import Final
 
 import msgspec
 
-from evodesign.records import Evaluation, Front, Generation, RunHeader
+from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.schema import Names, schema_of
 
 __all__ = [
+    "DETAIL",
     "EVALUATION",
     "FRONT",
     "GENERATION",
@@ -29,14 +30,19 @@ RUN: Final = "/run"
 EVALUATION: Final = "/evaluation"
 GENERATION: Final = "/generation"
 FRONT: Final = "/front"
+DETAIL: Final = "/detail"
 
 RECORDS: Final[Mapping[str, type[msgspec.Struct]]] = {
     RUN: RunHeader,
     EVALUATION: Evaluation,
     GENERATION: Generation,
     FRONT: Front,
+    DETAIL: Detail,
 }
 """The record that each topic carries."""
+
+AGENTS: Final = ("robot", "human")
+"""Names of the agents, as fields of the schema."""
 
 MESSAGE_ENCODING: Final = "json"
 SCHEMA_ENCODING: Final = "jsonschema"
@@ -51,4 +57,4 @@ def described(header: RunHeader) -> dict[str, bytes]:
 def _names(header: RunHeader) -> Names:
     objectives = tuple(objective.name for objective in header.objectives)
     parameters = tuple(parameter.name for parameter in header.parameters)
-    return {"design": parameters, "objectives": objectives, "best": objectives}
+    return {"design": parameters, "objectives": objectives, "best": objectives, "agents": AGENTS}

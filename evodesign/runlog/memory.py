@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Self
 
 from evodesign.errors import ResumeMismatch
-from evodesign.records import Evaluation, Front, Generation, Genome
+from evodesign.records import Detail, Evaluation, Front, Generation, Genome
 from evodesign.runlog.run import Run
 from evodesign.runlog.writer import RunWriter
 
@@ -58,8 +58,10 @@ class Memory:
         """The state after the generation of a number, if it and its front are known."""
         return self._generations.get(number) if number in self._fronts else None
 
-    def remember(self, evaluation: Evaluation) -> None:
-        """Write a new evaluation."""
+    def remember(self, evaluation: Evaluation, detail: Detail | None) -> None:
+        """Write a new evaluation, after its postures if there are any to keep."""
+        if detail is not None:
+            self._log().detail(detail)
         self._log().evaluation(evaluation)
         self._evaluations[evaluation.number] = evaluation
 

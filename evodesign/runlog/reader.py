@@ -20,7 +20,7 @@ from mcap.records import Channel, Message
 from mcap.stream_reader import StreamReader
 
 from evodesign.errors import RunError
-from evodesign.records import FORMAT_VERSION, Evaluation, Front, Generation, RunHeader
+from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import RECORDS, RUN
 
 __all__ = ["Segment", "read_segment"]
@@ -46,7 +46,7 @@ class Segment:
     Args:
         path: the file.
         header: its first message; None when even that is missing.
-        evaluations, generations, fronts: in the order of the file.
+        evaluations, generations, fronts, details: in the order of the file.
         complete: whether the file is whole, to its last byte.
         note: a sentence on what is missing; empty when nothing is.
     """
@@ -56,6 +56,7 @@ class Segment:
     evaluations: tuple[Evaluation, ...]
     generations: tuple[Generation, ...]
     fronts: tuple[Front, ...]
+    details: tuple[Detail, ...]
     complete: bool
     note: str
 
@@ -94,6 +95,7 @@ def read_segment(path: Path) -> Segment:
         evaluations=evaluations,
         generations=_all(records, Generation),
         fronts=_all(records, Front),
+        details=_all(records, Detail),
         complete=not damage,
         note=_note(path, where, damage, cut_off),
     )

@@ -10,7 +10,7 @@ from typing import TypeVar
 import msgspec
 
 from evodesign.errors import RunError
-from evodesign.records import Evaluation, Front, Generation, RunHeader
+from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.directory import run_segments
 from evodesign.runlog.reader import Segment, read_segment
 
@@ -29,6 +29,7 @@ class Run:
         evaluations: in order of number, each number once.
         generations: in order of number, each number once.
         fronts: in order of generation, each once.
+        details: in order of evaluation, each once; every member of a front has one.
         complete: whether every segment is whole.
         notes: a sentence for everything that is missing or strange.
     """
@@ -38,6 +39,7 @@ class Run:
     evaluations: tuple[Evaluation, ...]
     generations: tuple[Generation, ...]
     fronts: tuple[Front, ...]
+    details: tuple[Detail, ...]
     complete: bool
     notes: tuple[str, ...]
 
@@ -56,12 +58,16 @@ def read_run(directory: Path) -> Run:
         (generation.number, generation) for segment in segments for generation in segment.generations
     )
     fronts = _first_of_each((front.generation, front) for segment in segments for front in segment.fronts)
+    details = _first_of_each(
+        (detail.evaluation, detail) for segment in segments for detail in segment.details
+    )
     return Run(
         directory=directory,
         header=headers[-1],
         evaluations=evaluations,
         generations=generations,
         fronts=fronts,
+        details=details,
         complete=all(segment.complete for segment in segments),
         notes=(*(segment.note for segment in segments if segment.note), *contradictions),
     )

@@ -2,7 +2,8 @@
 
 Every evaluation is a chunk of its own, handed to the operating system at once: it survives the death of
 this process. `commit` also reaches the disk: what came before survives a power cut. The price is a log of
-about 1.0 kB instead of 0.5 kB per evaluation of 16 parameters and 3 heights (1.8 kB as JSON).
+about 1.0 kB instead of 0.5 kB per evaluation of 16 parameters and 3 heights (1.8 kB as JSON), and 5 kB
+more for each design with its postures.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ import msgspec
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import RunError
-from evodesign.records import Evaluation, Front, Generation, RunHeader
+from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import (
+    DETAIL,
     EVALUATION,
     FRONT,
     GENERATION,
@@ -74,6 +76,11 @@ class RunWriter:
         """Append an evaluation."""
         with self._writing():
             self._add(EVALUATION, evaluation, evaluation.number)
+
+    def detail(self, detail: Detail) -> None:
+        """Append the postures of an evaluation; they go before it, so that it is never known without them."""
+        with self._writing():
+            self._add(DETAIL, detail, detail.evaluation)
 
     def generation(self, generation: Generation) -> None:
         """Append the state after a generation."""

@@ -4,7 +4,7 @@ import sys
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.analysis.front import front, minimised
+from evodesign.analysis.front import RunningFront, front, minimised
 from evodesign.records import Assessment, Evaluation, Objective, Sense, Status
 
 TORQUE = Objective(name="torque", sense=Sense.MINIMISE, unit="N m")
@@ -111,3 +111,11 @@ def test_fronts_are_found_without_robots():
     )
     done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
     assert done.stdout.strip() == "[]"
+
+
+@given(st.lists(designs, max_size=14), st.sampled_from([(TORQUE,), (TORQUE, REACH), (REACH, TORQUE, MASS)]))
+def test_a_design_enters_the_running_front_when_it_is_on_the_front_so_far(drawn, objectives):
+    run = [evaluation(number, violation, **values) for number, (violation, values) in enumerate(drawn)]
+    running = RunningFront(objectives)
+    for count, newest in enumerate(run, 1):
+        assert running.enters(newest) == (newest in front(objectives, run[:count]))

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.posture.preparation import Preparation
+
 
 def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-c", "from evodesign.cli import main; main()", *map(str, arguments)]
@@ -21,7 +23,7 @@ def problem_file(repository: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def run(problem_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(problem_file: Path, known: Preparation, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two designs, the unscaled one first."""
     place = tmp_path_factory.mktemp("runs") / "run"
     sizes = ["--evaluations", "2", "--population", "2", "--pool", "serial"]

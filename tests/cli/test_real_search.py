@@ -114,6 +114,9 @@ def test_plain_mcap_reader_reads_the_finished_run(whole: tuple[Path, str, str]) 
             assert isinstance(content, dict)
             topics[channel.topic] = topics.get(channel.topic, 0) + 1
     generations = BUDGET // POPULATION
+    details = len(read_run(whole[0]).details)
+    assert 0 < details <= BUDGET
+    assert topics.pop("/detail") == details
     assert topics == {"/run": 1, "/evaluation": BUDGET, "/generation": generations, "/front": generations}
 
 

@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.posture.human_value import HumanValue
 from evodesign.posture.kkt import Kink
+from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES
@@ -46,10 +46,10 @@ def wide(problem: Problem) -> Problem:
 
 
 @pytest.fixture(scope="module")
-def tangent(wide: Problem, people: tuple[HumanValue, ...], evaluator: Evaluator) -> DesignTangent:
+def tangent(wide: Problem, known: Preparation, evaluator: Evaluator) -> DesignTangent:
     """Of a design whose agents do not lean on each other as far as they may, so that the person moves too."""
     values = wide.space.unscaled(wide.scene.robot.tree)
-    return Sensitivities(wide, people).at(values, evaluator.solve(values))
+    return Sensitivities(wide, known).at(values, evaluator.solve(values))
 
 
 @pytest.fixture(scope="module")
@@ -58,10 +58,10 @@ def found(tangent: DesignTangent) -> Mapping[str, Sensitivity]:
 
 
 def test_gradients_are_differences_of_what_a_search_sees(
-    benchmark_module: ModuleType, problem: Problem, people: tuple[HumanValue, ...]
+    benchmark_module: ModuleType, problem: Problem, known: Preparation
 ) -> None:
-    """From the fixed starts, along one direction of each design; the benchmark takes all directions."""
-    comparer = benchmark_module.Comparer(problem, people)
+    """From the seeds, along one direction of each design; the benchmark takes all directions."""
+    comparer = benchmark_module.Comparer(problem, known)
     rng = np.random.default_rng(11)
     compared = 0
     for _ in range(6):
@@ -112,10 +112,10 @@ def test_closed_forms_of_the_design_have_casadis_derivatives(
 
 
 def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
-    tangent: DesignTangent, wide: Problem, people: tuple[HumanValue, ...]
+    tangent: DesignTangent, wide: Problem, known: Preparation
 ) -> None:
     """Robot and person are solved in turn; their summed cost is differenced along one direction."""
-    tight = Evaluator(replace(wide, options=replace(wide.options, tolerance=1e-12)), people)
+    tight = Evaluator(replace(wide, options=replace(wide.options, tolerance=1e-12)), known)
     ranges = np.array([parameter.upper - parameter.lower for parameter in wide.space.parameters])
     along = ranges * np.random.default_rng(2).standard_normal(len(ranges))
     costs = []
@@ -130,6 +130,6 @@ def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
 def test_kinks_name_the_start_that_won(found: Mapping[str, Sensitivity]) -> None:
     for name in ("robot_torque", "worst_human_torque"):
         for height in ("0.8", "1", "1.2"):
-            assert any(kink.startswith(f"at {height} m: start ") for kink in found[name].kinks)
+            assert any(kink.startswith(f"at {height} m: split: seed ") for kink in found[name].kinks)
     assert any(kink.startswith("highest load: start ") for kink in found["reach_height"].kinks)
     assert found["mass"].kinks == ()

@@ -18,7 +18,7 @@ from evodesign.records import FORMAT_VERSION, Assessment, Evaluation, Status
 from evodesign.runlog.channels import RECORDS
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.writer import RunWriter
-from tests.runlog.toys import toy_evaluations, toy_front, toy_generation, toy_header
+from tests.runlog.toys import toy_detail, toy_evaluations, toy_front, toy_generation, toy_header
 
 HEADER = toy_header()
 
@@ -31,6 +31,8 @@ def write_small_log(directory: Path) -> dict[int, int]:
         committed[log.path.stat().st_size] = 0
         for number in range(3):
             for evaluation in evaluations[2 * number : 2 * number + 2]:
+                if evaluation.number % 2:
+                    log.detail(toy_detail(evaluation))
                 log.evaluation(evaluation)
             log.generation(toy_generation(number, 2 * number + 2))
             log.front(toy_front(number))
@@ -46,6 +48,7 @@ def test_every_record_comes_back_as_it_was_written(tmp_path: Path) -> None:
     assert list(segment.evaluations) == toy_evaluations(HEADER, 6)
     assert list(segment.generations) == [toy_generation(number, 2 * number + 2) for number in range(3)]
     assert list(segment.fronts) == [toy_front(number) for number in range(3)]
+    assert list(segment.details) == [toy_detail(each) for each in segment.evaluations[1::2]]
     assert segment.complete
     assert segment.note == ""
 
@@ -137,6 +140,7 @@ def test_the_plain_reader_reads_a_finished_segment(tmp_path: Path) -> None:
         "/evaluation": 6,
         "/generation": 3,
         "/front": 3,
+        "/detail": 3,
     }
     for _, channel, message in messages:
         assert msgspec.json.decode(message.data, type=RECORDS[channel.topic])

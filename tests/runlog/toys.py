@@ -13,11 +13,15 @@ import msgspec
 from evodesign.pool.base import Finished, Pool
 from evodesign.records import (
     FORMAT_VERSION,
+    AgentDetail,
+    Assessed,
     Assessment,
+    Detail,
     Evaluation,
     Front,
     Generation,
     Genome,
+    HeightDetail,
     HeightOutcome,
     Objective,
     Parameter,
@@ -90,6 +94,29 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
     )
 
 
+def toy_heights(genome: Genome) -> tuple[HeightDetail, ...]:
+    """A posture of one joint that follows from the genome."""
+    wrenches = dict.fromkeys(("left", "right"), (0.0, 0.0, 12.5, 0.0, 0.0, 0.0))
+    agent = AgentDetail(
+        base_position_m=(-0.4, 0.0, genome[0]),
+        base_rpy_rad=(0.0, genome[1], 0.0),
+        joints_rad={"elbow": genome[0]},
+        torques_n_m={"elbow": 30.0 * genome[1]},
+        hand_wrenches=wrenches,
+        foot_wrenches=wrenches,
+    )
+    return (HeightDetail(height_m=1.0, agents={"robot": agent, "human": agent}),)
+
+
+def toy_assessed(genome: Genome, header: RunHeader) -> Assessed:
+    assessment = toy_assessment(genome, header)
+    return Assessed(assessment=assessment, heights=toy_heights(genome))
+
+
+def toy_detail(evaluation: Evaluation) -> Detail:
+    return Detail(evaluation=evaluation.number, heights=toy_heights(evaluation.genome))
+
+
 def toy_evaluations(header: RunHeader, count: int) -> list[Evaluation]:
     generator = random.Random(header.search.seed)
     evaluations = []
@@ -151,11 +178,11 @@ class ToyTask:
     before: Callable[[int], object] = lambda call: None
     genomes: list[Genome] = field(default_factory=list)
 
-    def __call__(self) -> Callable[[Genome], Assessment]:
-        def task(genome: Genome) -> Assessment:
+    def __call__(self) -> Callable[[Genome], Assessed]:
+        def task(genome: Genome) -> Assessed:
             self.before(len(self.genomes))
             self.genomes.append(genome)
-            return toy_assessment(genome, self.header)
+            return toy_assessed(genome, self.header)
 
         return task
 
@@ -191,7 +218,11 @@ def shuffled(seed: int) -> Callable[[int], Sequence[int]]:
 
 
 def essence(run: Run) -> tuple[list[Evaluation], list[Generation], tuple[Front, ...]]:
-    """What must be equal between two runs: everything but times and names of workers."""
+    """What must be equal between two runs: everything but times and names of workers.
+
+    Postures of designs that were beaten on arrival may be there or not: evaluations that a stop logs early
+    are compared with fewer others.
+    """
     return (
         [msgspec.structs.replace(each, seconds=0.0, worker="") for each in run.evaluations],
         [msgspec.structs.replace(each, seconds=0.0) for each in run.generations],
