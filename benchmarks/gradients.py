@@ -5,7 +5,7 @@
 Random designs of the default problem are evaluated as a search evaluates them, from the seeds, with a
 tighter tolerance; so are their neighbours along every parameter. Central differences at two steps,
 extrapolated to none, are compared with the gradients, each component times its parameter's range, relative to
-the largest. A design is left out, and counted, where a kink lies between the neighbours.
+the largest. A design is left out, and counted, where a kink is near.
 """
 
 from __future__ import annotations
@@ -38,8 +38,9 @@ OTHER = 0.02
 OTHER_REACH = 0.001
 """Difference of the reach [m] between neighbours above which another optimum was found."""
 
-CLEAR = 10.0
-"""Steps within which no limit may change."""
+CLEAR = 1e-3
+"""Share of a range within which no limit may change. (The solver takes bounds as 1e-8 wider than they are: so
+near a kink, where slopes themselves change within 1e-3, that alone makes differences of 1e-5.)"""
 
 ZERO = 1e-6
 """Gradient per range, relative to its objective, that counts as none."""
@@ -101,8 +102,8 @@ class Comparer:
             if not hasattr(part, "limits"):
                 return part.reason
             for limit in part.limits:
-                if (np.abs(directions @ (limit.slope * ranges)) * STEP > limit.margin / CLEAR).any():
-                    return f"a limit is reached or left within {CLEAR:g} steps"
+                if (np.abs(directions @ (limit.slope * ranges)) * CLEAR > limit.margin).any():
+                    return f"a limit is reached or left within {CLEAR:g} of a range"
         return ""
 
 
