@@ -267,6 +267,33 @@ def evaluate(
     evaluate_design(problem, design, name, symmetry, jobs, json)
 
 
+def polish(
+    run: RunPath,
+    design: Annotated[int, typer.Argument(min=0, metavar="DESIGN", help="Number of a design of the run.")],
+    objective: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="What is to get better.", show_default="all, none getting worse"),
+    ] = None,
+    weights: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME=NUMBER,...", help="Several objectives, weighted relative to their values."
+        ),
+    ] = None,
+    evaluations: Annotated[int, typer.Option(min=2, help="Designs that may be evaluated.")] = 60,
+    to: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="New file of designs.", show_default="RUN/polished-DESIGN.toml"),
+    ] = None,
+    jobs: Jobs = CORES,
+    json: Json = False,
+) -> None:
+    """Improve one design of a run by going downhill on its exact gradients; never returns a worse one."""
+    from evodesign.cli.polishing import polish_design
+
+    polish_design(run, design, objective, weights, evaluations, to, jobs, json)
+
+
 def check(problem: ProblemPath, json: Json = False) -> None:
     """Read a problem and show what was understood: agents, load, task, and what each parameter changes."""
     from evodesign.cli.designs import check_problem
@@ -324,6 +351,7 @@ COMMANDS = (
     watch,
     compare,
     evaluate,
+    polish,
     check,
     seeds,
     verify,

@@ -34,10 +34,16 @@ __all__ = ["AssessmentFactory", "Evaluator"]
 
 
 class Evaluator:
-    """The inner problems of a problem, built once and solved for any number of designs."""
+    """The inner problems of a problem, built once and solved for any number of designs.
+
+    Attributes:
+        problem: whose designs they are.
+        known: what is known beforehand.
+    """
 
     def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
         self.problem = problem
+        self.known = known
         scene, space, options = problem.scene, problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
         self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry, known)
