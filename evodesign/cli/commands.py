@@ -102,4 +102,19 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
-COMMANDS = (search, resume, front, evaluate, check)
+def report(
+    run: RunPath,
+    output: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The page.", show_default="RUN/report.html")
+    ] = None,
+    designs: Annotated[
+        str, typer.Option(metavar="NUMBERS", help="Designs to mark and to show postures of, such as 12,53.")
+    ] = "",
+) -> None:
+    """Write the page of a run: front, parameters, progress, failures, postures; one file, no network."""
+    from evodesign.cli.reports import write_report
+
+    write_report(run, output, designs)
+
+
+COMMANDS = (search, resume, front, report, evaluate, check)
