@@ -66,15 +66,34 @@ def resume(
 
 def front(
     run: RunPath,
+    knee: Annotated[
+        bool, typer.Option("--knee", help="Only where every exchange near by loses more than it gains.")
+    ] = False,
+    near: Annotated[
+        str | None,
+        typer.Option(metavar="NAME=NUMBER,...", help="Closest first to these values of objectives."),
+    ] = None,
+    different: Annotated[
+        bool, typer.Option("--different", help="The most different designs, 10 unless --limit says.")
+    ] = False,
+    where: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CONDITION",
+            help="Only designs such as 'reach_height >= 1.5 and robot_torque@1.2 < 10'.",
+        ),
+    ] = None,
+    limit: Annotated[int | None, typer.Option(min=1, help="At most so many.", show_default="all")] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print CSV instead of tables.")] = False,
     json: Json = False,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write a figure of the front (HTML).")
     ] = None,
 ) -> None:
-    """The designs of a run that no other design beats in every objective."""
-    from evodesign.cli.fronts import show
+    """The designs of a run that no other design beats in every objective, or a choice of them."""
+    from evodesign.cli.fronts import Picking, Printing, show
 
-    show(run, json, plot)
+    show(run, Picking(knee, different, near, where or (), limit), Printing(json, csv, plot))
 
 
 def evaluate(

@@ -8,8 +8,9 @@ from typing import Any
 
 import msgspec
 from rich.console import Console
+from rich.markup import escape
 
-__all__ = ["console", "figure", "print_json", "show_notes"]
+__all__ = ["console", "figure", "print_json", "show_notes", "shown", "visible"]
 
 PLAIN_WIDTH = 110
 """Columns of a table that is not shown on a terminal."""
@@ -24,6 +25,16 @@ def console(*, stderr: bool = False) -> Console:
 def figure(value: float | None) -> str:
     """A number with four significant figures, or a dash for none."""
     return "-" if value is None else f"{value:.4g}"
+
+
+def visible(text: str) -> str:
+    """Text with control characters as their escapes: names in a user's file may hold them."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+
+
+def shown(name: str) -> str:
+    """A name from a user's file as rich's markup that shows it as it stands."""
+    return escape(visible(name))
 
 
 def print_json(value: Any) -> None:

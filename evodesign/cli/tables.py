@@ -1,18 +1,28 @@
-"""Fronts as tables for people and as JSON for programs."""
+"""Fronts as tables for people, and as JSON and CSV for programs."""
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Sequence
 from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.cli.output import figure
+from evodesign.analysis.choice import Choice, Chosen, Order
+from evodesign.cli.output import figure, shown
 from evodesign.records import Evaluation, Objective
 from evodesign.runlog.run import Run
 
-__all__ = ["front_json", "front_table", "heading"]
+__all__ = ["front_csv", "front_json", "front_table", "heading"]
+
+TITLES = {
+    Order.FIRST_OBJECTIVE: "Front of",
+    Order.KNEE: "Knees of the front of",
+    Order.NEAR: "Closest to the aspiration, on the front of",
+    Order.DIFFERENT: "Most different designs of the front of",
+}
 
 
 def heading(objective: Objective) -> str:
@@ -21,33 +31,54 @@ def heading(objective: Objective) -> str:
     return f"{objective.name} [{objective.unit}] {arrow}"
 
 
-def front_json(run: Run, designs: Sequence[Evaluation]) -> dict[str, Any]:
-    """The front as a JSON object; its shape is a promise."""
+def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
+    """Chosen designs as a JSON object; its shape is a promise."""
     return {
         "run": str(run.directory),
         "objectives": [objective.name for objective in run.header.objectives],
         "evaluations": len(run.evaluations),
+        "front": len(chosen.front),
+        "order": choice.order,
+        "where": [str(condition) for condition in choice.where],
         "designs": [
             {
                 "id": evaluation.number,
                 "objectives": evaluation.assessment.objectives,
                 "parameters": evaluation.assessment.design,
             }
-            for evaluation in designs
+            for evaluation in chosen.designs
         ],
     }
 
 
-def front_table(run: Run, designs: Sequence[Evaluation]) -> Table:
-    """The front, best first in its first objective."""
+def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
+    """Designs as comma-separated values: number, objectives, parameters, in full precision."""
+    objectives = [objective.name for objective in run.header.objectives]
+    parameters = [parameter.name for parameter in run.header.parameters]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["design", *objectives, *parameters])
+    for evaluation in designs:
+        assessment = evaluation.assessment
+        writer.writerow(
+            [
+                evaluation.number,
+                *(assessment.objectives[name] for name in objectives),
+                *(assessment.design[name] for name in parameters),
+            ]
+        )
+    return text.getvalue()
+
+
+def front_table(run: Run, choice: Choice, designs: Sequence[Evaluation]) -> Table:
+    """Designs with their objectives, in the given order."""
     objectives = run.header.objectives
-    table = Table(title=escape(f"Front of {run.header.problem_name}"), title_justify="left")
+    title = f"{TITLES[choice.order]} {shown(run.header.problem_name)}"
+    table = Table(title=title, title_justify="left")
     table.add_column("design", justify="right")
     for objective in objectives:
         table.add_column(escape(heading(objective)), justify="right")
-    first = objectives[0]
-    sign = 1.0 if first.sense == "minimise" else -1.0
-    for evaluation in sorted(designs, key=lambda e: sign * e.assessment.objectives[first.name]):
+    for evaluation in designs:
         values = evaluation.assessment.objectives
         table.add_row(str(evaluation.number), *(figure(values[objective.name]) for objective in objectives))
     return table

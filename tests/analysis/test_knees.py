@@ -1,0 +1,82 @@
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evodesign.analysis.front import front
+from evodesign.analysis.knees import bulges, knees
+from evodesign.analysis.scaling import scaled
+from evodesign.records import Objective, Sense
+from tests.analysis.designs import MASS, REACH, TORQUE, design, designs_at, numbers
+
+SENSES = st.sampled_from([(TORQUE, MASS), (TORQUE, REACH), (REACH, TORQUE, MASS)])
+grid = st.integers(0, 12).map(lambda step: step / 4.0)
+
+
+def trade_off(start, other):
+    """What is lost for what is gained by exchanging a design, after Rachmawati and Srinivasan."""
+    lost = sum(max(0.0, b - a) for a, b in zip(start, other, strict=True))
+    gained = sum(max(0.0, a - b) for a, b in zip(start, other, strict=True))
+    return math.inf if gained == 0.0 else lost / gained
+
+
+@given(st.data(), SENSES, st.sampled_from([0.0, 0.26, 0.5, 1.0]))
+def test_a_knee_loses_more_than_it_gains_in_every_exchange_near_by(data, objectives, neighbourhood):
+    points = data.draw(st.lists(st.tuples(*[grid] * len(objectives)), min_size=1, max_size=16))
+    designs = front(objectives, designs_at(objectives, points))
+    shares = scaled(objectives, designs).shares.tolist()
+    found = set(numbers(knees(objectives, designs, neighbourhood)))
+    for own, one in zip(shares, designs, strict=True):
+        near = [
+            trade_off(own, other)
+            for other in shares
+            if other != own and max(abs(a - b) for a, b in zip(own, other, strict=True)) <= neighbourhood
+        ]
+        if any(ratio < 1.0 - 1e-9 for ratio in near):
+            assert one.number not in found
+        if all(ratio > 1.0 + 1e-9 for ratio in near):
+            assert one.number in found
+
+
+def test_the_bulge_of_two_objectives_is_the_distance_from_the_line_through_the_ends():
+    shares = np.array([[0.0, 1.0], [0.2, 0.3], [1.0, 0.0], [0.9, 0.8]])
+    first, last = shares[0], shares[2]
+    along = (last - first) / np.linalg.norm(last - first)
+    expected = [along[0] * (first - point)[1] - along[1] * (first - point)[0] for point in shares]
+    assert bulges(shares) == pytest.approx(expected)
+
+
+def test_a_front_with_two_corners_shows_both_and_the_sharper_one_first():
+    """A staircase: steep to (1, 5), level to (5, 4), steep to (6, 0)... in minimised torque and mass."""
+    corners = [(0.0, 10.0), (1.0, 5.0), (6.0, 4.0), (7.0, 0.5), (10.0, 0.0)]
+    points = [
+        (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+        for start, end in itertools.pairwise(corners)
+        for share in (0.0, 0.2, 0.4, 0.6, 0.8)
+    ] + [corners[-1]]
+    designs = designs_at((TORQUE, MASS), points)
+    found = knees((TORQUE, MASS), designs, 0.2)
+    assert [tuple(each.assessment.objectives.values()) for each in found][:2] == [(1.0, 5.0), (7.0, 0.5)]
+    assert numbers(knees((TORQUE, MASS), designs, 1.0)) == [5]
+
+
+def test_units_and_senses_do_not_change_the_knees():
+    points = [(0.0, 10.0), (1.0, 4.0), (3.0, 3.0), (5.0, 1.0), (10.0, 0.0)]
+    plain = designs_at((TORQUE, MASS), points)
+    turned = designs_at((TORQUE, REACH), [(1000.0 + 7.0 * a, -0.01 * b) for a, b in points])
+    assert numbers(knees((TORQUE, MASS), plain)) == numbers(knees((TORQUE, REACH), turned))
+
+
+def test_one_objective_has_one_knee_and_no_design_has_none():
+    assert numbers(knees((TORQUE,), designs_at((TORQUE,), [(3.0,)]))) == [0]
+    assert knees((TORQUE, MASS), []) == ()
+    assert knees((TORQUE, MASS), [design(0, {"torque": 1.0, "mass": 1.0}, violation=0.1)]) == ()
+
+
+def test_an_objective_in_which_all_agree_does_not_count():
+    objectives = (TORQUE, MASS, Objective(name="peak", sense=Sense.MINIMISE, unit="1"))
+    points = [(0.0, 10.0, 5.0), (1.0, 1.0, 5.0), (10.0, 0.0, 5.0)]
+    assert numbers(knees(objectives, designs_at(objectives, points), 1.0)) == [1]

@@ -1,0 +1,139 @@
+"""`front`: every number that it prints is the log's, whatever the run is like."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from evodesign.analysis.front import front
+from evodesign.analysis.knees import knees
+from evodesign.cli.fronts import Picking, Printing, show
+from evodesign.errors import InputError
+from evodesign.records import Evaluation, Objective, Parameter, RunHeader, Sense
+from evodesign.runlog.writer import RunWriter
+from tests.runlog.toys import toy_evaluations, toy_header
+
+HEADER = toy_header()
+RUN = toy_evaluations(HEADER, 60)
+
+
+def logged(directory: Path, header: RunHeader, evaluations: list[Evaluation]) -> Path:
+    with RunWriter(directory, header) as writer:
+        for evaluation in evaluations:
+            writer.evaluation(evaluation)
+    return directory
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    return logged(tmp_path / "run", HEADER, RUN)
+
+
+def printed(
+    capsys: pytest.CaptureFixture[str], run: Path, picking: Picking | None = None, **form: bool
+) -> str:
+    show(run, picking or Picking(), Printing(**form))
+    return capsys.readouterr().out
+
+
+def test_csv_holds_every_number_of_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = list(csv.DictReader(io.StringIO(printed(capsys, run, csv=True))))
+    expected = front(HEADER.objectives, RUN)
+    assert sorted(int(row["design"]) for row in rows) == [each.number for each in expected]
+    for row in rows:
+        assessment = RUN[int(row["design"])].assessment
+        for name, value in {**assessment.objectives, **assessment.design}.items():
+            assert float(row[name]) == value
+
+
+def test_table_holds_the_log_s_numbers_to_four_figures(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shown = printed(capsys, run)
+    for each in front(HEADER.objectives, RUN):
+        (line,) = [line for line in shown.splitlines() if f"│ {each.number:>6} │" in line]
+        for value in each.assessment.objectives.values():
+            assert f" {value:.4g} " in line
+
+
+def test_knees_within_a_condition_come_as_json(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picking = Picking(knee=True, where=["reach_height >= 1.5"], limit=2)
+    found = json.loads(printed(capsys, run, picking, json=True))
+    high = [each for each in RUN if each.assessment.objectives["reach_height"] >= 1.5]
+    expected = knees(HEADER.objectives, front(HEADER.objectives, high))[:2]
+    assert [design["id"] for design in found["designs"]] == [each.number for each in expected]
+    assert found["where"] == ["reach_height >= 1.5"]
+    assert found["front"] == len(front(HEADER.objectives, high))
+
+
+def test_what_the_limit_leaves_out_is_said(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    whole = len(front(HEADER.objectives, RUN))
+    assert f"2 of {whole} designs are shown" in printed(capsys, run, Picking(limit=2))
+    assert "are shown" not in printed(capsys, run)
+
+
+def test_empty_and_infeasible_runs_say_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    empty = logged(tmp_path / "empty", HEADER, [])
+    assert "nothing was evaluated yet" in printed(capsys, empty)
+    infeasible = [each for each in RUN if not each.feasible][:3]
+    nearest = min(infeasible, key=lambda each: each.assessment.violation or 0.0)
+    shown = printed(capsys, logged(tmp_path / "infeasible", HEADER, infeasible))
+    assert f"design {nearest.number} comes nearest" in shown
+    assert f"{nearest.assessment.violation:.4g} m" in shown
+    for run in (empty, tmp_path / "infeasible"):
+        assert json.loads(printed(capsys, run, Picking(knee=True), json=True))["designs"] == []
+
+
+@pytest.mark.parametrize("count", [1, 5])
+def test_runs_of_one_and_of_five_objectives_have_a_table(
+    count: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    objectives = tuple(
+        Objective(name=f"number_{index}", sense=Sense.MINIMISE, unit="kg") for index in range(count)
+    )
+    header = msgspec.structs.replace(HEADER, objectives=objectives)
+    run = [_with_objectives(each, objectives) for each in RUN]
+    place = logged(tmp_path / "run", header, run)
+    for picking in (Picking(), Picking(knee=True), Picking(different=True), Picking(near="number_0=0")):
+        shown = printed(capsys, place, picking)
+        assert f"{len(front(objectives, run))} on the front" in shown
+
+
+def _with_objectives(each: Evaluation, objectives: tuple[Objective, ...]) -> Evaluation:
+    values = {
+        objective.name: (each.number * (7 + position) % 61) / 61.0
+        for position, objective in enumerate(objectives)
+    }
+    assessment = msgspec.structs.replace(each.assessment, objectives=values, violation=0.0)
+    return msgspec.structs.replace(each, assessment=assessment)
+
+
+def test_names_are_shown_as_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = "<script>[bold]\x1b[31m"
+    parameters = tuple(Parameter(name=f"{name}{index}", lower=0.5, upper=2.0, unit="1") for index in range(2))
+    header = msgspec.structs.replace(HEADER, problem_name=name, parameters=parameters)
+    run = logged(tmp_path / "run", header, toy_evaluations(header, 40))
+    table = printed(capsys, run, Picking(where=[f"{name}1 >= 0.5"]))
+    assert "<script>[bold]\\x1b[31m" in table
+    assert "\x1b" not in table
+    rows = list(csv.DictReader(io.StringIO(printed(capsys, run, csv=True))))
+    assert f"{name}1" in rows[0]
+
+
+@pytest.mark.parametrize(
+    ("picking", "printing", "words"),
+    [
+        (Picking(knee=True, different=True), Printing(), "--knee: wanted one way to choose"),
+        (Picking(near="reach=1"), Printing(), "--near: wanted objectives among .*'reach_height'"),
+        (Picking(where=["reach_height"]), Printing(), "--where: wanted NAME <"),
+        (Picking(), Printing(json=True, csv=True), "--csv: wanted one form of output"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused_in_one_sentence(
+    picking: Picking, printing: Printing, words: str, run: Path
+) -> None:
+    with pytest.raises(InputError, match=words):
+        show(run, picking, printing)
