@@ -18,7 +18,7 @@ from evodesign.runlog.run import Run
 
 __all__ = ["MOST_POSTURES", "page_content"]
 
-MOST_POSTURES = 200
+MOST_POSTURES = 150
 """Designs whose postures are in the page: the marked ones, then the front, evenly."""
 
 
@@ -95,9 +95,7 @@ def _facts(run: Run, on_front: int) -> Facts:
 def _heights(run: Run, problem: Problem | None) -> tuple[float, ...]:
     if problem is not None:
         return problem.heights
-    return tuple(
-        sorted({height.height_m for each in run.evaluations for height in each.assessment.heights})
-    )
+    return tuple(sorted({height.height_m for each in run.evaluations for height in each.assessment.heights}))
 
 
 def _thinned_note(run: Run, shown: Sequence[Evaluation]) -> tuple[str, ...]:

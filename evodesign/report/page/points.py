@@ -17,7 +17,7 @@ MOST_POINTS = 10_000
 def chosen_points(
     evaluations: Sequence[Evaluation], front: Collection[int], needed: Collection[int], most: int
 ) -> list[Evaluation]:
-    """At most so many evaluations, in order of number: the needed ones, then the front, the feasible, the rest.
+    """At most so many evaluations, in order of number: the needed, then the front, the feasible, the rest.
 
     Args:
         evaluations: of the run.

@@ -46,7 +46,6 @@ def page_html(content: Content) -> str:
     parts = {
         "{{style}}": "\n".join(_text(name) for name in STYLES),
         "{{plotly}}": get_plotlyjs(),
-
         "{{content}}": _json(content),
         "{{scripts}}": "\n".join(_text(name) for name in SCRIPTS),
     }

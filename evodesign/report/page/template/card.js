@@ -16,7 +16,7 @@ const against = (axis, row) => {
 
 const worth = (row) => element("dl", { class: "worth" }, ...axes.slice(0, objectives.length).map((axis) => element("div", {},
   element("dt", { text: `${capital(words(axis.name))} ${axis.sense === "minimise" ? "↓" : "↑"}` }),
-  element("dd", { "data-objective": axis.name }, exact(axis.column[row]), element("small", { text: ` ${unitText(axis.unit)}` }), element("span", { class: "against", text: against(axis, row) })))));
+  element("dd", { "data-objective": axis.name }, exact(axis.column[row]), element("small", { text: axis.column[row] === null ? " no value" : ` ${unitText(axis.unit)}` }), element("span", { class: "against", text: against(axis, row) })))));
 
 const cardHead = (row) => {
   const number = points.number[row];
@@ -143,15 +143,22 @@ const massTable = (design) => {
     element("tbody", {}, ...body, line("all other links", rest(tree), rest(before), ""), line("whole robot", massOf(tree), massOf(before), "")));
 };
 
+// Forces with one decimal, moments with two.
+const wrenchCells = (wrench) => wrench.map((value, index) => {
+  const text = value.toFixed(index < 3 ? 1 : 2).replace(/^-(?=[0.]+$)/, "").replace("-", "\u2212");
+  return element("td", { class: "number", text });
+});
+
 const wrenchTable = (posture) => {
   const heads = ["", "Fx [N]", "Fy [N]", "Fz [N]", "Mx [N m]", "My [N m]", "Mz [N m]"];
-  const line = (name, wrench) => element("tr", {}, element("th", { scope: "row", text: name }), ...wrench.map((value) => element("td", { class: "number", text: Math.abs(value) < 5e-4 ? "0" : figure(value, 3) })));
-  const body = Object.entries(posture.agents).flatMap(([agent, one]) => [
-    ...Object.entries(one.foot_wrenches).map(([side, wrench]) => line(`${AGENT_NAMES[agent]}, ${side} foot`, wrench)),
-    ...Object.entries(one.hand_wrenches).map(([side, wrench]) => line(`${AGENT_NAMES[agent]}, ${side} hand`, wrench))]);
-  return element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Contact wrenches" }, element("table", {},
+  const lines = (part, wrenches) => Object.entries(wrenches).map(([side, wrench]) =>
+    element("tr", {}, element("th", { scope: "row", text: `${side} ${part}` }), ...wrenchCells(wrench)));
+  const groups = Object.entries(posture.agents).map(([agent, one]) => element("tbody", { "data-agent": agent },
+    element("tr", { class: "group" }, element("th", { colspan: heads.length, scope: "rowgroup", text: AGENT_NAMES[agent] })),
+    ...lines("foot", one.foot_wrenches), ...lines("hand", one.hand_wrenches)));
+  return element("table", { class: "wrenches" },
     element("caption", { text: "Force and moment on the agent: a foot's in its sole frame, a hand's about the grasp point in the frame of the agent, who looks along +x at the load." }),
-    element("thead", {}, element("tr", {}, ...heads.map((text, index) => element("th", { scope: "col", class: index ? "number" : "", text })))), element("tbody", {}, ...body)));
+    element("thead", {}, element("tr", {}, ...heads.map((text, index) => element("th", { scope: "col", class: index ? "number" : "", text })))), ...groups);
 };
 
 // First-order change of an objective when a parameter grows by a tenth of its range.
@@ -182,6 +189,7 @@ const sensitivities = (design) => {
 const whyNoPosture = (row) => {
   if (!content.bodies) return "The robot cannot be drawn: see the notes at the top.";
   if (points.kind[row] === "front") return "The postures of this design are not in this page: see the notes at the top.";
+  if (points.kind[row] === "infeasible") return "The log keeps no postures of a design that is not feasible.";
   return "The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived.";
 };
 

@@ -12,6 +12,9 @@ const spread = (axis) => {
 const evaluationAxis = { name: "evaluation", unit: "number", sense: "", column: points.number };
 const frontAxes = objectives.length > 1 ? axes.slice(0, objectives.length) : [evaluationAxis, axes[0]];
 
+// Beyond this number SVG is slow; all traces then change to WebGL together, so that they keep their order.
+const manyPoints = frontRows.length + dominatedRows.length > 2500 && hasWebgl;
+
 const hover = (row) => {
   const lines = [`<b>Design ${points.number[row]}</b>`];
   for (const mark of marksOf(points.number[row])) lines.push(plain(mark.label));
@@ -24,9 +27,8 @@ const hover = (row) => {
 const frontTrace = (wanted, name, marker, more = {}) => {
   const { across, up, colour: third, solid } = drawnIn;
   const column = (index) => wanted.map((row) => frontAxes[index].column[row]);
-  const many = wanted.length > 1500 && hasWebgl;
   return {
-    type: solid ? "scatter3d" : many ? "scattergl" : "scatter",
+    type: solid ? "scatter3d" : manyPoints ? "scattergl" : "scatter",
     mode: "markers",
     name,
     x: column(across),
@@ -70,7 +72,7 @@ const markTraces = () => {
     const marked = content.marks.filter((mark) => mark.kind === kind).map((mark) => rowOf.get(mark.number));
     const drawn = marked.filter(complete);
     if (drawn.length === 0) return [];
-    const size = drawnIn.solid ? (kind === "unscaled" ? 7 : 5) : kind === "unscaled" ? 15 : 14;
+    const size = drawnIn.solid ? (kind === "unscaled" ? 9 : 5) : kind === "unscaled" ? 15 : 14;
     const line = { width: drawnIn.solid ? 0 : kind === "unscaled" ? 1 : 2, color: kind === "unscaled" ? colour("surface") : colour("second") };
     return [frontTrace(drawn, kind, { size, symbol: shapes[kind], color: colour("second"), line })];
   });
@@ -111,7 +113,8 @@ const frontLayout = () => {
       uirevision: `3d ${across} ${up} ${third}`,
       scene: {
         xaxis: axis(across), yaxis: axis(up), zaxis: axis(third),
-        camera: { eye: { x: 1.5, y: -1.5, z: 0.75 }, center: { x: 0, y: 0, z: -0.12 } },
+        aspectmode: "manual", aspectratio: { x: 1.25, y: 1.25, z: 0.9 },
+        camera: { eye: { x: 1.25, y: -1.35, z: 0.6 }, center: { x: 0, y: 0, z: -0.16 } },
       },
     });
   }

@@ -13,8 +13,7 @@ const bestFigure = (objective, axis) => {
   if (!mark) return null;
   const value = axis.column[rowOf.get(mark.number)];
   const before = unscaledMark ? axis.column[rowOf.get(unscaledMark.number)] : null;
-  const aside = before === null ? "" : ` unscaled ${exact(before)}`;
-  return [capital(mark.label), exact(value), ` ${unitText(objective.unit)}${aside ? "," : ""}${aside}`];
+  return [capital(mark.label), exact(value), ` ${unitText(objective.unit)}`, before === null ? "" : `unscaled ${exact(before)}`];
 };
 
 const startHead = () => {
@@ -24,12 +23,12 @@ const startHead = () => {
   byId("lead").textContent = `${countable(objectives.length, "objective")} over ${countable(parameters.length, "parameter")}, searched by ${facts.algorithm} with a population of ${facts.population}, seed ${facts.seed}.`;
   const share = facts.evaluations ? percent(facts.feasible / facts.evaluations) : "–";
   const figures = [
-    ["Evaluated", `${facts.evaluations}`, ` of ${facts.budget} designs`],
-    ["Feasible", share, ` ${facts.feasible} designs`],
-    ["On the front", `${facts.front}`, facts.front === 1 ? " design" : " designs"],
+    ["Evaluated", `${facts.evaluations}`, " designs", `of a budget of ${facts.budget}`],
+    ["Feasible", share, "", countable(facts.feasible, "design")],
+    ["On the front", `${facts.front}`, facts.front === 1 ? " design" : " designs", "beaten by none"],
     ...(objectives.length <= 4 ? objectives.map((objective, index) => bestFigure(objective, axes[index])).filter(Boolean) : []),
   ];
-  byId("figures").append(...figures.map(([name, value, aside]) => element("div", {}, element("dt", { text: name }), element("dd", {}, value, element("small", { text: aside })))));
+  byId("figures").append(...figures.map(([name, value, unit, aside]) => element("div", {}, element("dt", { text: name }), element("dd", {}, value, element("small", { text: unit }), element("span", { class: "against", text: aside })))));
   const notes = byId("notes");
   notes.hidden = content.notes.length === 0;
   notes.append(...content.notes.map((note) => element("li", { text: capital(note) })));

@@ -5,7 +5,7 @@ const STEPS = 1000;
 const ROW = 27;
 const GAP = 12;
 
-let showsAll = !hasFront;
+let showsAll = !hasFront || frontRows.length < 5;
 
 const lineRows = () => {
   if (!hasFront) return dominatedRows.length ? dominatedRows : infeasibleRows;
@@ -17,7 +17,7 @@ const extent = (axis) => {
   const values = lineRows().map((row) => axis.column[row]).filter((value) => value !== null);
   const low = values.reduce((a, b) => Math.min(a, b), Infinity);
   const high = values.reduce((a, b) => Math.max(a, b), -Infinity);
-  if (values.length === 0) return [0, 1];
+  if (values.length === 0) return [NaN, NaN];
   return low === high ? [low - 0.5, high + 0.5] : [low, high];
 };
 
@@ -53,7 +53,7 @@ const drawLines = () => {
   const shown = lineRows();
   const onFront = (row) => points.kind[row] === "front";
   const kept = shown.filter(inside);
-  const dense = Math.min(1, Math.max(0.1, 30 / Math.max(kept.length, 1)));
+  const dense = Math.min(1, Math.max(0.05, 30 / Math.max(kept.length, 1)));
   if (filtered()) draw(shown.filter((row) => !inside(row) && onFront(row)), "faint", 0.16, 1);
   draw(kept.filter((row) => !onFront(row)), hasFront ? "faint" : "accent", Math.max(0.08, dense * 0.5), 1);
   draw(kept.filter(onFront), "accent", dense, 1.2);
@@ -97,7 +97,7 @@ const axisRow = (axis, index) => {
     span.style.left = `${100 * shares[0]}%`;
     span.style.width = `${100 * (shares[1] - shares[0])}%`;
     const [low, high] = brushed ?? extents[index];
-    range.textContent = `${figure(low)} to ${withUnit(high, axis.unit)}`;
+    range.textContent = Number.isNaN(low) ? "no value" : `${figure(low)} to ${withUnit(high, axis.unit)}`;
   };
   const set = (low, high) => {
     const whole = low <= 0 && high >= 1;
@@ -141,20 +141,24 @@ const sayBrushed = () => {
   byId("clear").disabled = !filtered();
   const shown = lineRows();
   const kept = shown.filter(inside).length;
-  const noun = hasFront && !showsAll ? "designs of the front" : "designs";
+  const noun = `design${shown.length === 1 ? "" : "s"}${hasFront && !showsAll ? " of the front" : ""}`;
   byId("brushed").textContent = filtered() ? `${kept} of ${shown.length} ${noun} are inside the brushes.` : `${shown.length} ${noun}.`;
 };
 
 const startParallel = () => {
   const place = byId("parallel");
   byId("all-label").hidden = !hasFront || dominatedRows.length === 0;
+  byId("all").checked = showsAll;
   if (lineRows().length === 0) {
     place.append(element("p", { class: "plain", text: "No evaluation yet." }));
+    for (const idle of ["clear", "brushed", "parallel-hint"]) byId(idle).hidden = true;
     return;
   }
   const canvas = element("canvas", { id: "lines", "aria-hidden": "true" });
   const made = axes.map(axisRow);
   place.append(canvas, ...made.map(({ row }) => row));
+  const key = (ink, text) => element("span", {}, element("i", { style: `background:var(--${ink});height:3px;width:18px;vertical-align:middle` }), text);
+  place.append(element("p", { class: "legend" }, key("accent", hasFront ? "front" : "designs"), key("second", "chosen design"), ...(unscaledMark ? [key("ink", "unscaled robot")] : [])));
   canvas.style.height = `${topOf(axes.length - 1) + ROW / 2}px`;
   canvas.style.width = "calc(100% - 346px)";
   byId("all").addEventListener("change", (event) => {

@@ -13,7 +13,7 @@ const drawProgress = () => {
   const config = { ...plotConfig, displayModeBar: false };
   const hypervolumes = known.map((generation) => generation.hypervolume);
   const after = (generation) => `after ${generation.evaluations} evaluations`;
-  Plotly.react(byId("hypervolume"),
+  if (known.at(-1).reference) Plotly.react(byId("hypervolume"),
     [line(hypervolumes, known.map((one) => `${figure(one.hypervolume)} ${plain(hypervolumeUnit)}<br>${after(one)}`))],
     plotLayout({ xaxis: across, yaxis: plotAxis("", { rangemode: "tozero", zeroline: false, exponentformat: "power" }), margin: { l: 52, r: 8, t: 10, b: 42 } }), config);
   Plotly.react(byId("share"),
@@ -35,6 +35,7 @@ const startProgress = () => {
     byId("hypervolume").setAttribute("aria-label", `Hypervolume after ${last.evaluations} evaluations: ${figure(last.hypervolume)}`);
     byId("hypervolume").closest("section").append(element("p", { class: "hint", text: `Hypervolume against the reference ${corner.join(", ")}; it only grows, and only runs against the same reference compare.` }));
   }
+  if (!last.reference) byId("hypervolume").replaceWith(element("p", { class: "plain", id: "hypervolume", text: "None before the first feasible design." }));
   drawProgress();
   on("theme", drawProgress);
 };
@@ -47,7 +48,7 @@ const startFailures = () => {
   }
   const most = content.failures[0].count;
   const body = content.failures.map((failure) => element("tr", {},
-    element("th", { scope: "row", text: capital(failure.cause) }),
+    element("th", { scope: "row", class: "cause", text: capital(failure.cause) }),
     element("td", { class: "number", text: `${failure.count}` }),
     element("td", { style: "width:30%" }, element("div", { class: "bar", style: `width:${(100 * failure.count) / most}%`, "aria-hidden": "true" })),
     element("td", { class: "number", text: percent(failure.count / content.facts.evaluations) }),

@@ -7,6 +7,7 @@ import json
 import shutil
 import subprocess
 import time
+import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -67,14 +68,16 @@ class Tab:
 
     def resize(self, width: int, height: int) -> None:
         self.call(
-            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
         )
 
     def value(self, expression: str) -> Any:
         """Value of a script's expression."""
-        answer = self.call(
-            "Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True
-        )
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
 
@@ -87,8 +90,12 @@ class Tab:
 
     def place(self, expression: str) -> tuple[float, float, float, float]:
         """Left, top, width and height of an element, scrolled into view."""
-        script = f"(() => {{ const e = {expression}; e.scrollIntoView({{block: 'center', behavior: 'instant'}});"
-        box = self.value(script + "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()")
+        script = (
+            f"(() => {{ const e = {expression}; e.scrollIntoView({{block: 'center', behavior: 'instant'}});"
+        )
+        box = self.value(
+            script + "const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()"
+        )
         return (box[0], box[1], box[2], box[3])
 
     def mouse(self, kind: str, x: float, y: float, *, pressed: bool = True) -> None:
@@ -120,23 +127,31 @@ class Tab:
         path.write_bytes(base64.b64decode(answer["data"]))
 
     def complaints(self) -> list[str]:
-        """What the console was told as a warning or an error, and exceptions."""
+        """Errors that the console was told, warnings of the page's own scripts, and exceptions.
+
+        Remarks of the graphics driver on reading pixels back are no complaints.
+        """
         self.value("0")
         found = []
         for event in self.events:
             details = event.get("params", {})
-            if event.get("method") == "Runtime.exceptionThrown":
-                found.append(str(details["exceptionDetails"]))
-            if event.get("method") == "Runtime.consoleAPICalled" and details["type"] in ("error", "warning"):
-                found.append(str(details["args"]))
-            if event.get("method") == "Log.entryAdded" and details["entry"]["level"] in ("error", "warning"):
-                found.append(str(details["entry"]))
+            match event.get("method"):
+                case "Runtime.exceptionThrown":
+                    found.append(str(details["exceptionDetails"]))
+                case "Runtime.consoleAPICalled" if details["type"] in ("error", "warning"):
+                    found.append(str(details["args"]))
+                case "Log.entryAdded" if details["entry"]["level"] == "error":
+                    found.append(str(details["entry"]))
         return found
 
     def requests(self) -> list[str]:
         """Addresses of everything that was asked for, but data addresses."""
         self.value("0")
-        sent = [e["params"]["request"]["url"] for e in self.events if e.get("method") == "Network.requestWillBeSent"]
+        sent = [
+            e["params"]["request"]["url"]
+            for e in self.events
+            if e.get("method") == "Network.requestWillBeSent"
+        ]
         return [url for url in sent if not url.startswith(("data:", "blob:"))]
 
 
@@ -144,7 +159,7 @@ class Tab:
 def browser(profile: Path, *flags: str) -> Iterator[Tab]:
     """A tab of a new Chromium with a profile of its own."""
     program = executable()
-    assert program is not None
+    assert program is not None, "wanted Chromium on this machine, found none"
     command = [program, *FLAGS, *flags, f"--user-data-dir={profile}", "about:blank"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
@@ -157,8 +172,6 @@ def browser(profile: Path, *flags: str) -> Iterator[Tab]:
 
 def _address(profile: Path, process: subprocess.Popen[bytes]) -> str:
     """Address of the first tab; Chromium writes its port into its profile."""
-    import urllib.request
-
     port = profile / "DevToolsActivePort"
     end = time.monotonic() + PATIENCE
     while not (port.exists() and port.read_text().count("\n")):
