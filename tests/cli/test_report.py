@@ -45,5 +45,5 @@ def test_place_that_cannot_be_written_is_named(run: Path, tmp_path: Path) -> Non
 
 
 def test_directory_without_a_run_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(RunError, match="holds no run"):
+    with pytest.raises(RunError, match="is not a run"):
         write_report(tmp_path, None, "")

@@ -147,6 +147,18 @@ def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: Run) ->
     assert page.value(cell) == f"{force:.1f}"
 
 
+def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run) -> None:
+    first = page.value("window.evodesign.state.selected")
+    drawn = page.value(f"{CANVAS}.toDataURL()")
+    known = {detail.evaluation for detail in real_run.details}
+    bare = next(evaluation.number for evaluation in real_run.evaluations if evaluation.number not in known)
+    page.value(f"window.evodesign.select({bare})")
+    assert page.value(SHOWN) == f"Design {bare}"
+    assert page.value(f"{CANVAS} === null")
+    page.value(f"window.evodesign.select({first})")
+    page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
+
+
 def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem, real_run: Run) -> None:
     detail = real_run.details[-1]
     values = list(real_run.evaluations[detail.evaluation].assessment.design.values())

@@ -16,6 +16,7 @@ from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html
 from evodesign.report.page.content import Content
 from evodesign.report.page.points import chosen_points
+from evodesign.report.page.render import TEMPLATE
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_generation, toy_header
@@ -180,3 +181,10 @@ def test_run_cut_by_a_crash_gives_a_page_with_a_note(tmp_path: Path, real_run: R
     made = page_content(read_run(tmp_path))
     assert 0 < len(made.points.number) < len(real_run.evaluations)
     assert "ends after" in made.notes[0]
+
+
+def test_every_file_of_the_template_is_in_the_page(content: Content) -> None:
+    page = page_html(content)
+    for file in TEMPLATE.iterdir():
+        text = file.read_text(encoding="utf-8")
+        assert file.name == "page.html" or text in page, f"{file.name} is left out"

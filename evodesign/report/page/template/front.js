@@ -45,7 +45,9 @@ const frontTrace = (wanted, name, marker, more = {}) => {
 // From the front's best value to its worst but 5 %, with the marked designs: outliers must not squeeze it.
 const zoomed = (axis) => {
   const values = frontRows.map((row) => axis.column[row]);
-  const marked = content.marks.map((mark) => axis.column[rowOf.get(mark.number)]).filter((value) => value !== null);
+  const marked = content.marks
+    .map((mark) => axis.column[rowOf.get(mark.number)])
+    .filter((value) => value !== null);
   const [from, to] = axis.sense === "minimise" ? [0, 0.95] : axis.sense === "maximise" ? [0.05, 1] : [0, 1];
   const low = Math.min(quantile(values, from), ...marked);
   const high = Math.max(quantile(values, to), ...marked);
@@ -56,10 +58,19 @@ const zoomed = (axis) => {
 const colourScale = (axis) => {
   const [low, high] = zoomed(axis);
   return {
-    colorscale: strength(), reversescale: axis.sense === "minimise", cmin: low, cmax: high, showscale: true,
+    colorscale: strength(),
+    reversescale: axis.sense === "minimise",
+    cmin: low,
+    cmax: high,
+    showscale: true,
     colorbar: {
-      title: { text: plain(label(axis)), side: "right" }, thickness: 10, outlinewidth: 0, len: 0.9,
-      tickfont: plotFont(), ticklen: 3, tickcolor: colour("faint"),
+      title: { text: plain(label(axis)), side: "right" },
+      thickness: 10,
+      outlinewidth: 0,
+      len: 0.9,
+      tickfont: plotFont(),
+      ticklen: 3,
+      tickcolor: colour("faint"),
     },
   };
 };
@@ -73,7 +84,10 @@ const markTraces = () => {
     const drawn = marked.filter(complete);
     if (drawn.length === 0) return [];
     const size = drawnIn.solid ? (kind === "unscaled" ? 9 : 5) : kind === "unscaled" ? 15 : 14;
-    const line = { width: drawnIn.solid ? 0 : kind === "unscaled" ? 1 : 2, color: kind === "unscaled" ? colour("surface") : colour("second") };
+    const line = {
+      width: drawnIn.solid ? 0 : kind === "unscaled" ? 1 : 2,
+      color: kind === "unscaled" ? colour("surface") : colour("second"),
+    };
     return [frontTrace(drawn, kind, { size, symbol: shapes[kind], color: colour("second"), line })];
   });
 };
@@ -85,12 +99,17 @@ const frontTraces = () => {
   const left = frontRows.filter((row) => !inside(row));
   const around = dominatedRows.filter((row) => !filtered() || inside(row));
   const size = solid ? 4 : 9;
-  const chosen = state.selected !== null && rowOf.has(state.selected) ? [rowOf.get(state.selected)].filter(complete) : [];
+  const chosen =
+    state.selected !== null && rowOf.has(state.selected) ? [rowOf.get(state.selected)].filter(complete) : [];
   const tint = third
     ? { color: kept.map((row) => third.column[row]), ...colourScale(third) }
     : { color: colour("accent") };
   const traces = [
-    frontTrace(around, "dominated", { size: solid ? 1.8 : 4, color: colour("faint"), opacity: solid ? 0.5 : 0.6 }),
+    frontTrace(around, "dominated", {
+      size: solid ? 1.8 : 4,
+      color: colour("faint"),
+      opacity: solid ? 0.5 : 0.6,
+    }),
     frontTrace(left, "left out", { size: size - 3, color: colour("faint"), opacity: 0.5 }),
     frontTrace(kept, "front", { size, ...tint, line: { width: solid ? 0 : 0.8, color: colour("surface") } }),
     ...markTraces(),
@@ -105,15 +124,21 @@ const frontLayout = () => {
   const { across, up, colour: third, solid } = drawnIn;
   if (solid) {
     const axis = (index) => ({
-      ...plotAxis(label(frontAxes[index])), range: zoomed(frontAxes[index]), backgroundcolor: colour("surface"),
-      showbackground: false, title: { text: plain(label(frontAxes[index])), font: plotFont() },
+      ...plotAxis(label(frontAxes[index])),
+      range: zoomed(frontAxes[index]),
+      backgroundcolor: colour("surface"),
+      showbackground: false,
+      title: { text: plain(label(frontAxes[index])), font: plotFont() },
     });
     return plotLayout({
       margin: { l: 0, r: 0, t: 0, b: 0 },
       uirevision: `3d ${across} ${up} ${third}`,
       scene: {
-        xaxis: axis(across), yaxis: axis(up), zaxis: axis(third),
-        aspectmode: "manual", aspectratio: { x: 1.25, y: 1.25, z: 0.9 },
+        xaxis: axis(across),
+        yaxis: axis(up),
+        zaxis: axis(third),
+        aspectmode: "manual",
+        aspectratio: { x: 1.25, y: 1.25, z: 0.9 },
         camera: { eye: { x: 1.25, y: -1.35, z: 0.6 }, center: { x: 0, y: 0, z: -0.16 } },
       },
     });
@@ -144,8 +169,20 @@ const walk = (step) => {
 };
 
 const axisChoice = (text, key) => {
-  const options = frontAxes.map((axis, index) => element("option", { value: index, text: words(axis.name), selected: drawnIn[key] === index }));
-  const choice = element("select", { id: `axis-${key}`, onchange: () => { drawnIn[key] = Number(choice.value); drawFront(); } }, ...options);
+  const options = frontAxes.map((axis, index) =>
+    element("option", { value: index, text: words(axis.name), selected: drawnIn[key] === index }),
+  );
+  const choice = element(
+    "select",
+    {
+      id: `axis-${key}`,
+      onchange: () => {
+        drawnIn[key] = Number(choice.value);
+        drawFront();
+      },
+    },
+    ...options,
+  );
   return element("label", { text }, choice);
 };
 
@@ -153,18 +190,40 @@ const frontChoices = () => {
   const form = byId("front-choices");
   if (frontAxes.length < 3) return;
   const segments = element("span", { class: "segments", role: "radiogroup", "aria-label": "Dimensions" });
-  for (const [text, solid] of [["2D", false], ["3D", true]]) {
-    const radio = element("input", { type: "radio", name: "dimensions", id: `front-${text}`, checked: !solid, disabled: solid && !hasWebgl, onchange: () => { drawnIn.solid = solid; Plotly.purge(byId("front")); wireFront(); } });
+  for (const [text, solid] of [
+    ["2D", false],
+    ["3D", true],
+  ]) {
+    const radio = element("input", {
+      type: "radio",
+      name: "dimensions",
+      id: `front-${text}`,
+      checked: !solid,
+      disabled: solid && !hasWebgl,
+      onchange: () => {
+        drawnIn.solid = solid;
+        Plotly.purge(byId("front"));
+        wireFront();
+      },
+    });
     segments.append(element("label", {}, radio, text));
   }
-  form.append(axisChoice("across", "across"), axisChoice("up", "up"), axisChoice("colour, depth", "colour"), segments);
+  form.append(
+    axisChoice("across", "across"),
+    axisChoice("up", "up"),
+    axisChoice("colour, depth", "colour"),
+    segments,
+  );
 };
 
 const wireFront = () => {
   drawFront();
   const plot = byId("front");
   plot.on("plotly_click", (event) => select(event.points[0].customdata));
-  plot.on("plotly_selected", (event) => event?.points && lasso(new Set(event.points.map((point) => point.customdata))));
+  plot.on(
+    "plotly_selected",
+    (event) => event?.points && lasso(new Set(event.points.map((point) => point.customdata))),
+  );
   plot.on("plotly_deselect", () => lasso(null));
 };
 
@@ -183,15 +242,19 @@ const startFront = () => {
     [drawnIn.across, drawnIn.up, drawnIn.colour] = order;
   }
   const count = frontRows.length === 1 ? "One design" : `${frontRows.length} designs`;
-  hint.textContent = objectives.length > 1
-    ? `${count} that no other one beats in every objective; small points are the ${dominatedRows.length} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.`
-    : "One objective: each point is a feasible design. Click a point to see its robot.";
+  hint.textContent =
+    objectives.length > 1
+      ? `${count} that no other one beats in every objective; small points are the ${dominatedRows.length} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.`
+      : "One objective: each point is a feasible design. Click a point to see its robot.";
   plot.setAttribute("aria-label", `${hint.textContent} The same designs are in the table below.`);
   frontChoices();
   wireFront();
   plot.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (step) { event.preventDefault(); walk(step); }
+    if (step) {
+      event.preventDefault();
+      walk(step);
+    }
   });
   for (const event of ["selected", "filter", "theme"]) on(event, drawFront);
 };
@@ -201,13 +264,20 @@ const startChips = () => {
   const seen = [...new Set(content.marks.map((mark) => mark.number))];
   const chips = seen.map((number) => {
     const marks = marksOf(number);
-    const chip = element("button", { type: "button", class: "chip", "data-number": number, onclick: () => select(number) },
+    const chip = element(
+      "button",
+      { type: "button", class: "chip", "data-number": number, onclick: () => select(number) },
       element("i", { text: symbolOf[marks[0].kind], "aria-hidden": "true" }),
       element("span", { text: [...new Set(marks.map((mark) => mark.label))].join(", ") }),
-      element("small", { text: `${number}` }));
+      element("small", { text: `${number}` }),
+    );
     return chip;
   });
   byId("chosen").append(...chips);
   byId("chosen").hidden = chips.length === 0;
-  on("selected", () => chips.forEach((chip) => chip.setAttribute("aria-pressed", String(chip.dataset.number === String(state.selected)))));
+  on("selected", () =>
+    chips.forEach((chip) =>
+      chip.setAttribute("aria-pressed", String(chip.dataset.number === String(state.selected))),
+    ),
+  );
 };

@@ -24,8 +24,12 @@ const linkPoses = (agent, tree, posture) => {
   const children = new Set(tree.joints.map((joint) => joint.child));
   const base = tree.links.findIndex((_, index) => !children.has(index));
   const turn = facing(agent);
-  poses[base] = { rotation: times(turn, fromAngles(posture.base_rpy_rad)), position: turned(turn, posture.base_position_m) };
-  for (const joint of tree.joints) poses[joint.child] = childPose(poses[joint.parent], joint, posture.joints_rad[joint.name] ?? 0);
+  poses[base] = {
+    rotation: times(turn, fromAngles(posture.base_rpy_rad)),
+    position: turned(turn, posture.base_position_m),
+  };
+  for (const joint of tree.joints)
+    poses[joint.child] = childPose(poses[joint.parent], joint, posture.joints_rad[joint.name] ?? 0);
   return poses;
 };
 
@@ -33,14 +37,16 @@ const childPose = (parent, joint, moved) => {
   const rotation = times(parent.rotation, joint.rotation);
   const position = plus(parent.position, turned(parent.rotation, joint.position));
   if (joint.kind === "fixed") return { rotation, position };
-  if (joint.kind === "prismatic") return { rotation, position: plus(position, turned(rotation, scaled(moved, joint.axis))) };
+  if (joint.kind === "prismatic")
+    return { rotation, position: plus(position, turned(rotation, scaled(moved, joint.axis))) };
   return { rotation: times(rotation, aboutAxis(joint.axis, moved)), position };
 };
 
 // Between two postures: every joint and base coordinate on its way.
 const between = (from, to, share) => {
   const mix = (a, b) => a + share * (b - a);
-  const named = (a, b) => Object.fromEntries(Object.entries(b).map(([name, value]) => [name, mix(a[name] ?? value, value)]));
+  const named = (a, b) =>
+    Object.fromEntries(Object.entries(b).map(([name, value]) => [name, mix(a[name] ?? value, value)]));
   return {
     ...to,
     base_position_m: to.base_position_m.map((value, index) => mix(from.base_position_m[index], value)),
@@ -50,9 +56,10 @@ const between = (from, to, share) => {
 };
 
 // Force of the ground on a foot, at its centre of pressure (-m_y, m_x) / f_z of the sole, in the world.
-const groundForces = (tree, poses, posture) => Object.entries(tree.soles).map(([side, sole]) => {
-  const [fx, fy, fz, mx, my] = posture.foot_wrenches[side];
-  const pressure = fz > 1e-6 ? [-my / fz, mx / fz, 0] : [0, 0, 0];
-  const { rotation, position } = poses[sole];
-  return { at: plus(position, turned(rotation, pressure)), force: turned(rotation, [fx, fy, fz]) };
-});
+const groundForces = (tree, poses, posture) =>
+  Object.entries(tree.soles).map(([side, sole]) => {
+    const [fx, fy, fz, mx, my] = posture.foot_wrenches[side];
+    const pressure = fz > 1e-6 ? [-my / fz, mx / fz, 0] : [0, 0, 0];
+    const { rotation, position } = poses[sole];
+    return { at: plus(position, turned(rotation, pressure)), force: turned(rotation, [fx, fy, fz]) };
+  });

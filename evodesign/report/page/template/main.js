@@ -10,7 +10,11 @@ startTable();
 startCard();
 applyTheme(root.dataset.theme);
 
-const firstShown = content.marks.find((mark) => mark.kind === "asked") ?? content.marks.find((mark) => mark.kind === "knee") ?? content.marks.find((mark) => mark.kind !== "unscaled") ?? content.marks[0];
+const firstShown =
+  content.marks.find((mark) => mark.kind === "asked") ??
+  content.marks.find((mark) => mark.kind === "knee") ??
+  content.marks.find((mark) => mark.kind !== "unscaled") ??
+  content.marks[0];
 if (firstShown) select(firstShown.number, { announce: false });
 else if (points.number.length) select(points.number[0], { announce: false });
 

@@ -6,7 +6,8 @@ const times = (a, b) => {
   const product = new Array(9);
   for (let row = 0; row < 3; row += 1) {
     for (let column = 0; column < 3; column += 1) {
-      product[3 * row + column] = a[3 * row] * b[column] + a[3 * row + 1] * b[3 + column] + a[3 * row + 2] * b[6 + column];
+      product[3 * row + column] =
+        a[3 * row] * b[column] + a[3 * row + 1] * b[3 + column] + a[3 * row + 2] * b[6 + column];
     }
   }
   return product;
@@ -31,9 +32,15 @@ const aboutAxis = ([x, y, z], angle) => {
   const [s, c] = [Math.sin(angle), Math.cos(angle)];
   const v = 1 - c;
   return [
-    c + x * x * v, x * y * v - z * s, x * z * v + y * s,
-    y * x * v + z * s, c + y * y * v, y * z * v - x * s,
-    z * x * v - y * s, z * y * v + x * s, c + z * z * v,
+    c + x * x * v,
+    x * y * v - z * s,
+    x * z * v + y * s,
+    y * x * v + z * s,
+    c + y * y * v,
+    y * z * v - x * s,
+    z * x * v - y * s,
+    z * y * v + x * s,
+    c + z * z * v,
   ];
 };
 
@@ -62,17 +69,47 @@ const times4 = (a, b) => {
 };
 
 // rotation * diagonal(size), then a translation.
-const placed = (rotation, position, size) => new Float32Array([
-  rotation[0] * size[0], rotation[3] * size[0], rotation[6] * size[0], 0,
-  rotation[1] * size[1], rotation[4] * size[1], rotation[7] * size[1], 0,
-  rotation[2] * size[2], rotation[5] * size[2], rotation[8] * size[2], 0,
-  position[0], position[1], position[2], 1,
-]);
+const placed = (rotation, position, size) =>
+  new Float32Array([
+    rotation[0] * size[0],
+    rotation[3] * size[0],
+    rotation[6] * size[0],
+    0,
+    rotation[1] * size[1],
+    rotation[4] * size[1],
+    rotation[7] * size[1],
+    0,
+    rotation[2] * size[2],
+    rotation[5] * size[2],
+    rotation[8] * size[2],
+    0,
+    position[0],
+    position[1],
+    position[2],
+    1,
+  ]);
 
 const perspective = (angle, ratio, near, far) => {
   const f = 1 / Math.tan(angle / 2);
   const depth = near - far;
-  return new Float32Array([f / ratio, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / depth, -1, 0, 0, (2 * far * near) / depth, 0]);
+  return new Float32Array([
+    f / ratio,
+    0,
+    0,
+    0,
+    0,
+    f,
+    0,
+    0,
+    0,
+    0,
+    (far + near) / depth,
+    -1,
+    0,
+    0,
+    (2 * far * near) / depth,
+    0,
+  ]);
 };
 
 const lookAt = (eye, target) => {
@@ -80,7 +117,21 @@ const lookAt = (eye, target) => {
   const right = unit(cross([0, 0, 1], back));
   const up = cross(back, right);
   return new Float32Array([
-    right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
-    -dot(right, eye), -dot(up, eye), -dot(back, eye), 1,
+    right[0],
+    up[0],
+    back[0],
+    0,
+    right[1],
+    up[1],
+    back[1],
+    0,
+    right[2],
+    up[2],
+    back[2],
+    0,
+    -dot(right, eye),
+    -dot(up, eye),
+    -dot(back, eye),
+    1,
   ]);
 };

@@ -9,8 +9,22 @@ const boxMesh = () => {
       const normal = [0, 0, 0];
       normal[axis] = side;
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-      const corner = (a, b) => { const p = [0, 0, 0]; p[axis] = side / 2; p[u] = a / 2; p[v] = (b * side) / 2; return [...p, ...normal]; };
-      for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]]) corners.push(...corner(a, b));
+      const corner = (a, b) => {
+        const p = [0, 0, 0];
+        p[axis] = side / 2;
+        p[u] = a / 2;
+        p[v] = (b * side) / 2;
+        return [...p, ...normal];
+      };
+      for (const [a, b] of [
+        [-1, -1],
+        [1, -1],
+        [1, 1],
+        [-1, -1],
+        [1, 1],
+        [-1, 1],
+      ])
+        corners.push(...corner(a, b));
     }
   }
   return corners;
@@ -26,14 +40,27 @@ const revolved = (profile) => {
   };
   for (let i = 0; i + 1 < profile.length; i += 1) {
     for (let k = 0; k < RINGS; k += 1) {
-      const [a, b, c, d] = [corner(profile[i], k), corner(profile[i], k + 1), corner(profile[i + 1], k + 1), corner(profile[i + 1], k)];
+      const [a, b, c, d] = [
+        corner(profile[i], k),
+        corner(profile[i], k + 1),
+        corner(profile[i + 1], k + 1),
+        corner(profile[i + 1], k),
+      ];
       corners.push(...a, ...b, ...c, ...a, ...c, ...d);
     }
   }
   return corners;
 };
 
-const cylinderMesh = () => revolved([[0, -0.5, 0, -1], [1, -0.5, 0, -1], [1, -0.5, 1, 0], [1, 0.5, 1, 0], [1, 0.5, 0, 1], [0, 0.5, 0, 1]]);
+const cylinderMesh = () =>
+  revolved([
+    [0, -0.5, 0, -1],
+    [1, -0.5, 0, -1],
+    [1, -0.5, 1, 0],
+    [1, 0.5, 1, 0],
+    [1, 0.5, 0, 1],
+    [0, 0.5, 0, 1],
+  ]);
 
 const sphereMesh = () => {
   const profile = [];
@@ -44,11 +71,31 @@ const sphereMesh = () => {
   return revolved(profile);
 };
 
-const coneMesh = () => revolved([[0, 0, 0, -1], [1, 0, 0, -1], [1, 0, 0.8, 0.6], [0, 1, 0.8, 0.6]]);
+const coneMesh = () =>
+  revolved([
+    [0, 0, 0, -1],
+    [1, 0, 0, -1],
+    [1, 0, 0.8, 0.6],
+    [0, 1, 0.8, 0.6],
+  ]);
 
-const groundMesh = () => [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]].flatMap(([x, y]) => [x, y, 0, 0, 0, 1]);
+const groundMesh = () =>
+  [
+    [-1, -1],
+    [1, -1],
+    [1, 1],
+    [-1, -1],
+    [1, 1],
+    [-1, 1],
+  ].flatMap(([x, y]) => [x, y, 0, 0, 0, 1]);
 
-const MESHES = { box: boxMesh, cylinder: cylinderMesh, sphere: sphereMesh, cone: coneMesh, ground: groundMesh };
+const MESHES = {
+  box: boxMesh,
+  cylinder: cylinderMesh,
+  sphere: sphereMesh,
+  cone: coneMesh,
+  ground: groundMesh,
+};
 
 // Scale of the unit mesh for a shape's size.
 const sizeOf = (shape) => {

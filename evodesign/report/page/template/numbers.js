@@ -10,15 +10,18 @@ const figure = (value, digits = 4) => {
 };
 
 // Four significant digits with their zeros, so that columns line up.
-const exact = (value) => {
+const exact = (value, digits = 4) => {
   if (value === null || value === undefined) return "–";
   const size = Math.abs(value);
-  return size >= 1e4 || size < 1e-3 ? figure(value) : value.toPrecision(4).replace("-", "\u2212");
+  return size >= 1e4 || size < 1e-3
+    ? figure(value, digits)
+    : value.toPrecision(digits).replace("-", "\u2212");
 };
 
 const unitText = (unit) => unit.replaceAll("^2", "²").replaceAll("^3", "³");
 
-const withUnit = (value, unit) => (unit === "1" || value === null ? figure(value) : `${figure(value)} ${unitText(unit)}`);
+const withUnit = (value, unit) =>
+  unit === "1" || value === null ? figure(value) : `${figure(value)} ${unitText(unit)}`;
 
 const percent = (share) => `${figure(100 * share, 3)} %`;
 

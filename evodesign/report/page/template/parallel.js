@@ -14,7 +14,9 @@ const lineRows = () => {
 
 const extent = (axis) => {
   if (!axis.isObjective) return [axis.lower, axis.upper];
-  const values = lineRows().map((row) => axis.column[row]).filter((value) => value !== null);
+  const values = lineRows()
+    .map((row) => axis.column[row])
+    .filter((value) => value !== null);
   const low = values.reduce((a, b) => Math.min(a, b), Infinity);
   const high = values.reduce((a, b) => Math.max(a, b), -Infinity);
   if (values.length === 0) return [NaN, NaN];
@@ -54,8 +56,19 @@ const drawLines = () => {
   const onFront = (row) => points.kind[row] === "front";
   const kept = shown.filter(inside);
   const dense = Math.min(1, Math.max(0.05, 30 / Math.max(kept.length, 1)));
-  if (filtered()) draw(shown.filter((row) => !inside(row) && onFront(row)), "faint", 0.16, 1);
-  draw(kept.filter((row) => !onFront(row)), hasFront ? "faint" : "accent", Math.max(0.08, dense * 0.5), 1);
+  if (filtered())
+    draw(
+      shown.filter((row) => !inside(row) && onFront(row)),
+      "faint",
+      0.16,
+      1,
+    );
+  draw(
+    kept.filter((row) => !onFront(row)),
+    hasFront ? "faint" : "accent",
+    Math.max(0.08, dense * 0.5),
+    1,
+  );
   draw(kept.filter(onFront), "accent", dense, 1.2);
   if (unscaledMark) draw([rowOf.get(unscaledMark.number)], "ink", 0.55, 1.4);
   if (rowOf.has(state.selected)) draw([rowOf.get(state.selected)], "second", 1, 2.6);
@@ -65,26 +78,53 @@ let waiting = false;
 const drawLinesSoon = () => {
   if (waiting) return;
   waiting = true;
-  requestAnimationFrame(() => { waiting = false; drawLines(); });
+  requestAnimationFrame(() => {
+    waiting = false;
+    drawLines();
+  });
 };
 
 const axisName = (axis) => {
   if (axis.isObjective) {
     const arrow = axis.sense === "minimise" ? "↓" : "↑";
-    return element("span", { class: "name", title: `${axis.name} [${axis.unit}], to ${axis.sense}` }, element("b", { text: `${capital(words(axis.name))} ` }), element("small", { text: arrow }));
+    return element(
+      "span",
+      { class: "name", title: `${axis.name} [${axis.unit}], to ${axis.sense}` },
+      element("b", { text: `${capital(words(axis.name))} ` }),
+      element("small", { text: arrow }),
+    );
   }
   const [kind, ...group] = axis.name.split(".");
   const text = group.length ? `${capital(words(group.join(".")))} ` : capital(words(kind));
-  return element("span", { class: "name", title: `${axis.name} [${axis.unit}]` }, text, element("small", { text: group.length ? words(kind) : "" }));
+  return element(
+    "span",
+    { class: "name", title: `${axis.name} [${axis.unit}]` },
+    text,
+    element("small", { text: group.length ? words(kind) : "" }),
+  );
 };
 
 const axisRow = (axis, index) => {
-  const handle = (end) => element("input", { type: "range", min: 0, max: STEPS, step: 1, "data-end": end, "aria-label": `${end === 0 ? "Least" : "Greatest"} ${words(axis.name)}` });
+  const handle = (end) =>
+    element("input", {
+      type: "range",
+      min: 0,
+      max: STEPS,
+      step: 1,
+      "data-end": end,
+      "aria-label": `${end === 0 ? "Least" : "Greatest"} ${words(axis.name)}`,
+    });
   const handles = [handle(0), handle(1)];
   const span = element("span", { class: "span" });
   const track = element("div", { class: "track" }, span, ...handles);
   const range = element("span", { class: "range" });
-  const row = element("div", { class: `axis${index === objectives.length ? " gap" : ""}`, "data-axis": axis.name }, axisName(axis), track, range);
+  const row = element(
+    "div",
+    { class: `axis${index === objectives.length ? " gap" : ""}`, "data-axis": axis.name },
+    axisName(axis),
+    track,
+    range,
+  );
 
   const show = () => {
     const brushed = state.brushes.get(index);
@@ -97,17 +137,29 @@ const axisRow = (axis, index) => {
     span.style.left = `${100 * shares[0]}%`;
     span.style.width = `${100 * (shares[1] - shares[0])}%`;
     const [low, high] = brushed ?? extents[index];
-    range.textContent = Number.isNaN(low) ? "no value" : `${figure(low)} to ${withUnit(high, axis.unit)}`;
+    range.textContent = Number.isNaN(low)
+      ? "no value"
+      : `${figure(low)} to ${withUnit(high, axis.unit)}${axis.unit === "1" && !axis.isObjective ? " ×" : ""}`;
   };
   const set = (low, high) => {
     const whole = low <= 0 && high >= 1;
-    brush(index, whole ? null : [low <= 0 ? extents[index][0] : valueAt(index, low), high >= 1 ? extents[index][1] : valueAt(index, high)]);
+    brush(
+      index,
+      whole
+        ? null
+        : [
+            low <= 0 ? extents[index][0] : valueAt(index, low),
+            high >= 1 ? extents[index][1] : valueAt(index, high),
+          ],
+    );
   };
-  handles.forEach((one, end) => one.addEventListener("input", () => {
-    const shares = handles.map((other) => Number(other.value) / STEPS);
-    if (shares[0] > shares[1]) shares[1 - end] = shares[end];
-    set(shares[0], shares[1]);
-  }));
+  handles.forEach((one, end) =>
+    one.addEventListener("input", () => {
+      const shares = handles.map((other) => Number(other.value) / STEPS);
+      if (shares[0] > shares[1]) shares[1 - end] = shares[end];
+      set(shares[0], shares[1]);
+    }),
+  );
   dragBrush(track, set);
   on("filter", show);
   show();
@@ -142,7 +194,9 @@ const sayBrushed = () => {
   const shown = lineRows();
   const kept = shown.filter(inside).length;
   const noun = `design${shown.length === 1 ? "" : "s"}${hasFront && !showsAll ? " of the front" : ""}`;
-  byId("brushed").textContent = filtered() ? `${kept} of ${shown.length} ${noun} are inside the brushes.` : `${shown.length} ${noun}.`;
+  byId("brushed").textContent = filtered()
+    ? `${kept} of ${shown.length} ${noun} are inside the brushes.`
+    : `${shown.length} ${noun}.`;
 };
 
 const startParallel = () => {
@@ -157,8 +211,22 @@ const startParallel = () => {
   const canvas = element("canvas", { id: "lines", "aria-hidden": "true" });
   const made = axes.map(axisRow);
   place.append(canvas, ...made.map(({ row }) => row));
-  const key = (ink, text) => element("span", {}, element("i", { style: `background:var(--${ink});height:3px;width:18px;vertical-align:middle` }), text);
-  place.append(element("p", { class: "legend" }, key("accent", hasFront ? "front" : "designs"), key("second", "chosen design"), ...(unscaledMark ? [key("ink", "unscaled robot")] : [])));
+  const key = (ink, text) =>
+    element(
+      "span",
+      {},
+      element("i", { style: `background:var(--${ink});height:3px;width:18px;vertical-align:middle` }),
+      text,
+    );
+  place.append(
+    element(
+      "p",
+      { class: "legend" },
+      key("accent", hasFront ? "front" : "designs"),
+      key("second", "chosen design"),
+      ...(unscaledMark ? [key("ink", "unscaled robot")] : []),
+    ),
+  );
   canvas.style.height = `${topOf(axes.length - 1) + ROW / 2}px`;
   canvas.style.width = "calc(100% - 346px)";
   byId("all").addEventListener("change", (event) => {

@@ -22,7 +22,10 @@ const axes = [
 ];
 
 // Heights with the same number of decimals.
-const decimals = Math.max(1, ...content.heights_m.map((height) => (String(height).split(".")[1] ?? "").length));
+const decimals = Math.max(
+  1,
+  ...content.heights_m.map((height) => (String(height).split(".")[1] ?? "").length),
+);
 const heightText = (height) => `${height.toFixed(decimals)} m`;
 
 const state = { selected: null, height: 0, brushes: new Map(), lasso: null };

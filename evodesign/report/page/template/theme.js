@@ -19,7 +19,11 @@ byId("theme").addEventListener("click", () => {
 });
 
 // Everything that plotly's figures share.
-const plotFont = () => ({ family: getComputedStyle(document.body).fontFamily, size: 12, color: colour("soft") });
+const plotFont = () => ({
+  family: getComputedStyle(document.body).fontFamily,
+  size: 12,
+  color: colour("soft"),
+});
 
 const plotLayout = (more = {}) => ({
   paper_bgcolor: "rgba(0,0,0,0)",
@@ -29,7 +33,9 @@ const plotLayout = (more = {}) => ({
   showlegend: false,
   modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("faint"), activecolor: colour("accent") },
   hoverlabel: {
-    bgcolor: colour("surface"), bordercolor: colour("line"), align: "left",
+    bgcolor: colour("surface"),
+    bordercolor: colour("line"),
+    align: "left",
     font: { ...plotFont(), color: colour("ink") },
   },
   ...more,
@@ -47,9 +53,28 @@ const plotAxis = (title, more = {}) => ({
 });
 
 const plotConfig = { displaylogo: false, responsive: true, displayModeBar: false };
-const zoomButtons = { displayModeBar: true, modeBarButtons: [["zoom2d", "select2d", "lasso2d", "resetScale2d"]] };
+const zoomButtons = {
+  displayModeBar: true,
+  modeBarButtons: [["zoom2d", "select2d", "lasso2d", "resetScale2d"]],
+};
 
 // One hue from a wash to its full strength, which stands for the better values.
-const strength = () => [[0, colour("weak")], [1, colour("strong")]];
+const strength = () => [
+  [0, colour("weak")],
+  [1, colour("strong")],
+];
 
 const hasWebgl = Boolean(document.createElement("canvas").getContext("webgl2"));
+
+// Colours of the palette as three numbers from 0 to 1.
+const rgb = (name) => {
+  const hex = colour(name).slice(1);
+  return [0, 2, 4].map((start) => parseInt(hex.slice(start, start + 2), 16) / 255);
+};
+
+const mixed = (a, b, share) => a.map((value, index) => value + share * (b[index] - value));
+
+const mixedColour = (first, second, share) =>
+  `rgb(${mixed(rgb(first), rgb(second), share)
+    .map((part) => Math.round(255 * part))
+    .join(",")})`;
