@@ -15,7 +15,7 @@ from evodesign.report.page.content import Bodies, JointBody, LinkBody, ShapeBody
 from evodesign.statics.scene import Agent
 from evodesign.tree.model import Joint, Link, Tree
 
-__all__ = ["bodies", "changes"]
+__all__ = ["agent_body", "bodies", "changes"]
 
 
 def bodies(problem: Problem) -> Bodies:
@@ -24,7 +24,7 @@ def bodies(problem: Problem) -> Bodies:
     position = _positions(scene.robot.tree)
     changing = {position[name] for parameter in problem.space.parameters for name in parameter.links}
     return Bodies(
-        agents={agent.name: _agent(agent) for agent in (scene.robot, scene.human)},
+        agents={agent.name: agent_body(agent) for agent in (scene.robot, scene.human)},
         payload_size_m=scene.payload.size,
         payload_mass_kg=scene.payload.mass,
         changing=tuple(sorted(changing)),
@@ -44,7 +44,8 @@ def changes(problem: Problem, values: Sequence[float]) -> tuple[dict[int, LinkBo
     )
 
 
-def _agent(agent: Agent) -> TreeBody:
+def agent_body(agent: Agent) -> TreeBody:
+    """An agent's tree with its solids and looks, and which links are its soles."""
     position = _positions(agent.tree)
     return TreeBody(
         links=tuple(_link(link) for link in agent.tree.links),

@@ -18,7 +18,7 @@ from evodesign.runlog.run import Run
 
 __all__ = ["MOST_POSTURES", "page_content"]
 
-MOST_POSTURES = 150
+MOST_POSTURES = 300
 """Designs whose postures are in the page: the marked ones, then the front, evenly."""
 
 

@@ -6,6 +6,7 @@ import json
 import math
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,17 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.problem.build import Problem
-from evodesign.records import Objective, Sense
+from evodesign.records import AgentDetail, Objective, Sense
 from evodesign.report.page import page_content, page_html
+from evodesign.report.page.bodies import agent_body
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.statics.scene import HUMAN, ROBOT
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
+from evodesign.tree.model import Tree
 from tests.report.page.chromium import Tab, browser, executable
 from tests.runlog.toys import toy_evaluations, toy_header
+from tests.tree.crane import crane
 
 if executable() is None and not os.environ.get("CI"):
     pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)", allow_module_level=True)
@@ -40,11 +44,17 @@ def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
         yield tab
 
 
+def open_page(tab: Tab, path: Path, theme: str = "light") -> None:
+    """Open a page and wait until its scripts are through."""
+    tab.open(path.as_uri(), theme=theme)
+    tab.wait_for("window.evodesign !== undefined")
+
+
 @pytest.fixture
 def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
     """The real run's page, newly opened; at the end it must have been quiet."""
     chromium.events.clear()
-    chromium.open(real_page.as_uri())
+    open_page(chromium, real_page)
     yield chromium
     assert chromium.complaints() == []
     assert chromium.requests() == [real_page.as_uri()]
@@ -159,31 +169,48 @@ def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run)
     page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
 
 
+def check_poses(tab: Tab, script: str, tree: Tree, posture: AgentDetail, turn: float) -> None:
+    """A script's link poses are those of our kinematics, for an agent's frame turned about z [rad]."""
+    world_from_agent = euler_rotation(ca.DM([0.0, 0.0, turn]))
+    base = Pose(
+        world_from_agent @ euler_rotation(ca.DM(posture.base_rpy_rad)),
+        world_from_agent @ ca.DM(posture.base_position_m),
+    )
+    poses = forward(tree, base, posture.joints_rad)
+    for link, pose in zip(tree.links, tab.value(script), strict=True):
+        wanted = poses[link.name]
+        np.testing.assert_allclose(pose["position"], np.array(wanted.position)[:, 0], atol=1e-9)
+        rotation = np.array(pose["rotation"]).reshape(3, 3)
+        np.testing.assert_allclose(rotation, np.array(wanted.rotation), atol=1e-9)
+
+
 def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem, real_run: Run) -> None:
     detail = real_run.details[-1]
     values = list(real_run.evaluations[detail.evaluation].assessment.design.values())
-    trees = {
-        ROBOT: problem.space.resized(problem.scene.robot.tree, values),
-        HUMAN: problem.scene.human.tree,
-    }
+    robot = problem.space.resized(problem.scene.robot.tree, values)
     for place, height in enumerate(detail.heights):
-        for name, tree in trees.items():
-            posture = height.agents[name]
-            turn = euler_rotation(ca.DM([0.0, 0.0, math.pi if name == HUMAN else 0.0]))
-            base = Pose(
-                turn @ euler_rotation(ca.DM(posture.base_rpy_rad)), turn @ ca.DM(posture.base_position_m)
-            )
-            poses = forward(tree, base, posture.joints_rad)
-            found = page.value(
+        for name, tree, turn in ((ROBOT, robot, 0.0), (HUMAN, problem.scene.human.tree, math.pi)):
+            script = (
                 f"(() => {{ const e = window.evodesign, d = e.content.designs[{detail.evaluation}];"
                 f"const posture = d.postures[{place}].agents.{name};"
                 f"return e.linkPoses('{name}', e.treeOf('{name}', d), posture); }})()"
             )
-            for link, pose in zip(tree.links, found, strict=True):
-                wanted = poses[link.name]
-                np.testing.assert_allclose(pose["position"], np.array(wanted.position)[:, 0], atol=1e-9)
-                rotation = np.array(pose["rotation"]).reshape(3, 3)
-                np.testing.assert_allclose(rotation, np.array(wanted.rotation), atol=1e-9)
+            check_poses(page, script, tree, height.agents[name], turn)
+
+
+def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: Problem) -> None:
+    tree = crane()
+    agent = replace(problem.scene.robot, tree=tree, soles={"left": "hook", "right": "flag"})
+    posture = AgentDetail(
+        base_position_m=(0.3, -0.2, 0.9),
+        base_rpy_rad=(0.4, -0.7, 1.9),
+        joints_rad={"swing": 0.8, "reach": 0.35, "twist": -2.9, "wave": 1.2},
+        torques_n_m={},
+        hand_wrenches={},
+        foot_wrenches={},
+    )
+    given = [msgspec.json.encode(part).decode() for part in (agent_body(agent), posture)]
+    check_poses(page, f"window.evodesign.linkPoses('robot', {given[0]}, {given[1]})", tree, posture, 0.0)
 
 
 def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: Run) -> None:
@@ -202,7 +229,7 @@ def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: Run) -> No
 def test_page_follows_the_system_until_told_otherwise(
     chromium: Tab, real_page: Path, system: str, other: str
 ) -> None:
-    chromium.open(real_page.as_uri(), theme=system)
+    open_page(chromium, real_page, theme=system)
     theme = "document.documentElement.dataset.theme"
     assert chromium.value(theme) == system
     chromium.value("document.getElementById('theme').click()")
@@ -229,7 +256,7 @@ def open_run(tab: Tab, run: Run) -> None:
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")
     tab.events.clear()
-    tab.open(path.as_uri())
+    open_page(tab, path)
     assert tab.complaints() == []
     assert tab.requests() == [path.as_uri()]
 
@@ -302,3 +329,14 @@ def test_run_cut_by_a_crash_shows_what_is_there_with_a_note(
     open_run(chromium, read_run(tmp_path))
     assert "ends after" in chromium.value("document.getElementById('notes').innerText")
     assert chromium.value("document.getElementById('card-title') !== null")
+
+
+def test_browser_without_webgl_says_what_it_cannot_draw(
+    real_page: Path, tmp_path: Path, real_run: Run
+) -> None:
+    with browser(tmp_path / "chromium", "--disable-3d-apis") as tab:
+        open_page(tab, real_page)
+        assert "offers no WebGL" in tab.value("document.getElementById('card').innerText")
+        assert tab.value("document.getElementById('front-3D').disabled")
+        assert trace(tab, "front") == list(front_of(real_run))
+        assert tab.complaints() == []

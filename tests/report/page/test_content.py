@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import json
 import re
 from pathlib import Path
@@ -118,8 +120,8 @@ def test_marked_designs_stay_then_the_front_then_the_feasible() -> None:
 
 def embedded(page: str) -> Content:
     """The content as a browser finds it: up to the first end of its script element."""
-    block = page.split('<script type="application/json" id="content">')[1].split("</script>")[0]
-    return msgspec.json.decode(block, type=Content)
+    block = page.split('<script type="text/plain" id="content">')[1].split("</script>")[0]
+    return msgspec.json.decode(gzip.decompress(base64.b64decode(block)), type=Content)
 
 
 def test_names_are_text_and_come_back_as_they_were(real_run: Run, content: Content) -> None:

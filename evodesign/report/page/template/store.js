@@ -1,6 +1,13 @@
 // What the page knows, what is chosen in it, and who wants to be told.
 
-const content = JSON.parse(byId("content").textContent);
+// JSON, compressed with gzip, in the letters of base64.
+const unpacked = async (text) => {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).json();
+};
+
+const content = await unpacked(byId("content").textContent);
 const { objectives, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
