@@ -101,6 +101,21 @@ def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: 
     assert trace(page, "front") == list(front_of(real_run))
 
 
+def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(page: Tab, real_run: Run) -> None:
+    page.value(f"Plotly.relayout({PLOT}, {{dragmode: 'select'}}).then(() => true)")
+    left, top, width, height = page.place(PLOT)
+    page.drag((left + 70, top + 40), (left + 0.4 * width, top + 0.6 * height))
+    page.wait_for("window.evodesign.state.lasso !== null")
+    chosen = set(page.value("[...window.evodesign.state.lasso]"))
+    inside = [number for number in front_of(real_run) if number in chosen]
+    assert 0 < len(inside) < len(front_of(real_run))
+    assert trace(page, "front") == inside
+    page.value("document.getElementById('clear').click()")
+    page.wait_for(f"!{PLOT}.layout.selections?.length")
+    assert page.value("window.evodesign.state.lasso") is None
+    assert trace(page, "front") == list(front_of(real_run))
+
+
 def test_brush_moves_by_keyboard(page: Tab) -> None:
     page.value("document.querySelector('[data-axis=\"length.thigh\"] input').focus()")
     page.key("ArrowRight")

@@ -37,6 +37,7 @@ const frontTrace = (wanted, name, marker, more = {}) => {
     text: wanted.map(hover),
     customdata: wanted.map((row) => points.number[row]),
     hoverinfo: "text",
+    unselected: { marker: { opacity: 1 } },
     marker,
     ...more,
   };
@@ -139,13 +140,14 @@ const frontLayout = () => {
         zaxis: axis(third),
         aspectmode: "manual",
         aspectratio: { x: 1.25, y: 1.25, z: 0.9 },
-        camera: { eye: { x: 1.25, y: -1.35, z: 0.6 }, center: { x: 0, y: 0, z: -0.16 } },
+        camera: { eye: { x: 1.4, y: -1.5, z: 0.65 }, center: { x: 0, y: 0, z: -0.27 } },
       },
     });
   }
   return plotLayout({
     margin: { l: 62, r: 12, t: 30, b: 50 },
     uirevision: `2d ${across} ${up}`,
+    selections: state.lasso ? (byId("front").layout?.selections ?? []) : [],
     dragmode: "zoom",
     xaxis: plotAxis(label(frontAxes[across]), { range: zoomed(frontAxes[across]), zeroline: false }),
     yaxis: plotAxis(label(frontAxes[up]), { range: zoomed(frontAxes[up]), zeroline: false }),
@@ -155,7 +157,10 @@ const frontLayout = () => {
 const drawFront = () => {
   if (!hasFront) return;
   const config = { ...plotConfig, ...(drawnIn.solid ? {} : zoomButtons) };
-  Plotly.react(byId("front"), frontTraces(), frontLayout(), config);
+  const plot = byId("front");
+  const left = !state.lasso && plot.layout?.selections?.length;
+  if (left) Plotly.relayout(plot, { selections: [] }); // the frame of a selection that is no more
+  Plotly.react(plot, frontTraces(), frontLayout(), config);
 };
 
 // Left and right walk along the first axis.
@@ -220,10 +225,10 @@ const wireFront = () => {
   drawFront();
   const plot = byId("front");
   plot.on("plotly_click", (event) => select(event.points[0].customdata));
-  plot.on(
-    "plotly_selected",
-    (event) => event?.points && lasso(new Set(event.points.map((point) => point.customdata))),
-  );
+  plot.on("plotly_selected", (event) => {
+    const drawnByHand = event?.range || event?.lassoPoints;
+    if (drawnByHand) lasso(new Set(event.points.map((point) => point.customdata)));
+  });
   plot.on("plotly_deselect", () => lasso(null));
 };
 
@@ -241,10 +246,14 @@ const startFront = () => {
     const order = objectives.map((_, index) => index).sort((a, b) => spread(axes[b]) - spread(axes[a]));
     [drawnIn.across, drawnIn.up, drawnIn.colour] = order;
   }
-  const count = frontRows.length === 1 ? "One design" : `${frontRows.length} designs`;
+  const { front, feasible } = content.facts;
+  const count = front === 1 ? "One design" : `${front} designs`;
+  const drawn = frontRows.length < front ? ` (${frontRows.length} are drawn)` : "";
+  const behind = feasible - front;
+  const small = dominatedRows.length < behind ? `${dominatedRows.length} of the ${behind}` : `the ${behind}`;
   hint.textContent =
     objectives.length > 1
-      ? `${count} that no other one beats in every objective; small points are the ${dominatedRows.length} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.`
+      ? `${count} that no other one beats in every objective${drawn}; small points are ${small} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.`
       : "One objective: each point is a feasible design. Click a point to see its robot.";
   plot.setAttribute("aria-label", `${hint.textContent} The same designs are in the table below.`);
   frontChoices();
