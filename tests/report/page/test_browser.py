@@ -71,6 +71,17 @@ def trace(tab: Tab, name: str) -> list[int]:
     return list(json.loads(drawn))
 
 
+def spot(tab: Tab, number: int) -> tuple[float, float]:
+    """Where in the window the front draws a design."""
+    left, top, _, _ = tab.place(PLOT)
+    x, y = tab.value(
+        f"(() => {{ const p = {PLOT}, t = p.data.find(t => t.name === 'front'), l = p._fullLayout;"
+        f"const i = t.customdata.indexOf({number});"
+        "return [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t]; })()"
+    )
+    return left + x, top + y
+
+
 def front_of(run: Run) -> dict[int, Any]:
     return {each.number: each.assessment for each in front(run.header.objectives, run.evaluations)}
 
@@ -103,8 +114,8 @@ def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: 
 
 def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(page: Tab, real_run: Run) -> None:
     page.value(f"Plotly.relayout({PLOT}, {{dragmode: 'select'}}).then(() => true)")
-    left, top, width, height = page.place(PLOT)
-    page.drag((left + 70, top + 40), (left + 0.4 * width, top + 0.6 * height))
+    x, y = spot(page, page.value("window.evodesign.state.selected"))
+    page.drag((x - 25, y - 25), (x + 25, y + 25))
     page.wait_for("window.evodesign.state.lasso !== null")
     chosen = set(page.value("[...window.evodesign.state.lasso]"))
     inside = [number for number in front_of(real_run) if number in chosen]
@@ -128,13 +139,7 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: Run) -> None:
     for number, worth in front_of(real_run).items():
         if page.value(SHOWN) == f"Design {number}":
             continue
-        left, top, _, _ = page.place(PLOT)
-        x, y = page.value(
-            f"(() => {{ const p = {PLOT}, t = p.data.find(t => t.name === 'front'), l = p._fullLayout;"
-            f"const i = t.customdata.indexOf({number});"
-            "return [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t]; })()"
-        )
-        page.click(left + x, top + y)
+        page.click(*spot(page, number))
         page.wait_for(f"{SHOWN} === 'Design {number}'")
         assert page.value("document.getElementById('announce').textContent") == f"Design {number} is shown."
         for name, value in worth.objectives.items():
