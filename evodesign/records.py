@@ -239,11 +239,13 @@ class ProblemSource(Record, frozen=True):
         path: where the problem file was read, for messages.
         text: the problem file.
         files: the files that it names, by the name that it uses.
+        symmetry: of postures, if it was chosen beside the file.
     """
 
     path: str
     text: str
     files: dict[str, str]
+    symmetry: str | None = None
 
 
 class RunHeader(Record, frozen=True):

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
+from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.cache import user_cache
-from evodesign.posture.human_value import HumanValue
+from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import Evaluator, prepared
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.prepare import prepared
 from evodesign.problem.source import read_source
 
 REPOSITORY = Path(__file__).parents[1]
@@ -29,26 +32,43 @@ def repository() -> Path:
 
 @pytest.fixture(scope="session")
 def problem() -> Problem:
-    """The default problem."""
-    return build_problem(read_source(REPOSITORY / "problems" / "icub_lifting.toml"))
+    """The default problem, without compiling what tests make of it: that takes longer than it saves them."""
+    built = build_problem(read_source(REPOSITORY / "problems" / "icub_lifting.toml"))
+    return replace(built, options=replace(built.options, compiled=False))
 
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A cache of the tests' own, which commands started by tests use too."""
-    place = tmp_path_factory.mktemp("cache")
+    """A cache of the tests' own, which commands started by tests use too.
+
+    It is new in each session, unless $EVODESIGN_TEST_CACHE names a directory that keeps it: working out the
+    default problem takes a minute.
+    """
+    kept = os.environ.get("EVODESIGN_TEST_CACHE")
+    place = Path(kept) if kept else tmp_path_factory.mktemp("cache")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("EVODESIGN_CACHE", str(place))
         yield place
 
 
 @pytest.fixture(scope="session")
-def people(problem: Problem) -> tuple[HumanValue, ...]:
-    """The default problem's person, worked out once."""
-    return prepared(problem, user_cache("people", os.environ), lambda _: None)
+def known(problem: Problem) -> Preparation:
+    """What is worked out of the default problem beforehand, where commands started by tests find it too."""
+    with JoblibPool(2) as pool:
+        return prepared(problem, user_cache("prepared", os.environ), pool, Unwatched())
+
+
+class Unwatched:
+    """A watcher that keeps still."""
+
+    def missing(self, pieces: int) -> None:
+        pass
+
+    def done(self, piece: str) -> None:
+        pass
 
 
 @pytest.fixture(scope="session")
-def evaluator(problem: Problem, people: tuple[HumanValue, ...]) -> Evaluator:
+def evaluator(problem: Problem, known: Preparation) -> Evaluator:
     """The default problem's inner problems."""
-    return Evaluator(problem, people)
+    return Evaluator(problem, known)

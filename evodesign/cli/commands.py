@@ -16,6 +16,10 @@ __all__ = ["COMMANDS"]
 ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+SymmetryName = Annotated[
+    str | None,
+    typer.Option("--symmetry", help="Postures: on, off or polish.", show_default="as in the problem"),
+]
 Evaluations = Annotated[
     int | None, typer.Option(min=1, help="Total evaluations of the run.", show_default="as in the problem")
 ]
@@ -41,6 +45,7 @@ def search(
     seed: Annotated[
         int | None, typer.Option(min=0, help="Of the search.", show_default="as in the problem")
     ] = None,
+    symmetry: SymmetryName = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
     json: Json = False,
@@ -48,7 +53,7 @@ def search(
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
     from evodesign.cli.searching import Wishes, start
 
-    start(problem, run, Wishes(algorithm, evaluations, population, seed), jobs, pool, json)
+    start(problem, run, Wishes(algorithm, evaluations, population, seed, symmetry), jobs, pool, json)
 
 
 def resume(
@@ -106,12 +111,14 @@ def evaluate(
         str | None,
         typer.Option(help="Which design of the file.", show_default="the file's only one"),
     ] = None,
+    symmetry: SymmetryName = None,
+    jobs: Jobs = CORES,
     json: Json = False,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals."""
     from evodesign.cli.designs import evaluate_design
 
-    evaluate_design(problem, design, name, json)
+    evaluate_design(problem, design, name, symmetry, jobs, json)
 
 
 def check(problem: ProblemPath, json: Json = False) -> None:
@@ -136,4 +143,11 @@ def report(
     write_report(run, output, designs)
 
 
-COMMANDS = (search, resume, front, report, evaluate, check)
+def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
+    """What a problem is solved from: its seeds, and how well they lead other designs."""
+    from evodesign.cli.seeding import show_seeds
+
+    show_seeds(problem, jobs, json)
+
+
+COMMANDS = (search, resume, front, report, evaluate, check, seeds)

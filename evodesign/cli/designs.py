@@ -20,11 +20,13 @@ __all__ = ["check_problem", "evaluate_design"]
 UNSCALED = "unscaled"
 
 
-def evaluate_design(problem: Path, design: Path | None, name: str | None, json: bool) -> None:
+def evaluate_design(
+    problem: Path, design: Path | None, name: str | None, symmetry: str | None, jobs: int, json: bool
+) -> None:
     """Solve one design and print everything about it."""
-    built = build_problem(read_source(problem))
+    built = build_problem(read_source(problem, symmetry))
     chosen, values = _chosen(built, design, name)
-    evaluator = evaluator_of(built)
+    evaluator = evaluator_of(built, jobs)
     result = evaluator.solve(values)
     assessment = evaluator.assessment(values, result)
     if json:

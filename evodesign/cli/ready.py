@@ -6,54 +6,78 @@ a result.
 
 from __future__ import annotations
 
-import hashlib
 import os
+from importlib.metadata import version
 
 import msgspec
 
+from evodesign.cli.making import making
 from evodesign.cli.output import show_notes
-from evodesign.posture.cache import Cache, user_cache
-from evodesign.posture.codegen import NotCompiled, find_compiler
-from evodesign.posture.human_value import HumanValue
+from evodesign.pool.base import Pool
+from evodesign.pool.registry import make_pool
+from evodesign.posture.cache import Cache, digest_of, user_cache
+from evodesign.posture.codegen import RECIPE, Compiler, NotCompiled, find_compiler
+from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import AssessmentFactory, Evaluator, prepared
-from evodesign.records import RunHeader
+from evodesign.problem.evaluate import AssessmentFactory, Evaluator
+from evodesign.problem.prepare import prepared
+from evodesign.records import ProblemSource, RunHeader
 
-__all__ = ["evaluator_of", "problem_factory"]
+__all__ = ["evaluator_of", "known_of", "problem_factory"]
 
 
-def problem_factory(header: RunHeader) -> AssessmentFactory:
-    """The evaluation of a header's problem as workers build it, with everything they share made ready."""
-    digest = hashlib.sha256(msgspec.json.encode(header.problem, order="deterministic")).hexdigest()
+def problem_factory(header: RunHeader, pool: Pool) -> AssessmentFactory:
+    """The evaluation of a header's problem as workers build it, with everything they share made ready.
+
+    Args:
+        header: of a run.
+        pool: where what is missing is worked out.
+    """
     problem = build_problem(header.problem)
-    factory = AssessmentFactory(digest, header.problem, _values(problem))
+    factory = AssessmentFactory(_digest(header.problem), header.problem, known_of(problem, pool))
     if problem.options.compiled:
         _compile(factory)
     return factory
 
 
-def evaluator_of(problem: Problem) -> Evaluator:
-    """The inner problems of a problem in this process."""
-    return Evaluator(problem, _values(problem))
+def evaluator_of(problem: Problem, jobs: int) -> Evaluator:
+    """The inner problems of a problem in this process; so many jobs work out what is missing."""
+    with make_pool("joblib", jobs) as pool:
+        known = known_of(problem, pool)
+    return Evaluator(problem, known)
 
 
-def _values(problem: Problem) -> tuple[HumanValue, ...]:
-    return prepared(problem, _cache("people"), lambda sentence: show_notes([sentence]))
+def known_of(problem: Problem, pool: Pool) -> Preparation:
+    """What is known of a problem before any robot is evaluated, worked out where it is missing."""
+    with making() as watcher:
+        return prepared(problem, _cache("prepared"), pool, watcher)
+
+
+def _digest(source: ProblemSource) -> str:
+    return digest_of(msgspec.json.encode(source, order="deterministic"))
 
 
 def _compile(factory: AssessmentFactory) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
-    cache = _cache("ready")
-    if cache is not None and cache.read(factory.digest):
-        return
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
         show_notes([f"{compiler.reason}: solving on CasADi's virtual machine, slower and with equal results"])
         return
-    show_notes(["compiling the inner problems"])
-    factory()
+    cache, key = _cache("ready"), _mark(factory, compiler)
+    if cache is not None and cache.read(key):
+        return
+    with making() as watcher:
+        watcher.missing(1)
+        factory()
+        watcher.done("compiled inner problems")
     if cache is not None:
-        cache.store(factory.digest, b"ready")
+        cache.store(key, b"ready")
+
+
+def _mark(factory: AssessmentFactory, compiler: Compiler) -> str:
+    """Key of the mark that a problem's functions are compiled."""
+    parts = (factory.digest, RECIPE, version("casadi"), *compiler.command, compiler.version)
+    return digest_of(*(part.encode() for part in parts))
 
 
 def _cache(subject: str) -> Cache | None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -36,11 +37,12 @@ class Wishes:
     evaluations: int | None
     population: int | None
     seed: int | None
+    symmetry: str | None
 
 
 def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, json: bool) -> None:
     """Search a problem in a new run directory and print the front."""
-    problem = build_problem(read_source(path))
+    problem = build_problem(read_source(path, wishes.symmetry))
     show_notes(notes(problem))
     table = problem.search
     settings = problem.settings(
@@ -55,7 +57,7 @@ def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, js
     make_search(settings)
     _stop_on_terminate()
     with _resumable(directory), make_pool(pool, jobs) as workers:
-        factory = problem_factory(header)
+        factory = problem_factory(header, workers)
         with observer() as watching:
             done = evolve.start(directory, header, factory, workers, watching)
     show_run(done, json)
@@ -65,7 +67,8 @@ def go_on(run: Path, evaluations: int | None, jobs: int, pool: str, json: bool) 
     """Resume a run and print the front."""
     _stop_on_terminate()
     with _resumable(run), make_pool(pool, jobs) as workers, observer() as watching:
-        done = evolve.resume(run, problem_factory, workers, watching, evaluations, renew=renewed)
+        ready = partial(problem_factory, pool=workers)
+        done = evolve.resume(run, ready, workers, watching, evaluations, renew=renewed)
     show_run(done, json)
 
 

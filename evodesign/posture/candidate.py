@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from evodesign.posture.check import TOLERANCE
@@ -10,7 +10,7 @@ from evodesign.posture.program import RawSolution
 from evodesign.posture.solution import AgentPosture, Attempt, HeightSolution
 from evodesign.records import Status, worst_status
 
-__all__ = ["Candidate", "best_of", "checked"]
+__all__ = ["Candidate", "Trial", "cheapest", "checked", "height_solution"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,24 +33,53 @@ class Candidate:
         return self.attempt.status is Status.SOLVED
 
 
-def checked(raw: RawSolution, residuals: Mapping[str, float]) -> Attempt:
-    """How a solve ended in the light of its residuals (none for a solve that failed)."""
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What the starts of one program led to: every attempt, and the cheapest that the check agrees with."""
+
+    attempts: tuple[Attempt, ...]
+    best: Candidate | None
+
+
+def checked(start: str, raw: RawSolution, residuals: Mapping[str, float]) -> Attempt:
+    """How a solve ended in the light of its residuals (none for a solve that failed or was not looked at)."""
     status, reason = raw.status, raw.reason
     if residuals:
         worst = max(residuals, key=lambda name: residuals[name])
         if not residuals[worst] <= TOLERANCE:
             status = Status.NUMERICAL_FAILURE
             reason = f"the check found {worst} {residuals[worst]:.1e} above {TOLERANCE:g}"
-    return Attempt(status, reason, raw.iterations, raw.seconds, raw.cost)
+    return Attempt(start, status, reason, raw.iterations, raw.seconds, raw.cost)
 
 
-def best_of(height: float, candidates: Sequence[Candidate]) -> HeightSolution:
-    """The cheapest solved candidate at a height [m], or why there is none."""
-    attempts = tuple(candidate.attempt for candidate in candidates)
-    solved = [candidate for candidate in candidates if candidate.solved]
-    if not solved:
+def cheapest(
+    ends: Sequence[tuple[str, RawSolution]], finish: Callable[[str, RawSolution], Candidate]
+) -> Trial:
+    """Finish and check solves from the cheapest on, until one holds.
+
+    Args:
+        ends: the name of each start, and where it led.
+        finish: makes a candidate of a solve that succeeded.
+    """
+    attempts = [checked(start, raw, {}) for start, raw in ends]
+    solved = [place for place, (_, raw) in enumerate(ends) if raw.status is Status.SOLVED]
+    for place in sorted(solved, key=lambda place: ends[place][1].cost):
+        candidate = finish(*ends[place])
+        attempts[place] = candidate.attempt
+        if candidate.solved:
+            return Trial(tuple(attempts), candidate)
+    return Trial(tuple(attempts), None)
+
+
+def height_solution(height: float, trials: Sequence[Trial]) -> HeightSolution:
+    """The cheapest checked posture at a height [m], or why there is none."""
+    attempts = tuple(attempt for trial in trials for attempt in trial.attempts)
+    found = [trial.best for trial in trials if trial.best is not None]
+    if not found:
         status = worst_status([attempt.status for attempt in attempts])
         reason = f"no posture found at {height:g} m: " + "; ".join(a.reason for a in attempts)
-        return HeightSolution(height, status, reason, {}, {}, attempts)
-    best = min(solved, key=lambda candidate: candidate.attempt.cost)
-    return HeightSolution(height, Status.SOLVED, "solved", best.postures, best.residuals, attempts)
+        return HeightSolution(height, status, reason, {}, {}, attempts, "")
+    best = min(found, key=lambda candidate: candidate.attempt.cost)
+    return HeightSolution(
+        height, Status.SOLVED, "solved", best.postures, best.residuals, attempts, best.attempt.start
+    )

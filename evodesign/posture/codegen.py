@@ -26,6 +26,7 @@ import casadi as ca
 from evodesign.posture.cache import Cache, digest_of, user_cache
 
 __all__ = [
+    "RECIPE",
     "CompiledFunctions",
     "Compiler",
     "Library",

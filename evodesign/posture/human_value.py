@@ -31,7 +31,7 @@ from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
 from evodesign.records import Status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["TERMS", "HumanProblem", "HumanValue", "chebyshev_sum"]
+__all__ = ["COST_UNIT", "TERMS", "HumanProblem", "HumanValue", "chebyshev_sum"]
 
 Array = Any
 
@@ -41,8 +41,12 @@ SHARES = (0.1, 0.5, 1.0)
 RANDOM_STARTS = 9
 SPREAD = 0.3  # [rad], of random starts about the shares
 PUSH_UNIT = 10.0  # [N] per unit of the row that fixes the push
+NODES_TRIED = 4
 LARGEST_ERROR = 0.02
-"""Largest error of V between nodes that is accepted, in the cost's unit (100 N^2 m^2)."""
+"""Largest error of V between nodes that is accepted, in the cost's unit."""
+
+COST_UNIT = TORQUE_UNIT**2
+"""One unit of V, and of every posture's cost [N^2 m^2]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +71,9 @@ class HumanValue:
         """V at a push X [N], a number or an expression."""
         return chebyshev_sum(self.coefficients, push / self.push)
 
-    def nearest(self, push: float) -> Mapping[str, Array]:
-        """Starting values from the node nearest to a push [N]."""
-        return min(self.starts, key=lambda start: abs(start[0] - push))[1]
+    def nearest(self, push: float) -> list[Mapping[str, Array]]:
+        """Starting values, those from the node nearest to a push [N] first."""
+        return [start for _, start in sorted(self.starts, key=lambda start: abs(start[0] - push))]
 
 
 def chebyshev_sum(coefficients: Sequence[Any], x: Any) -> Any:
@@ -91,6 +95,18 @@ class HumanProblem:
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
         return self._solver.solve([height, push], start)
+
+    def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
+        """The person's posture at a height [m] under a push [N], about as good as V promises.
+
+        It starts from the nearest node; where that fails or leads to a dearer optimum, from the next ones.
+        """
+        ends: list[RawSolution] = []
+        for start in value.nearest(push)[:NODES_TRIED]:
+            ends.append(self.solve(height, push, start))
+            if ends[-1].status is Status.SOLVED and ends[-1].cost <= value.cost(push) + LARGEST_ERROR:
+                return ends[-1]
+        return min(ends, key=lambda end: (end.status is not Status.SOLVED, end.cost))
 
     def value(self, height: float) -> HumanValue | None:
         """V at a height [m]; None when the person cannot hold the load there or V is too rough to fit."""

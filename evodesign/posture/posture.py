@@ -3,8 +3,9 @@
     minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + comfort
     subject to  the constraints of both agents and of the load
 
-for any design (a parameter of one program built once). It is solved from a few fixed starts and the best
-result that the independent check accepts is kept, so that the answer depends on problem and design alone.
+for any design (a parameter of one program built once). It is solved from the problem's seeds (from two fixed
+starts where there are none) and the best result that the independent check accepts is kept: the answer
+depends on problem and design alone.
 
 A scene that is its own mirror image is solved for symmetric postures: half the variables and far fewer local
 minima. Where the person's value function is known, robot and person are even solved one after the other
@@ -16,10 +17,10 @@ Source: Sartore et al. 2022, Eq. 14 with pi fixed; DESIGN 3.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -27,16 +28,16 @@ import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import TORQUE_UNIT, agent_block
-from evodesign.posture.candidate import Candidate, best_of, checked
+from evodesign.posture.candidate import Candidate, Trial, cheapest, checked, height_solution
 from evodesign.posture.check import Checker
 from evodesign.posture.form import Form, symmetric_forms, whole
-from evodesign.posture.human_value import HumanValue
 from evodesign.posture.load import load_constraints
-from evodesign.posture.program import IpoptOptions, Program, Solver
+from evodesign.posture.portfolio import NEAR, Landscape
+from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
+from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import SplitPostures
-from evodesign.posture.start import STARTS, joint_starts
-from evodesign.records import Status
+from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
 __all__ = ["EffortWeights", "PostureProblem", "Symmetry"]
@@ -67,7 +68,7 @@ class PostureProblem:
         weights: of the agents' efforts.
         options: of the solver.
         symmetry: which postures are looked for.
-        human_values: the person's part at the heights where it is known; of use for symmetric postures only.
+        known: seeds, and the person's part at the heights where it is known.
     Raises:
         ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
     """
@@ -79,17 +80,18 @@ class PostureProblem:
         weights: EffortWeights,
         options: IpoptOptions,
         symmetry: Symmetry,
-        human_values: Sequence[HumanValue] = (),
+        known: Preparation = NOTHING_KNOWN,
     ) -> None:
         self._symmetry = symmetry
         self._ingredients = (scene, space, weights, options)
+        self._known = known
+        self._split_heights = frozenset(value.height for value in known.values)
         if symmetry is not Symmetry.OFF:
             space.check_mirror(scene.robot.tree)
             self._forms = symmetric_forms(scene)
-            self._known = frozenset(value.height for value in human_values)
-            if human_values:
+            if known.values:
                 both = (weights.robot, weights.human)
-                self._split = SplitPostures(self._forms, scene, space, both, options, human_values)
+                self._split = SplitPostures(self._forms, scene, space, both, options, known.values)
 
     def solve(self, values: Sequence[float], height: float, checker: Checker) -> HeightSolution:
         """The best checked posture of a design at one height.
@@ -99,69 +101,97 @@ class PostureProblem:
             height: of the load's centre [m].
             checker: the independent check, made for this design.
         """
-        parameters = [*values, height]
+        trials: list[Trial] = []
+        for program, seeds in self._programs(height):
+            trials.append(program.trial(values, height, seeds, checker))
+            if trials[-1].best is not None:
+                break
+        best = trials[-1].best
+        if self._symmetry is Symmetry.POLISH and best is not None:
+            trials.append(self._full.polish(values, height, best.postures, checker))
+        return height_solution(height, trials)
+
+    def landscape(self, height: float) -> Landscape:
+        """The cost at a height [m] of the program that is solved first, of which seeds are made."""
+        program, _ = next(self._programs(height))
+        return program.landscape(height)
+
+    def _programs(self, height: float) -> Iterator[tuple[SplitPostures | _Postures, tuple[Start, ...]]]:
+        """The programs to be solved in turn until one succeeds, with their seeds; a refuge has none."""
+        seeds = self._known.seeds(height)
         if self._symmetry is Symmetry.OFF:
-            return best_of(height, self._full.tries(parameters, checker))
-        candidates: list[Candidate] = []
-        if height in self._known:
-            candidates += self._split.tries(values, height, checker)
-        if not any(candidate.solved for candidate in candidates):
-            candidates += self._half.tries(parameters, checker)
-        solved = [candidate for candidate in candidates if candidate.solved]
-        if not solved:
-            candidates += self._full.tries(parameters, checker)
-        elif self._symmetry is Symmetry.POLISH:
-            best = min(solved, key=lambda c: c.attempt.cost)
-            candidates.append(self._full.polish(parameters, best.postures, checker))
-        return best_of(height, candidates)
+            yield self._full, seeds
+            return
+        if height in self._split_heights:
+            yield self._split, seeds
+            yield self._half, ()
+        else:
+            yield self._half, seeds
+        yield self._full, ()
 
     @cached_property
     def _half(self) -> _Postures:
         """The symmetric program over both agents, built when it is first needed."""
-        return _Postures(self._forms, *self._ingredients)
+        return _Postures("symmetric", self._forms, *self._ingredients_of(refuge=bool(self._split_heights)))
 
     @cached_property
     def _full(self) -> _Postures:
         """The full program, built when it is first needed."""
         scene = self._ingredients[0]
-        return _Postures((whole(scene.robot), whole(scene.human)), *self._ingredients)
+        ingredients = self._ingredients_of(refuge=self._symmetry is Symmetry.ON)
+        return _Postures("whole", (whole(scene.robot), whole(scene.human)), *ingredients)
+
+    def _ingredients_of(self, *, refuge: bool) -> tuple[Scene, DesignSpace, EffortWeights, IpoptOptions]:
+        """What a program is made of; one that is seldom solved is not worth compiling."""
+        scene, space, weights, options = self._ingredients
+        return scene, space, weights, replace(options, compiled=options.compiled and not refuge)
 
 
 class _Postures:
-    """A posture program over the given forms, with its starts."""
+    """A posture program over the given forms of both agents."""
 
     def __init__(
         self,
+        name: str,
         forms: tuple[Form, Form],
         scene: Scene,
         space: DesignSpace,
         weights: EffortWeights,
         options: IpoptOptions,
     ) -> None:
+        self._name = name
         self._forms = forms
         self._solver = Solver(_program(forms, scene, space, weights), options)
-        self._starts = tuple(joint_starts(self._solver, shares) for shares in STARTS)
+        self._fixed = fixed_starts(self._solver)
 
-    def tries(self, parameters: Sequence[float], checker: Checker) -> list[Candidate]:
-        """The result of every start."""
-        return [self._try(parameters, start, checker) for start in self._starts]
+    def landscape(self, height: float) -> Landscape:
+        """The program's cost at a height [m]."""
+        return Landscape(self._solver, (height,), self._fixed, *NEAR)
+
+    def trial(
+        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
+    ) -> Trial:
+        """What the seeds lead to, or the fixed starts if there are none."""
+        starts = named_starts(self._name, seeds, self._fixed)
+        ends = [(name, self._solver.solve([*values, height], start)) for name, start in starts]
+        return cheapest(ends, partial(self._candidate, height, checker))
 
     def polish(
-        self, parameters: Sequence[float], postures: Mapping[str, AgentPosture], checker: Checker
-    ) -> Candidate:
-        """The result of starting from known whole postures."""
+        self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
+    ) -> Trial:
+        """What known whole postures lead to."""
         start = {
             f"{form.agent.name}.{part}": value
             for form in self._forms
             for part, value in _blocks(postures[form.agent.name], self._solver, form.agent.name).items()
         }
-        return self._try(parameters, start, checker)
+        end = self._solver.solve([*values, height], start)
+        return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
 
-    def _try(self, parameters: Sequence[float], start: Mapping[str, Any], checker: Checker) -> Candidate:
-        raw = self._solver.solve(parameters, start)
+    def _candidate(self, height: float, checker: Checker, start: str, raw: RawSolution) -> Candidate:
         postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form in self._forms}
-        found = checker.residuals(postures, parameters[-1]) if raw.status is Status.SOLVED else {}
-        return Candidate(checked(raw, found), postures, found)
+        residuals = checker.residuals(postures, height)
+        return Candidate(checked(start, raw, residuals), postures, residuals)
 
 
 def _program(forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights) -> Program:

@@ -1,111 +1,172 @@
-"""What is worked out once per person, load and height, before any robot is evaluated.
+"""What is worked out once per problem, before any robot is evaluated: the pieces of a `Preparation`.
 
-The result is plain numbers: it travels to workers as it is, and is kept in the user's cache under a digest of
-everything it depends on. It is a function of that alone, so a score does not depend on a cache.
+A piece is a function of the problem alone and is kept, as JSON, under a digest of everything that it depends
+on; so a score depends neither on a cache nor on who worked the piece out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import casadi as ca
 import msgspec
-import numpy as np
 
-from evodesign.posture.cache import Cache, digest_of
+from evodesign.design.space import DesignSpace
+from evodesign.posture.cache import digest_of
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.human_value import HumanProblem, HumanValue
+from evodesign.posture.portfolio import Portfolio, Training, portfolio, spread_designs
+from evodesign.posture.posture import EffortWeights, PostureProblem, Symmetry
+from evodesign.posture.preparation import Preparation
 from evodesign.posture.program import IpoptOptions
-from evodesign.statics.scene import Grasp, Scene
+from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.stored import (
+    StoredPortfolio,
+    StoredValue,
+    portfolio_of,
+    stored_portfolio,
+    stored_value,
+    value_of,
+)
+from evodesign.statics.scene import Agent, Grasp, Scene
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["human_values"]
+__all__ = ["Piece", "Setting", "Subject", "key_of", "stages", "with_piece", "work_out"]
 
-RECIPE = b"human value 1"
-"""Changes whenever `human_value` would find other numbers for the same person."""
+RECIPE = b"3"
+"""Changes whenever the same problem would get other pieces."""
+
+REACH_TRAINING = Training(designs=32, starts=8)
+HALF_TRAINING = Training(designs=48, starts=8)
+WHOLE_TRAINING = Training(designs=16, starts=6)
+
+ITERATIONS = 80
+"""Limit of a training solve; those that succeed mostly take 15 to 40."""
+
+LOOKED_AT = 12
+"""Designs looked at for each one that training asks for, where only some hold the load at a height."""
 
 
-class _Stored(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A value function on disk; `height_m` without coefficients means that there is none."""
+class Subject(StrEnum):
+    """What a piece is about; the value is how it is told."""
 
-    height_m: float
-    push_n: float
-    coefficients: tuple[float, ...]
-    starts: tuple[tuple[float, dict[str, list[float]]], ...]
-    error: float
+    PERSON = "the person's part"
+    HIGHEST = "seeds of the highest load"
+    LOWEST = "seeds of the lowest load"
+    POSTURE = "seeds of postures"
 
 
-def human_values(
-    scene: Scene,
-    weight: float,
-    heights: Sequence[float],
-    options: IpoptOptions,
-    cache: Cache | None,
-    say: Callable[[str], None],
-) -> tuple[HumanValue, ...]:
-    """The person's value functions of a symmetric scene, for the heights that have one.
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of a preparation, at a height [m]; one that belongs to none has the height 0."""
+
+    subject: Subject
+    height: float = 0.0
+
+    def __str__(self) -> str:
+        return f"{self.subject} at {self.height:g} m" if self.height else self.subject
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What the pieces of a problem follow from; as for `PostureProblem`."""
+
+    scene: Scene
+    space: DesignSpace
+    weights: EffortWeights
+    options: IpoptOptions
+    symmetry: Symmetry
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether symmetric postures are looked for, at least at first."""
+        return self.symmetry is not Symmetry.OFF
+
+
+def stages(setting: Setting, heights: Sequence[float], *, seeds: bool) -> list[list[Piece]]:
+    """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
     Args:
-        scene: its own mirror image.
-        weight: w_h of the person's squared torques.
+        setting: of the problem.
         heights: of the load's centre [m].
-        options: of the solver.
-        cache: where they are kept; None to work them out anew.
-        say: is told what is being worked out.
+        seeds: whether solves begin at seeds.
     """
-    if scene.payload.grasp is not Grasp.POINT or scene.stance.push == 0.0:
-        return ()
-    form = symmetric_forms(scene)[1]
-    problem = HumanProblem(form, scene, weight, options)
-    found = []
-    for height in heights:
-        key = digest_of(*_ingredients(scene, weight, height, options))
-        stored = _read(cache, key)
-        if stored is None:
-            say(f"working out the person's part at {height:g} m")
-            stored = _stored(height, problem.value(height))
-            if cache is not None:
-                cache.store(key, msgspec.json.encode(stored))
-        if stored.coefficients:
-            found.append(_value(stored))
-    return tuple(found)
-
-
-def _ingredients(scene: Scene, weight: float, height: float, options: IpoptOptions) -> list[bytes]:
-    """Everything a value function depends on."""
-    human = scene.human
-    named = (human.joints, human.hands, human.soles, human.sole_size, human.trunk)
-    numbers = (scene.payload, scene.ground, scene.stance, weight, height, options)
+    pushed = setting.scene.payload.grasp is Grasp.POINT and setting.scene.stance.push > 0.0
+    people = [Piece(Subject.PERSON, height) for height in heights if setting.symmetric and pushed]
+    if not seeds:
+        return [people]
     return [
-        RECIPE,
-        ca.__version__.encode(),
-        urdf_text(human.tree).encode(),
-        repr((named, numbers)).encode(),
+        [Piece(Subject.HIGHEST), Piece(Subject.LOWEST), *people],
+        [Piece(Subject.POSTURE, height) for height in heights],
     ]
 
 
-def _read(cache: Cache | None, key: str) -> _Stored | None:
-    content = cache.read(key) if cache is not None else None
-    if content is None:
-        return None
+def key_of(setting: Setting, piece: Piece) -> str:
+    """The digest under which a piece is kept."""
+    scene, options = setting.scene, replace(setting.options, compiled=False)
+    numbers = (piece, scene.payload, scene.ground, scene.stance, setting.weights, options)
+    ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
+    if piece.subject is not Subject.PERSON:
+        ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]
+    return digest_of(*ingredients)
+
+
+def work_out(setting: Setting, piece: Piece, known: Preparation) -> bytes:
+    """A piece, as it is kept.
+
+    Args:
+        setting: of the problem.
+        piece: which one.
+        known: what earlier stages gave.
+    """
+    if piece.subject is Subject.PERSON:
+        return msgspec.json.encode(stored_value(_person(setting, piece)))
+    return msgspec.json.encode(stored_portfolio(_seeds(setting, piece, known)))
+
+
+def with_piece(known: Preparation, piece: Piece, content: bytes) -> Preparation | None:
+    """What is known with one more piece; None when its content cannot be read."""
     try:
-        return msgspec.json.decode(content, type=_Stored)
+        if piece.subject is Subject.PERSON:
+            value = value_of(msgspec.json.decode(content, type=StoredValue))
+            others = (*known.values, *([value] if value else []))
+            return replace(known, values=tuple(sorted(others, key=lambda value: value.height)))
+        found = portfolio_of(msgspec.json.decode(content, type=StoredPortfolio))
     except msgspec.DecodeError:
         return None
+    if piece.subject is Subject.HIGHEST:
+        return replace(known, highest=found)
+    if piece.subject is Subject.LOWEST:
+        return replace(known, lowest=found)
+    return replace(known, postures={**known.postures, piece.height: found})
 
 
-def _stored(height: float, value: HumanValue | None) -> _Stored:
-    if value is None:
-        return _Stored(height, 0.0, (), (), 0.0)
-    starts = tuple(
-        (push, {name: np.asarray(block).tolist() for name, block in start.items()})
-        for push, start in value.starts
-    )
-    return _Stored(height, value.push, value.coefficients, starts, value.error)
+def _person(setting: Setting, piece: Piece) -> HumanValue | None:
+    form = symmetric_forms(setting.scene)[1]
+    return HumanProblem(form, setting.scene, setting.weights.human, setting.options).value(piece.height)
 
 
-def _value(stored: _Stored) -> HumanValue:
-    starts = tuple(
-        (push, {name: np.array(block) for name, block in start.items()}) for push, start in stored.starts
-    )
-    return HumanValue(stored.height_m, stored.push_n, stored.coefficients, starts, stored.error)
+def _seeds(setting: Setting, piece: Piece, known: Preparation) -> Portfolio:
+    scene, space = setting.scene, setting.space
+    options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
+    reach = ReachProblem(scene, space, options, symmetric=setting.symmetric, known=known)
+    if piece.subject is not Subject.POSTURE:
+        landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
+        return portfolio(landscape, _designs(space, REACH_TRAINING, lambda design: True), REACH_TRAINING)
+    problem = PostureProblem(scene, space, setting.weights, options, setting.symmetry, known)
+    training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
+    designs = _designs(space, training, lambda design: reach.solve(design).distance(piece.height) == 0.0)
+    return portfolio(problem.landscape(piece.height), designs, training)
+
+
+def _designs(
+    space: DesignSpace, training: Training, wanted: Callable[[tuple[float, ...]], bool]
+) -> Iterator[tuple[float, ...]]:
+    return spread_designs(len(space.parameters), space.values, wanted, LOOKED_AT * training.designs)
+
+
+def _named(agent: Agent) -> list[bytes]:
+    named = (agent.joints, agent.hands, agent.soles, agent.sole_size, agent.trunk)
+    return [urdf_text(agent.tree).encode(), repr(named).encode()]

@@ -2,8 +2,9 @@
 
     maximise (minimise) h subject to the robot's constraints and the load's balance,
 
-with the person's hands free to push as they must: the robot's side alone decides. It is an order of
-magnitude cheaper than a posture, so it is solved first and spares the heights that are out of reach.
+with the person's hands free to push as they must: the robot's side alone decides. It is cheaper than a
+posture, so it is solved first and spares the heights that are out of reach. It has several optima (arms
+forward, arms raised sideways over the head), so it begins at seeds as a posture does.
 
 Source: DESIGN 3 (reach); feasibility constraints of Sartore et al. 2022, Eq. 14.
 """
@@ -20,17 +21,26 @@ from evodesign.posture.agent import agent_block
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.load import load_constraints
 from evodesign.posture.partner import free_hands
+from evodesign.posture.portfolio import Landscape
+from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["Reach", "ReachProblem"]
+__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem"]
 
 COMFORT = 1e-4
 """Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
 
-START_HEIGHTS = (1.0, 0.6)
-"""Heights [m] at which a solve begins; the best result counts."""
+HIGHEST, LOWEST = -1.0, 1.0
+"""Sense in which the height is extreme: the sign with which it is minimised."""
+
+FIXED: tuple[Start, ...] = ({"height": [1.0]}, {"height": [0.6]})
+"""Starts where there are no seeds; the best result counts."""
+
+NEAR_HEIGHT = 0.005
+"""How far [m] from the best known extreme another one is still good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,14 +68,27 @@ class Reach:
 class ReachProblem:
     """One reach program for all designs of a scene."""
 
-    def __init__(self, scene: Scene, space: DesignSpace, options: IpoptOptions, *, symmetric: bool) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        space: DesignSpace,
+        options: IpoptOptions,
+        *,
+        symmetric: bool,
+        known: Preparation = NOTHING_KNOWN,
+    ) -> None:
         form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         self._solver = Solver(_program(form, scene, space), options)
+        self._seeds = {HIGHEST: known.highest.seeds, LOWEST: known.lowest.seeds}
+
+    def landscape(self, sense: float) -> Landscape:
+        """Minus the highest (sense -1) or plus the lowest (sense 1) height [m], of which seeds are made."""
+        return Landscape(self._solver, (sense,), FIXED, 0.0, NEAR_HEIGHT)
 
     def solve(self, values: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
-        highest, high = self._extreme(values, -1.0)
-        lowest, low = self._extreme(values, 1.0)
+        highest, high = self._extreme(values, HIGHEST)
+        lowest, low = self._extreme(values, LOWEST)
         status = worst_status([high.status, low.status])
         if status is not Status.SOLVED:
             which = "highest" if high.status is not Status.SOLVED else "lowest"
@@ -75,7 +98,7 @@ class ReachProblem:
 
     def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
-        solves = [self._solver.solve([*values, sense], {"height": [start]}) for start in START_HEIGHTS]
+        solves = [self._solver.solve([*values, sense], start) for start in self._seeds[sense] or FIXED]
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
         if not solved:
             return None, solves[0]
@@ -87,7 +110,7 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
     design = ca.SX.sym("design", len(space.parameters))
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
-    height = Variable.column("height", [floor], [5.0], [START_HEIGHTS[0]], 1.0)
+    height = Variable.column("height", [floor], [5.0], [1.0], 1.0)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = agent_block(form, tree, scene, height.value)
     partner = free_hands(form, scene)

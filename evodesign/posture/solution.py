@@ -44,8 +44,18 @@ class AgentPosture:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One start of a posture problem and how it ended."""
+    """One start of a posture problem and how it ended.
 
+    Args:
+        start: its name: the program, and the seed or fixed start.
+        status: solved, or why not.
+        reason: IPOPT's word, or what the check found.
+        iterations: of the solve.
+        seconds: wall time [s].
+        cost: of the last iterate.
+    """
+
+    start: str
     status: Status
     reason: str
     iterations: int
@@ -64,6 +74,7 @@ class HeightSolution:
         postures: by agent name; empty unless solved.
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
+        start: name of the start that led to the postures; empty unless solved.
     """
 
     height: float
@@ -72,6 +83,7 @@ class HeightSolution:
     postures: Mapping[str, AgentPosture]
     residuals: Mapping[str, float]
     attempts: tuple[Attempt, ...]
+    start: str
 
     @property
     def solved(self) -> bool:

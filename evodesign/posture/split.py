@@ -14,21 +14,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from functools import partial
 
 import casadi as ca
 import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import TORQUE_UNIT, agent_block
-from evodesign.posture.candidate import Candidate, checked
+from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.form import Form
 from evodesign.posture.human_value import TERMS, HumanProblem, HumanValue, chebyshev_sum
 from evodesign.posture.load import load_constraints, push_of
 from evodesign.posture.partner import free_hands
+from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
-from evodesign.posture.start import STARTS, joint_starts
+from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
@@ -52,28 +53,33 @@ class SplitPostures:
         self._values = {value.height: value for value in values}
         self._robot = Solver(_program(forms[0], scene, space, weights[0]), options)
         self._human = HumanProblem(forms[1], scene, weights[1], options)
-        self._starts = [joint_starts(self._robot, {ROBOT: shares[ROBOT]}) for shares in STARTS]
+        self._fixed = fixed_starts(self._robot)
 
-    def tries(self, design: Sequence[float], height: float, checker: Checker) -> list[Candidate]:
-        """The result of every start, in the order of the starts."""
-        return [self._try(design, height, start, checker) for start in self._starts]
+    def landscape(self, height: float) -> Landscape:
+        """The robot's cost at a height [m], with V(X)."""
+        return Landscape(self._robot, (height, *self._values[height].coefficients), self._fixed, *NEAR)
 
-    def _try(
-        self, design: Sequence[float], height: float, start: dict[str, Any], checker: Checker
-    ) -> Candidate:
+    def trial(
+        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
+    ) -> Trial:
+        """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
+        parameters = [*values, height, *self._values[height].coefficients]
+        starts = named_starts("split", seeds, self._fixed)
+        ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
+        return cheapest(ends, partial(self._candidate, height, checker))
+
+    def _candidate(self, height: float, checker: Checker, start: str, robot: RawSolution) -> Candidate:
+        """The robot's posture with the person's at the push that was found."""
         value = self._values[height]
-        robot = self._robot.solve([*design, height, *value.coefficients], start)
-        if robot.status is not Status.SOLVED:
-            return Candidate(checked(robot, {}), {}, {})
         push = self._push(robot)
-        human = self._human.solve(height, push, value.nearest(push))
+        human = self._human.best(height, push, value)
         both = _joined(robot, human, float(value.cost(push)))
         if human.status is not Status.SOLVED:
-            return Candidate(checked(both, {}), {}, {})
+            return Candidate(checked(start, both, {}), {}, {})
         solutions = ((self._forms[0], robot), (self._forms[1], human))
         postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form, raw in solutions}
         residuals = checker.residuals(postures, height)
-        return Candidate(checked(both, residuals), postures, residuals)
+        return Candidate(checked(start, both, residuals), postures, residuals)
 
     def _push(self, robot: RawSolution) -> float:
         posture = self._forms[0].expand(robot.of(ROBOT))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,20 +10,35 @@ import numpy as np
 from evodesign.posture.program import Solver
 from evodesign.statics.scene import HUMAN, ROBOT
 
-__all__ = ["STARTS", "joint_starts"]
+__all__ = ["Start", "fixed_starts", "named_starts"]
 
-STARTS: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
-"""Starts, as the share of the way from zero to the middle of each joint's range, by agent.
+Start = Mapping[str, Any]
+"""Starting values by variable name; variables left out begin at the program's own."""
 
-Chosen on the whole (not symmetric) problem: of nine such starts this pair came within 2 % of the best of 19
-on 86 % of 42 heights of random designs.
+SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
+"""Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.
+
+Of nine such starts this pair came within 2 % of the best of 19 on 86 % of 42 heights of random designs; a
+portfolio of seeds does better (see `portfolio`) and takes their place where there is one.
 """
 
 
-def joint_starts(solver: Solver, shares: Mapping[str, float]) -> dict[str, Any]:
+def fixed_starts(solver: Solver) -> tuple[Start, ...]:
     """A program's own starting values, with the joints of each agent a share of the way to mid-range."""
+    return tuple(_start(solver, shares) for shares in SHARES)
+
+
+def named_starts(program: str, seeds: Sequence[Start], fixed: Sequence[Start]) -> list[tuple[str, Start]]:
+    """A program's seeds, or its fixed starts if there are none, each with its name in results."""
+    kind, starts = ("seed", seeds) if seeds else ("start", fixed)
+    return [(f"{program}: {kind} {number}", start) for number, start in enumerate(starts, 1)]
+
+
+def _start(solver: Solver, shares: Mapping[str, float]) -> Start:
     start = solver.start
-    for agent, share in shares.items():
-        block = next(v for v in solver.program.variables if v.name == f"{agent}.joints")
-        start[block.name] = np.clip(share * (block.lower + block.upper) / 2.0, block.lower, block.upper)
+    for variable in solver.program.variables:
+        agent, _, part = variable.name.partition(".")
+        if part == "joints" and agent in shares:
+            middle = (variable.lower + variable.upper) / 2.0
+            start[variable.name] = np.clip(shares[agent] * middle, variable.lower, variable.upper)
     return start

@@ -46,6 +46,7 @@ def _height(height: HeightSolution) -> dict[str, Any]:
         "height_m": height.height,
         "status": str(height.status),
         "reason": height.reason,
+        "start": height.start,
         "solver": _solver(height),
     }
     if height.solved:
@@ -83,6 +84,7 @@ def _solver(height: HeightSolution) -> dict[str, Any]:
         "seconds": sum(attempt.seconds for attempt in height.attempts),
         "attempts": [
             {
+                "start": attempt.start,
                 "status": str(attempt.status),
                 "reason": attempt.reason,
                 "iterations": attempt.iterations,

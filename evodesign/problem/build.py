@@ -36,6 +36,7 @@ class Problem:
         objectives: in the file's order, minimised ones first.
         options: of the inner solver.
         symmetry: which postures are looked for.
+        seeds: whether solves begin at the problem's seeds.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
     """
@@ -49,6 +50,7 @@ class Problem:
     objectives: tuple[Objective, ...]
     options: IpoptOptions
     symmetry: Symmetry
+    seeds: bool
     search: SearchTable
     start: tuple[Genome, ...]
 
@@ -79,7 +81,7 @@ def build_problem(source: ProblemSource) -> Problem:
         stance=_stance(tables, source),
     )
     space = _space(tables, source, scene.robot.tree)
-    _check_symmetry(tables, source, scene, space)
+    symmetry = _symmetry(tables, source, scene, space)
     start: tuple[Genome, ...] = ()
     if tables.search.start is not None:
         name = tables.search.start
@@ -96,24 +98,28 @@ def build_problem(source: ProblemSource) -> Problem:
         options=IpoptOptions(
             iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
         ),
-        symmetry=tables.solver.symmetry,
+        symmetry=symmetry,
+        seeds=tables.solver.seeds,
         search=tables.search,
         start=start,
     )
 
 
-def _check_symmetry(tables: ProblemFile, source: ProblemSource, scene: Scene, space: DesignSpace) -> None:
-    """Refuse symmetric postures of a scene that is not its own mirror image, naming what differs."""
-    if tables.solver.symmetry is Symmetry.OFF:
-        return
-    try:
-        space.check_mirror(scene.robot.tree)
-        symmetric_forms(scene)
-    except InputError as error:
-        wanted = "'off', or a scene that is its own mirror image"
-        raise InputError(
-            source.path, "solver.symmetry", wanted, f"'{tables.solver.symmetry}' ({error})"
-        ) from error
+def _symmetry(tables: ProblemFile, source: ProblemSource, scene: Scene, space: DesignSpace) -> Symmetry:
+    """The kind of postures that is asked for; a scene that is not its own mirror image is refused by name."""
+    asked = tables.solver.symmetry if source.symmetry is None else source.symmetry
+    place, key = (source.path, "solver.symmetry") if source.symmetry is None else ("--symmetry", "")
+    if asked not in set(Symmetry):
+        wanted = f"one of {', '.join(Symmetry)}"
+        raise InputError(place, key, wanted, f"'{asked}'{nearest_name(asked, Symmetry)}")
+    if asked != Symmetry.OFF:
+        try:
+            space.check_mirror(scene.robot.tree)
+            symmetric_forms(scene)
+        except InputError as error:
+            wanted = "'off', or a scene that is its own mirror image"
+            raise InputError(place, key, wanted, f"'{asked}' ({error})") from error
+    return Symmetry(asked)
 
 
 def _payload(tables: ProblemFile, source: ProblemSource) -> Payload:

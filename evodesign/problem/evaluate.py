@@ -8,11 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from evodesign.posture.cache import Cache
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.human_value import HumanValue
 from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.prepare import human_values
+from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
@@ -31,31 +29,18 @@ from evodesign.records import (
 )
 from evodesign.statics.scene import HUMAN, ROBOT
 
-__all__ = ["AssessmentFactory", "Evaluator", "prepared"]
-
-
-def prepared(problem: Problem, cache: Cache | None, say: Callable[[str], None]) -> tuple[HumanValue, ...]:
-    """The person's part of a problem, from the cache or worked out now.
-
-    Args:
-        problem: with one person and one load.
-        cache: None to work everything out anew.
-        say: is told what takes time.
-    """
-    if problem.symmetry is Symmetry.OFF:
-        return ()
-    return human_values(problem.scene, problem.weights.human, problem.heights, problem.options, cache, say)
+__all__ = ["AssessmentFactory", "Evaluator"]
 
 
 class Evaluator:
     """The inner problems of a problem, built once and solved for any number of designs."""
 
-    def __init__(self, problem: Problem, human_values: Sequence[HumanValue] = ()) -> None:
+    def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
         self.problem = problem
         scene, space, options = problem.scene, problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
-        self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry, human_values)
-        self._reach = ReachProblem(scene, space, options, symmetric=symmetric)
+        self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry, known)
+        self._reach = ReachProblem(scene, space, options, symmetric=symmetric, known=known)
         self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
 
     def solve(self, values: Sequence[float]) -> DesignResult:
@@ -101,10 +86,10 @@ class Evaluator:
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
-            return HeightSolution(height, reach.status, reach.reason, {}, {}, ())
+            return HeightSolution(height, reach.status, reach.reason, {}, {}, (), "")
         if distance > 0.0:
             reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, ())
+            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, (), "")
         return self._posture.solve(values, height, checker)
 
 
@@ -153,13 +138,13 @@ class AssessmentFactory:
     Args:
         digest: of the source; two factories of equal digest build the same evaluation.
         source: the problem's text and files.
-        human_values: the person's part, worked out beforehand; it follows from the source.
+        known: what was worked out beforehand; it follows from the source.
     """
 
     digest: str
     source: ProblemSource = field(compare=False)
-    human_values: tuple[HumanValue, ...] = field(compare=False)
+    known: Preparation = field(compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to what it is worth."""
-        return Evaluator(build_problem(self.source), self.human_values).assess
+        return Evaluator(build_problem(self.source), self.known).assess

@@ -165,11 +165,11 @@ class SearchTable(Table, frozen=True):
 
 
 class SolverTable(Table, frozen=True):
-    """`[solver]`: limits of one inner solve, symmetric postures or not, compiled functions or not."""
+    """`[solver]`: how the inner problems are solved, and limits of one solve."""
 
     symmetry: Symmetry = Symmetry.ON
-    compile: bool = False
-
+    seeds: bool = True
+    compile: bool = True
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0
 

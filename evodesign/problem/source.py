@@ -12,9 +12,12 @@ from evodesign.records import ProblemSource
 __all__ = ["read_source", "read_text"]
 
 
-def read_source(path: Path) -> ProblemSource:
+def read_source(path: Path, symmetry: str | None = None) -> ProblemSource:
     """A problem file and every file it names, as text.
 
+    Args:
+        path: of the problem file.
+        symmetry: of postures, in place of the file's; None leaves it to the file.
     Raises:
         InputError: a file is missing or is not UTF-8 text, or the problem file does not decode.
     """
@@ -28,7 +31,7 @@ def read_source(path: Path) -> ProblemSource:
     files = {
         name: read_text(path.parent / name, str(path), key) for key, name in named.items() if name is not None
     }
-    return ProblemSource(path=str(path), text=text, files=files)
+    return ProblemSource(path=str(path), text=text, files=files, symmetry=symmetry)
 
 
 def read_text(path: Path, source: str, key: str) -> str:

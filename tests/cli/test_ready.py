@@ -34,7 +34,7 @@ def quick(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = (repository / "problems" / "icub_lifting.toml").read_text()
     text = text.replace("heights_m = [0.8, 1.0, 1.2]", "heights_m = [1.0]")
     text = text.replace("robots/icub_shapes.urdf", str(repository / "problems/robots/icub_shapes.urdf"))
-    text = text.replace('start = "../populations/icub.toml"', "")
+    text = text.replace('start = "../populations/icub.toml"', "") + "[solver]\nseeds = false\n"
     (place / "problem.toml").write_text(text)
     return place / "problem.toml"
 
@@ -42,9 +42,36 @@ def quick(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_cache_does_not_change_an_answer(quick: Path, tmp_path: Path) -> None:
     cold, first = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "cache")})
     warm, second = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "cache")})
-    assert "working out the person's part at 1 m" in first
+    assert "ready 1/1: the person's part at 1 m" in first
     assert second == ""
     assert cold == warm
+
+
+def test_compiler_does_not_change_an_answer(quick: Path, tmp_path: Path) -> None:
+    compiled, _ = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "with")})
+    interpreted, _ = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "without"), "CC": "/nowhere/cc"})
+    assert compiled == interpreted
+    assert any((tmp_path / "with" / "functions").iterdir())
+    assert not list((tmp_path / "without").glob("functions/*"))
+
+
+def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
+    answers = {}
+    for symmetry in ("on", "polish"):
+        command = [*COMMAND, "evaluate", str(quick), "--symmetry", symmetry, "--json"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True)
+        answers[symmetry] = json.loads(done.stdout)["heights"][0]
+    starts = [attempt["start"] for attempt in answers["polish"]["solver"]["attempts"]]
+    assert starts[-1] == "whole: polish"
+    assert not any("whole" in attempt["start"] for attempt in answers["on"]["solver"]["attempts"])
+    assert answers["polish"]["robot"]["torque_norm"] != answers["on"]["robot"]["torque_norm"]
+
+
+def test_unknown_symmetry_is_refused(quick: Path) -> None:
+    command = [*COMMAND, "evaluate", str(quick), "--symmetry", "polsh"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert "--symmetry: wanted one of on, off, polish, found 'polsh'; did you mean 'polish'?" in done.stderr
 
 
 def test_asymmetric_robot_is_refused_with_what_to_write(quick: Path, tmp_path: Path) -> None:

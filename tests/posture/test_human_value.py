@@ -10,14 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
-from evodesign.posture.cache import open_cache
 from evodesign.posture.form import symmetric_forms
-from evodesign.posture.human_value import LARGEST_ERROR, HumanProblem, HumanValue, chebyshev_sum
-from evodesign.posture.prepare import human_values
+from evodesign.posture.human_value import LARGEST_ERROR, HumanProblem, chebyshev_sum
+from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
+from evodesign.posture.prepare import Piece, Subject, stages, with_piece, work_out
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.prepare import setting_of
 from evodesign.records import Status
-from evodesign.statics.scene import Grasp
+from evodesign.statics.scene import Grasp, Scene
 
 
 @given(st.lists(st.floats(-5.0, 5.0), min_size=2, max_size=9), st.floats(-1.0, 1.0))
@@ -25,23 +26,21 @@ def test_clenshaws_sum_is_numpys(coefficients: list[float], x: float) -> None:
     assert chebyshev_sum(coefficients, x) == pytest.approx(chebyshev.chebval(x, coefficients), abs=1e-9)
 
 
-def test_value_is_what_solving_the_person_gives(problem: Problem, people: tuple[HumanValue, ...]) -> None:
+def test_value_is_what_solving_the_person_gives(problem: Problem, known: Preparation) -> None:
     """At pushes that are no nodes, against a solve from the nearest node."""
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
-    assert [value.height for value in people] == list(problem.heights)
-    for value in people:
+    assert [value.height for value in known.values] == list(problem.heights)
+    for value in known.values:
         assert value.error <= LARGEST_ERROR
         for push in (-4.3, -1.1, 0.7, 3.9):
-            found = person.solve(value.height, push, value.nearest(push))
+            found = person.solve(value.height, push, value.nearest(push)[0])
             assert found.status is Status.SOLVED
             assert found.cost == pytest.approx(value.cost(push), abs=max(LARGEST_ERROR, 2.0 * value.error))
 
 
-def test_one_after_the_other_is_about_as_good_as_both_at_once(
-    problem: Problem, people: tuple[HumanValue, ...]
-) -> None:
+def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, known: Preparation) -> None:
     """Mean below 0.5 % above the joint program from the same number of starts, and often better."""
-    split, joint = Evaluator(problem, people), Evaluator(problem)
+    split, joint = Evaluator(problem, known), Evaluator(problem)
     rng = np.random.default_rng(5)
     excess = []
     for _ in range(5):
@@ -55,27 +54,44 @@ def test_one_after_the_other_is_about_as_good_as_both_at_once(
     assert float(np.mean(excess)) < 0.005
 
 
-def test_cache_does_not_change_a_score(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> None:
-    said: list[str] = []
-    cache = open_cache(tmp_path_factory.mktemp("people"))
-    scene, options = problem.scene, problem.options
-    first, second = (human_values(scene, 1.0, (1.0,), options, cache, said.append) for _ in range(2))
-    assert len(said) == 1, "the second time it is read"
-    assert first[0].coefficients == second[0].coefficients
-    assert first[0].error == second[0].error
-    for one, other in zip(first[0].starts, second[0].starts, strict=True):
+def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, known: Preparation) -> None:
+    fresh = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options).value(1.0)
+    kept = next(value for value in known.values if value.height == 1.0)
+    assert fresh is not None
+    assert (fresh.coefficients, fresh.push, fresh.error) == (kept.coefficients, kept.push, kept.error)
+    for one, other in zip(fresh.starts, kept.starts, strict=True):
         assert one[0] == other[0]
         assert all(np.array_equal(one[1][name], other[1][name]) for name in one[1])
+
+
+def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem, known: Preparation) -> None:
+    value = next(value for value in known.values if value.height == 1.0)
+    person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
+    (nearest, start), *others = sorted(value.starts, key=lambda node: abs(node[0]))
+    broken = {**start, "human.joints": np.full_like(start["human.joints"], np.nan)}
+    misleading = replace(value, starts=((nearest, broken), *others))
+    assert person.solve(1.0, 0.0, broken).status is not Status.SOLVED
+    found = person.best(1.0, 0.0, misleading)
+    assert found.status is Status.SOLVED
+    assert found.cost == pytest.approx(value.cost(0.0), abs=LARGEST_ERROR)
+
+
+def pieces(problem: Problem, scene: Scene) -> list[Subject]:
+    setting = replace(setting_of(problem), scene=scene)
+    return [piece.subject for stage in stages(setting, (1.0,), seeds=False) for piece in stage]
 
 
 def test_rigid_grasps_and_no_push_have_no_value(problem: Problem) -> None:
     scene = problem.scene
     rigid = replace(scene, payload=replace(scene.payload, grasp=Grasp.RIGID))
     still = replace(scene, stance=replace(scene.stance, push=0.0))
-    for other in (rigid, still):
-        assert human_values(other, 1.0, (1.0,), problem.options, None, lambda _: None) == ()
+    assert [pieces(problem, other) for other in (scene, rigid, still)] == [[Subject.PERSON], [], []]
 
 
 def test_height_out_of_the_persons_reach_has_no_value(problem: Problem) -> None:
-    scene = problem.scene
-    assert human_values(scene, 1.0, (2.6,), problem.options, None, lambda _: None) == ()
+    setting, piece = setting_of(problem), Piece(Subject.PERSON, 2.6)
+    content = work_out(setting, piece, NOTHING_KNOWN)
+    assert with_piece(NOTHING_KNOWN, piece, content) == NOTHING_KNOWN
+    assert with_piece(NOTHING_KNOWN, piece, b'{"height_m":') is None, (
+        "a content that cannot be read is missing"
+    )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
-from evodesign.posture.human_value import HumanValue
+from evodesign.posture.preparation import Preparation
 from evodesign.posture.solution import AgentPosture
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
@@ -99,13 +99,13 @@ def test_the_check_sees_what_is_wrong(
 
 
 def test_an_evaluation_does_not_depend_on_what_was_evaluated_before(
-    problem: Problem, evaluator: Evaluator, people: tuple[HumanValue, ...]
+    problem: Problem, evaluator: Evaluator, known: Preparation
 ) -> None:
     genome = tuple(0.3 for _ in problem.space.parameters)
     first = evaluator.assess(genome)
     evaluator.assess(tuple(0.9 for _ in problem.space.parameters))
     assert evaluator.assess(genome) == first
-    assert Evaluator(problem, people).assess(genome) == first
+    assert Evaluator(problem, known).assess(genome) == first
 
 
 def test_mirrored_wrenches_and_joints_are_as_good(

@@ -1,0 +1,89 @@
+"""`seeds`: what a problem is solved from, and how much is left to luck."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from evodesign.cli.output import console, figure, print_json
+from evodesign.cli.ready import known_of
+from evodesign.pool.registry import make_pool
+from evodesign.posture.human_value import COST_UNIT
+from evodesign.posture.portfolio import Portfolio
+from evodesign.posture.preparation import Preparation
+from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.source import read_source
+
+__all__ = ["show_seeds"]
+
+
+def show_seeds(path: Path, jobs: int, json: bool) -> None:
+    """Make a problem ready and print its seeds' coverage and its person's value functions."""
+    problem = build_problem(read_source(path))
+    with make_pool("joblib", jobs) as pool:
+        known = known_of(problem, pool)
+    if json:
+        print_json(_json(problem, known))
+        return
+    console().print(_seeds_table(problem, known))
+    console().print(_people_table(problem, known))
+
+
+def _landscapes(problem: Problem, known: Preparation) -> Iterator[tuple[str, Portfolio, str]]:
+    """Each portfolio with what it is for and the unit in which it misses."""
+    if not problem.seeds:
+        return
+    yield "highest load", known.highest, "m"
+    yield "lowest load", known.lowest, "m"
+    for height in problem.heights:
+        yield f"posture at {height:g} m", known.postures[height], "100 N^2 m^2"
+
+
+def _seeds_table(problem: Problem, known: Preparation) -> Table:
+    table = Table(title="seeds, and designs that they were not made from", title_justify="left")
+    table.add_column("problem")
+    for column in ("seeds", "designs tried", "led well", "worst miss"):
+        table.add_column(column, justify="right")
+    for name, found, unit in _landscapes(problem, known):
+        coverage = found.coverage
+        share = f"{coverage.share:.1%}" if coverage.designs else "-"
+        miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
+        table.add_row(name, str(len(found.seeds)), str(coverage.designs), share, miss)
+    return table
+
+
+def _people_table(problem: Problem, known: Preparation) -> Table:
+    table = Table(title="the person's part V(X), X the push between the agents", title_justify="left")
+    for column in ("height", "known", "largest error"):
+        table.add_column(column, justify="right")
+    errors = {value.height: value.error for value in known.values}
+    for height in problem.heights:
+        error = errors.get(height)
+        shown = "-" if error is None else f"{figure(error * COST_UNIT)} N^2 m^2"
+        table.add_row(f"{height:g} m", "no: solved jointly" if error is None else "yes", shown)
+    return table
+
+
+def _json(problem: Problem, known: Preparation) -> dict[str, Any]:
+    errors = {value.height: value.error * COST_UNIT for value in known.values}
+    return {
+        "problem": problem.name,
+        "seeds": [
+            {
+                "for": name,
+                "seeds": len(found.seeds),
+                "designs_tried": found.coverage.designs,
+                "designs_led_well": found.coverage.good,
+                "worst_miss": found.coverage.worst,
+                "unit": unit,
+            }
+            for name, found, unit in _landscapes(problem, known)
+        ],
+        "human_values": [
+            {"height_m": height, "known": height in errors, "error_n2_m2": errors.get(height)}
+            for height in problem.heights
+        ],
+    }

@@ -1,0 +1,41 @@
+"""What is known of a problem before any robot is evaluated: the person's part, and seeds.
+
+It follows from the problem alone and consists of plain numbers, so it travels to workers as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from evodesign.posture.human_value import HumanValue
+from evodesign.posture.portfolio import Coverage, Portfolio
+from evodesign.posture.start import Start
+
+__all__ = ["NOTHING_KNOWN", "NO_SEEDS", "Preparation"]
+
+NO_SEEDS = Portfolio((), Coverage(0, 0, 0.0))
+"""A portfolio of none: solves begin at the fixed starts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Preparation:
+    """What is known; left out, everything is solved jointly and from fixed starts.
+
+    Args:
+        values: the person's value functions, for the heights that have one.
+        highest, lowest: seeds of the reach problem.
+        postures: seeds of the posture problem, by height [m].
+    """
+
+    values: tuple[HumanValue, ...] = ()
+    highest: Portfolio = NO_SEEDS
+    lowest: Portfolio = NO_SEEDS
+    postures: Mapping[float, Portfolio] = field(default_factory=dict)
+
+    def seeds(self, height: float) -> tuple[Start, ...]:
+        """The posture problem's seeds at a height [m]; none where none are known."""
+        return self.postures.get(height, NO_SEEDS).seeds
+
+
+NOTHING_KNOWN = Preparation()

@@ -1,0 +1,77 @@
+"""Value functions and portfolios as they are kept: plain numbers under names with units."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from evodesign.posture.human_value import HumanValue
+from evodesign.posture.portfolio import Coverage, Portfolio
+from evodesign.posture.start import Start
+
+__all__ = [
+    "StoredPortfolio",
+    "StoredValue",
+    "portfolio_of",
+    "stored_portfolio",
+    "stored_value",
+    "value_of",
+]
+
+
+class StoredValue(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A value function on disk; `height_m` without coefficients means that there is none."""
+
+    height_m: float
+    push_n: float
+    coefficients: tuple[float, ...]
+    starts: tuple[tuple[float, dict[str, list[float]]], ...]
+    error: float
+
+
+class StoredPortfolio(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A portfolio on disk."""
+
+    seeds: tuple[dict[str, list[float]], ...]
+    designs: int
+    good: int
+    worst: float
+
+
+def stored_value(value: HumanValue | None) -> StoredValue:
+    """A value function, or that there is none, to be kept."""
+    if value is None:
+        return StoredValue(0.0, 0.0, (), (), 0.0)
+    starts = tuple((push, _numbers(start)) for push, start in value.starts)
+    return StoredValue(value.height, value.push, value.coefficients, starts, value.error)
+
+
+def value_of(stored: StoredValue) -> HumanValue | None:
+    """The value function that was kept, or that there is none."""
+    if not stored.coefficients:
+        return None
+    starts = tuple((push, _arrays(start)) for push, start in stored.starts)
+    return HumanValue(stored.height_m, stored.push_n, stored.coefficients, starts, stored.error)
+
+
+def stored_portfolio(found: Portfolio) -> StoredPortfolio:
+    """A portfolio to be kept."""
+    seeds = tuple(_numbers(seed) for seed in found.seeds)
+    coverage = found.coverage
+    return StoredPortfolio(seeds, coverage.designs, coverage.good, coverage.worst)
+
+
+def portfolio_of(stored: StoredPortfolio) -> Portfolio:
+    """The portfolio that was kept."""
+    seeds = tuple(_arrays(seed) for seed in stored.seeds)
+    return Portfolio(seeds, Coverage(stored.designs, stored.good, stored.worst))
+
+
+def _numbers(start: Start) -> dict[str, list[float]]:
+    return {name: np.asarray(block, float).tolist() for name, block in start.items()}
+
+
+def _arrays(start: dict[str, list[float]]) -> dict[str, Any]:
+    return {name: np.array(block) for name, block in start.items()}

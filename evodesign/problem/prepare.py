@@ -1,0 +1,91 @@
+"""Making a problem ready: pieces that no cache holds are worked out, by workers side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from evodesign.errors import RunError
+from evodesign.pool.base import Pool
+from evodesign.posture.cache import Cache
+from evodesign.posture.preparation import Preparation
+from evodesign.posture.prepare import Piece, Setting, key_of, stages, with_piece, work_out
+from evodesign.problem.build import Problem, build_problem
+from evodesign.records import ProblemSource
+
+__all__ = ["Watcher", "prepared", "setting_of"]
+
+
+class Watcher(Protocol):
+    """Someone who is shown how far the pieces are."""
+
+    def missing(self, pieces: int) -> None:
+        """So many pieces, of one stage, have to be worked out."""
+
+    def done(self, piece: str) -> None:
+        """One of them is."""
+
+
+def setting_of(problem: Problem) -> Setting:
+    """What a problem's pieces follow from."""
+    return Setting(problem.scene, problem.space, problem.weights, problem.options, problem.symmetry)
+
+
+def prepared(problem: Problem, cache: Cache | None, pool: Pool, watcher: Watcher) -> Preparation:
+    """What is known of a problem before any robot is evaluated.
+
+    Args:
+        problem: to be made ready.
+        cache: of pieces worked out before; None to work out everything.
+        pool: where pieces are worked out.
+        watcher: is shown what is worked out.
+    Raises:
+        RunError: a piece could not be worked out; it says which and why.
+    """
+    setting, known = setting_of(problem), Preparation()
+    for stage in stages(setting, problem.heights, seeds=problem.seeds):
+        missing = []
+        for piece in stage:
+            content = cache.read(key_of(setting, piece)) if cache else None
+            found = with_piece(known, piece, content) if content else None
+            if found is None:
+                missing.append(piece)
+            else:
+                known = found
+        if missing:
+            watcher.missing(len(missing))
+            for piece, content in _worked_out(problem, missing, known, pool, watcher).items():
+                if cache is not None:
+                    cache.store(key_of(setting, piece), content)
+                known = with_piece(known, piece, content) or known
+    return known
+
+
+def _worked_out(
+    problem: Problem, missing: list[Piece], known: Preparation, pool: Pool, watcher: Watcher
+) -> dict[Piece, bytes]:
+    """Contents of the pieces, in the order in which they are missing."""
+    contents: dict[Piece, bytes] = {}
+    name = " ".join(key_of(setting_of(problem), piece) for piece in missing)
+    factory = _PieceFactory(name, problem.source, known)
+    for finished in pool.run(factory, missing):
+        piece = missing[finished.index]
+        if finished.value is None:
+            raise RunError(f"{problem.name}: {piece} could not be worked out: {finished.failure}")
+        contents[piece] = finished.value
+        watcher.done(str(piece))
+    return {piece: contents[piece] for piece in missing}
+
+
+@dataclass(frozen=True, slots=True)
+class _PieceFactory:
+    """Builds, in whichever process it is called, the function from a piece to its content."""
+
+    name: str
+    source: ProblemSource = field(compare=False)
+    known: Preparation = field(compare=False)
+
+    def __call__(self) -> Callable[[Piece], bytes]:
+        setting = setting_of(build_problem(self.source))
+        return lambda piece: work_out(setting, piece, self.known)
