@@ -112,7 +112,7 @@ const frontTraces = () => {
       opacity: solid ? 0.5 : 0.6,
     }),
     frontTrace(left, "left out", { size: size - 3, color: colour("faint"), opacity: 0.5 }),
-    frontTrace(kept, "front", { size, ...tint, line: { width: solid ? 0 : 0.8, color: colour("surface") } }),
+    frontTrace(kept, "front", { size, ...tint, line: { width: solid ? 0 : 0.8, color: colour("accent") } }),
     ...markTraces(),
   ];
   const ring = solid
