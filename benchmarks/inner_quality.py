@@ -2,8 +2,8 @@
 
 Random designs of the default problem, the load at four heights. Of the heights that reach says can be held:
 how many are solved and pass the check; how many solved ones lie within 1 % of the best of 25 random starts of
-the same program; and how far robot and person solved one after the other lie from the best of 25 random starts
-of both together. Results go to benchmarks/results/inner_quality.json and are printed as a Markdown table.
+the same program; and how far robot and person solved one after the other lie from the best of 25 random
+starts of both together. Results go to benchmarks/results/inner_quality.json and are printed as a table.
 
     python benchmarks/inner_quality.py [--designs 200] [--joint-designs 50] [--starts 25] [--jobs 2]
 """
@@ -147,11 +147,12 @@ def main() -> None:
 
 def _table(figures: dict[str, dict[str, float]]) -> str:
     head = (
-        "| height | reachable | solved | within 1 % of the best start | worst excess | jointly | mean error | worst error |\n"
-        "|---|---|---|---|---|---|---|---|"
+        "| height | reachable | solved | within 1 % of the best start | worst excess "
+        "| jointly | mean error | worst error |\n|---|---|---|---|---|---|---|---|"
     )
     lines = [
-        f"| {height} | {row['reachable_heights']} | {row['solved_share']:.1%} | {row['within_1_percent_share']:.1%} "
+        f"| {height} | {row['reachable_heights']} | {row['solved_share']:.1%} "
+        f"| {row['within_1_percent_share']:.1%} "
         f"| {row['worst_excess_over_best']:.2%} | {row['joint_heights']} | {row['mean_error_to_joint']:.2%} "
         f"| {row['worst_error_to_joint']:.2%} |"
         for height, row in figures.items()

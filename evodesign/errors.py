@@ -23,6 +23,7 @@ __all__ = [
     "ResumeMismatch",
     "RunError",
     "nearest_name",
+    "on_one_line",
 ]
 
 
@@ -46,10 +47,10 @@ class InputError(EvodesignError):
         self.wanted = wanted
         self.found = found
         place = f"{source}: {key}" if key else source
-        super().__init__(_on_one_line(f"{place}: wanted {wanted}, found {found}"))
+        super().__init__(on_one_line(f"{place}: wanted {wanted}, found {found}"))
 
 
-def _on_one_line(text: str) -> str:
+def on_one_line(text: str) -> str:
     """The text with line ends and other control characters as their escapes: names in files may hold them."""
     return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
 

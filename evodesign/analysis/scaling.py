@@ -1,8 +1,10 @@
 """Objectives made comparable: each as a share of its range over the designs that are compared.
 
-A minimised value f becomes (f - least) / (greatest - least): 0 is the best of the designs, 1 the worst. An
-objective in which all agree becomes 0. The corners are the ideal point and, for the designs of a front, the
-nadir point (Miettinen 1999, Section 2.4).
+A minimised value f becomes (f - least) / (greatest - least): 0 is the best of the designs, 1 the worst. The
+corners are the ideal point and, for the designs of a front, the nadir point (Miettinen 1999, Section 2.4).
+
+An objective in which all agree becomes 0. Designs agree when they differ by less than the inner solver's
+tolerance leaves open: without this, noise in the sixth figure would weigh as much as any real difference.
 """
 
 from __future__ import annotations
@@ -19,6 +21,9 @@ from evodesign.records import Evaluation, Objective
 
 __all__ = ["Matrix", "Scaled", "scaled"]
 
+NEGLIGIBLE = 1e-4
+"""Range, as a share of the largest value's size, below which an objective counts as equal."""
+
 Matrix = NDArray[np.floating[Any]]
 
 
@@ -30,7 +35,7 @@ class Scaled:
         designs: those that can be compared, in order of number.
         shares: one row per design, one column per objective, from 0 (best) to 1 (worst).
         least: best minimised value of each objective.
-        extent: range of each objective; zero where all agree.
+        extent: range of each objective; zero where all agree, or nearly.
     """
 
     designs: tuple[Evaluation, ...]
@@ -53,5 +58,6 @@ def scaled(objectives: Sequence[Objective], designs: Sequence[Evaluation]) -> Sc
         return Scaled((), points, none, none)
     least = points.min(axis=0)
     extent = np.ptp(points, axis=0)
-    shares = (points - least) / np.where(extent > 0.0, extent, 1.0)
+    extent[extent < NEGLIGIBLE * np.abs(points).max(axis=0)] = 0.0
+    shares = np.where(extent > 0.0, (points - least) / np.where(extent > 0.0, extent, 1.0), 0.0)
     return Scaled(tuple(evaluation for evaluation, _ in candidates), shares, least, extent)

@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.distance import cdist
 
 from evodesign.analysis.scaling import Matrix
 from evodesign.records import Evaluation
@@ -47,11 +46,11 @@ def spread_out(points: Matrix, count: int) -> list[int]:
         return list(range(len(points)))[: max(count, 0)]
     first, second = _furthest_pair(points)
     chosen = [first]
-    nearest = _distances(points, first)
+    nearest = _distances(points[[first]], points)[0]
     following = second
     while len(chosen) < count and nearest[following] > 0.0:
         chosen.append(following)
-        nearest = np.minimum(nearest, _distances(points, following))
+        nearest = np.minimum(nearest, _distances(points[[following]], points)[0])
         following = int(np.argmax(nearest))
     return chosen
 
@@ -60,13 +59,17 @@ def _furthest_pair(points: Matrix) -> tuple[int, int]:
     """The first of the pairs of rows that are furthest apart."""
     best, pair = -1.0, (0, 0)
     for start in range(0, len(points), ROWS_AT_ONCE):
-        block = cdist(points[start : start + ROWS_AT_ONCE], points)
+        block = _distances(points[start : start + ROWS_AT_ONCE], points)
         row, column = divmod(int(np.argmax(block)), len(points))
         if block[row, column] > best:
             best, pair = float(block[row, column]), (start + row, column)
     return pair
 
 
-def _distances(points: Matrix, row: int) -> Matrix:
-    distance: Matrix = cdist(points, points[row : row + 1])[:, 0]
-    return distance
+def _distances(some: Matrix, points: Matrix) -> Matrix:
+    """Euclidean distances, (some, points); exactly zero between equal points."""
+    squares = np.zeros((len(some), len(points)))
+    for coordinate, coordinates in zip(some.T, points.T, strict=True):
+        squares += (coordinate[:, None] - coordinates) ** 2
+    distances: Matrix = np.sqrt(squares)
+    return distances

@@ -15,6 +15,7 @@ __all__ = ["COMMANDS"]
 
 ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
+Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 SymmetryName = Annotated[
     str | None,
@@ -101,6 +102,63 @@ def front(
     show(run, Picking(knee, different, near, where or (), limit), Printing(json, csv, plot))
 
 
+def watch(
+    run: RunPath,
+    serve: Annotated[
+        bool, typer.Option("--serve", help="On a local page that refreshes itself, for this machine alone.")
+    ] = False,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0 for any free one.")] = 8765,
+    every: Annotated[float, typer.Option(min=0.1, help="Seconds between two looks.")] = 1.0,
+    once: Annotated[bool, typer.Option("--once", help="Show the present state and leave.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the present state as JSON and leave.")] = False,
+) -> None:
+    """Follow a running search; Ctrl-C leaves, and the search goes on."""
+    from evodesign.cli.watching import watch as follow
+
+    follow(run, every=every, serve=serve, port=port, once=once, json=json)
+
+
+def compare(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN RUN...", help="Directories of runs.")],
+    json: Json = False,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write a figure of the comparison (HTML).")
+    ] = None,
+) -> None:
+    """Several runs side by side: hypervolumes, rank tests over seeds, the best designs of all."""
+    from evodesign.cli.comparing import compare_runs
+
+    compare_runs(runs, json, plot)
+
+
+def show(
+    run: RunPath,
+    design: Design,
+    jobs: Jobs = CORES,
+    json: Json = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Also write figures of its torques and postures (SVG and PNG)."),
+    ] = None,
+) -> None:
+    """One design of a run: objectives, parameters, torques, contact forces."""
+    from evodesign.cli.showing import show_design
+
+    show_design(run, design, jobs, json, plot)
+
+
+def export(
+    run: RunPath,
+    design: Design,
+    to: Annotated[Path, typer.Option(metavar="DIR", help="A new or empty folder.")],
+    jobs: Jobs = CORES,
+) -> None:
+    """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
+    from evodesign.cli.exporting import export_run_design
+
+    export_run_design(run, design, to, jobs)
+
+
 def evaluate(
     problem: ProblemPath,
     design: Annotated[
@@ -150,4 +208,4 @@ def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
     show_seeds(problem, jobs, json)
 
 
-COMMANDS = (search, resume, front, report, evaluate, check, seeds)
+COMMANDS = (search, resume, front, report, show, export, watch, compare, evaluate, check, seeds)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.cli.height_table import heights_table
 from evodesign.cli.output import figure
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
@@ -26,18 +27,4 @@ def assessment_tables(
         summary.add_row(escape(heading(objective)), figure(value))
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
-    heights = Table(title="the load at each height", title_justify="left")
-    for column in ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual"):
-        heights.add_column(escape(column), justify="right")
-    heights.add_column("status", overflow="fold")
-    for outcome in assessment.heights:
-        status = outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
-        heights.add_row(
-            figure(outcome.height_m),
-            figure(outcome.robot_torque_norm),
-            figure(outcome.human_torque_norm),
-            str(outcome.iterations),
-            "-" if outcome.residual is None else f"{outcome.residual:.1e}",
-            escape(status),
-        )
-    return summary, heights
+    return summary, heights_table(assessment, "the load at each height")

@@ -23,7 +23,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
-from evodesign.runlog.directory import refuse_run, segments
+from evodesign.runlog.directory import name_in_path, refuse_run, segments
 from evodesign.search.registry import make_search
 
 __all__ = ["Wishes", "go_on", "start"]
@@ -52,7 +52,8 @@ def start(path: Path, run: Path | None, wishes: Wishes, jobs: int, pool: str, js
     )
     budget = table.evaluations if wishes.evaluations is None else wishes.evaluations
     header = header_of(problem, settings, budget)
-    directory = Path("runs") / f"{problem.name}-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
+    own = Path("runs") / f"{name_in_path(problem.name)}-{datetime.now():%Y%m%d-%H%M%S}"
+    directory = own if run is None else run
     refuse_run(directory)  # before anything takes time; the search's settings too
     make_search(settings)
     _stop_on_terminate()

@@ -54,7 +54,10 @@ class Evaluator:
 
     def assess(self, genome: Genome) -> Assessed:
         """What a genome is worth, with its postures."""
-        values = self.problem.space.values(genome)
+        return self.assess_values(self.problem.space.values(genome))
+
+    def assess_values(self, values: Sequence[float]) -> Assessed:
+        """What a design given as one number per parameter is worth, with its postures."""
         result = self.solve(values)
         heights = tuple(_detail(height) for height in result.heights if height.solved)
         return Assessed(assessment=self.assessment(values, result), heights=heights)

@@ -14,10 +14,26 @@ from pathlib import Path
 
 from evodesign.errors import RunError
 
-__all__ = ["locked", "make_directory", "refuse_run", "run_segments", "segment_path", "segments"]
+__all__ = [
+    "locked",
+    "make_directory",
+    "name_in_path",
+    "refuse_run",
+    "run_segments",
+    "segment_path",
+    "segments",
+]
 
 LOCK = "lock"
 SEGMENT = re.compile(r"(\d{3,})\.mcap")
+
+LONGEST_NAME = 50
+"""Letters of a name that go into a path, whose parts may have 255 bytes."""
+
+
+def name_in_path(name: str) -> str:
+    """A name as part of a file name: what is not a letter, digit, `-`, `_` or inner dot becomes `_`."""
+    return re.sub(r"^\.|[^\w.-]", "_", name)[:LONGEST_NAME]
 
 
 def segment_path(directory: Path, number: int) -> Path:

@@ -3,14 +3,14 @@
 Velocities are pinocchio's: linear and angular velocity of the root link in the root link's frame [m/s,
 rad/s], then the speeds of the moving joints, here in the order that the caller asks for.
 
-Nothing of the CasADi graph is used: trees go through the URDF writer into pinocchio.
+Nothing of the CasADi graph is used: pinocchio is given placements, axes and inertias, and does the rest.
 
 Source: Sartore et al. 2022, Eq. 5; pinocchio `crba`, `nonLinearEffects`, `getFrameJacobian`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,9 +19,9 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Placement
 from evodesign.statics.balance import GRAVITY
-from evodesign.tree.model import Tree
-from evodesign.tree.urdf_write import urdf_text
+from evodesign.tree.model import Joint, JointKind, Tree
 
 __all__ = ["ROOT", "Configuration", "FloatingBody", "Instant"]
 
@@ -70,11 +70,22 @@ class FloatingBody:
     @classmethod
     def of_tree(cls, tree: Tree, joints: Sequence[str], world_from_given: Array) -> FloatingBody:
         """A tree of numbers, floating; joints that are not named are welded at zero."""
-        whole = pin.buildModelFromXML(urdf_text(tree), pin.JointModelFreeFlyer())
-        welded = [whole.getJointId(name) for name in tree.actuated if name not in joints]
-        return cls._of_model(
-            pin.buildReducedModel(whole, welded, pin.neutral(whole)), joints, world_from_given
-        )
+        model = pin.Model()
+        root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
+        carriers = {tree.root: (root, pin.SE3.Identity())}
+        for joint in _depth_first(tree, tree.root):
+            carrier, carrier_from_parent = carriers[joint.parent]
+            carrier_from_child = carrier_from_parent * _placement(joint.parent_from_child)
+            if joint.name in joints:
+                moving = model.addJoint(carrier, _joint_model(joint), carrier_from_child, joint.name)
+                carriers[joint.child] = (moving, pin.SE3.Identity())
+            else:
+                carriers[joint.child] = (carrier, carrier_from_child)
+        for link in tree.links:
+            carrier, carrier_from_link = carriers[link.name]
+            model.appendBodyToJoint(carrier, _body(link.inertia), carrier_from_link)
+            model.addFrame(pin.Frame(link.name, carrier, carrier_from_link, pin.FrameType.BODY))
+        return cls._of_model(model, joints, world_from_given)
 
     @classmethod
     def of_solid(cls, inertia: Inertia, points: Mapping[str, Array]) -> FloatingBody:
@@ -86,8 +97,7 @@ class FloatingBody:
         """
         model = pin.Model()
         joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
-        body = pin.Inertia(inertia.mass, np.array(inertia.center), np.array(inertia.about_center))
-        model.appendBodyToJoint(joint, body, pin.SE3.Identity())
+        model.appendBodyToJoint(joint, _body(inertia), pin.SE3.Identity())
         for name, point in points.items():
             model.addFrame(pin.Frame(name, joint, pin.SE3(np.eye(3), point), pin.FrameType.BODY))
         return cls._of_model(model, (), np.eye(3))
@@ -125,11 +135,29 @@ class FloatingBody:
         q[3:7] = pin.Quaternion(world_from_base).coeffs()
         for name in self.joints:
             joint, position = self.model.joints[self.model.getJointId(name)], configuration.joints[name]
-            if joint.nq == 2:  # pinocchio's continuous joints hold cosine and sine
-                q[joint.idx_q : joint.idx_q + 2] = np.cos(position), np.sin(position)
-            else:
-                q[joint.idx_q] = position
+            q[joint.idx_q] = position
         return q
+
+
+def _depth_first(tree: Tree, link: str) -> Iterator[Joint]:
+    """The joints below a link in the order that pinocchio relies on: every subtree without a gap."""
+    for joint in tree.child_joints[link]:
+        yield joint
+        yield from _depth_first(tree, joint.child)
+
+
+def _placement(placement: Placement) -> Any:
+    return pin.SE3(np.array(placement.rotation), np.array(placement.translation))
+
+
+def _body(inertia: Inertia) -> Any:
+    return pin.Inertia(float(inertia.mass), np.array(inertia.center), np.array(inertia.about_center))
+
+
+def _joint_model(joint: Joint) -> Any:
+    axis = np.array(joint.axis)
+    prismatic = joint.kind is JointKind.PRISMATIC
+    return pin.JointModelPrismaticUnaligned(axis) if prismatic else pin.JointModelRevoluteUnaligned(axis)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

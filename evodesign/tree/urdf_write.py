@@ -15,14 +15,14 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable
 
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, Scalar, rpy_from_matrix
+from evodesign.body.placement import Placement, rpy_from_matrix
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.model import Joint, JointKind, Link, Tree
+from evodesign.tree.xml_numbers import numbers_text
 
 __all__ = ["UNLIMITED", "urdf_text"]
 
@@ -59,14 +59,14 @@ def _add_link(robot: etree._Element, link: Link) -> None:
 
 
 def _add_inertial(link: etree._Element, inertia: Inertia) -> None:
-    mass = _text([inertia.mass])
+    mass = numbers_text([inertia.mass])
     if float(mass) == 0.0:
         return
     element = etree.SubElement(link, "inertial")
     _add_origin(element, Placement(translation=inertia.center))
     etree.SubElement(element, "mass", value=mass)
     upper = {f"i{'xyz'[i]}{'xyz'[j]}": inertia.about_center[i][j] for i in range(3) for j in range(i, 3)}
-    etree.SubElement(element, "inertia", {name: _text([moment]) for name, moment in upper.items()})
+    etree.SubElement(element, "inertia", {name: numbers_text([moment]) for name, moment in upper.items()})
 
 
 def _add_shape(link: etree._Element, role: str, shape: Shape, link_from_shape: Placement) -> None:
@@ -75,11 +75,13 @@ def _add_shape(link: etree._Element, role: str, shape: Shape, link_from_shape: P
     geometry = etree.SubElement(element, "geometry")
     match shape:
         case Sphere(radius):
-            etree.SubElement(geometry, "sphere", radius=_text([radius]))
+            etree.SubElement(geometry, "sphere", radius=numbers_text([radius]))
         case Cylinder(radius, length):
-            etree.SubElement(geometry, "cylinder", radius=_text([radius]), length=_text([length]))
+            etree.SubElement(
+                geometry, "cylinder", radius=numbers_text([radius]), length=numbers_text([length])
+            )
         case Box():
-            etree.SubElement(geometry, "box", size=_text(shape.sides))
+            etree.SubElement(geometry, "box", size=numbers_text(shape.sides))
 
 
 def _add_joint(robot: etree._Element, joint: Joint) -> None:
@@ -89,30 +91,19 @@ def _add_joint(robot: etree._Element, joint: Joint) -> None:
     etree.SubElement(element, "child", link=joint.child)
     if joint.kind is JointKind.FIXED:
         return
-    etree.SubElement(element, "axis", xyz=_text(joint.axis))
+    etree.SubElement(element, "axis", xyz=numbers_text(joint.axis))
     limits = {"effort": joint.effort, "velocity": joint.velocity}
     if joint.kind is not JointKind.CONTINUOUS:
         limits = {"lower": joint.lower, "upper": joint.upper} | limits
-    etree.SubElement(element, "limit", {name: _text([_bounded(limit)]) for name, limit in limits.items()})
+    etree.SubElement(
+        element, "limit", {name: numbers_text([_bounded(limit)]) for name, limit in limits.items()}
+    )
 
 
 def _add_origin(element: etree._Element, placement: Placement) -> None:
     rpy = rpy_from_matrix(placement.rotation)
-    etree.SubElement(element, "origin", xyz=_text(placement.translation), rpy=_text(rpy))
+    etree.SubElement(element, "origin", xyz=numbers_text(placement.translation), rpy=numbers_text(rpy))
 
 
 def _bounded(limit: float) -> float:
     return math.copysign(UNLIMITED, limit) if math.isinf(limit) else limit
-
-
-def _text(numbers: Iterable[Scalar]) -> str:
-    return " ".join(_number(number) for number in numbers)
-
-
-def _number(number: Scalar) -> str:
-    if not isinstance(number, int | float):
-        raise TypeError(f"a URDF holds numbers, not {type(number).__name__}: give the tree numbers first")
-    if not math.isfinite(number):
-        raise ValueError(f"a URDF holds finite numbers, not {number}")
-    without_negative_zero = float(number) + 0.0
-    return repr(without_negative_zero)

@@ -80,3 +80,9 @@ def test_an_objective_in_which_all_agree_does_not_count():
     objectives = (TORQUE, MASS, Objective(name="peak", sense=Sense.MINIMISE, unit="1"))
     points = [(0.0, 10.0, 5.0), (1.0, 1.0, 5.0), (10.0, 0.0, 5.0)]
     assert numbers(knees(objectives, designs_at(objectives, points), 1.0)) == [1]
+
+
+def test_noise_in_an_objective_does_not_count():
+    objectives = (TORQUE, MASS, Objective(name="peak", sense=Sense.MINIMISE, unit="1"))
+    points = [(0.0, 10.0, 6.72), (1.0, 1.0, 6.720001), (10.0, 0.0, 6.719999), (9.0, 9.0, 6.719998)]
+    assert numbers(knees(objectives, designs_at(objectives, points), 1.0)) == [1]

@@ -323,7 +323,7 @@ def test_numbers_of_numpy_are_written_like_any_other():
 
 def test_an_expression_is_not_written():
     tree = pendulum(parent_from_child=Placement(translation=(0.0, 0.0, casadi.SX.sym("z"))))
-    with pytest.raises(TypeError, match="a URDF holds numbers, not SX"):
+    with pytest.raises(TypeError, match="a robot file holds numbers, not SX"):
         urdf_text(tree)
 
 

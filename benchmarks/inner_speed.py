@@ -1,0 +1,165 @@
+"""What one design costs.
+
+Medians per solve on one core, with compiled functions and on CasADi's virtual machine: reach, the robot
+against the person's value function, both agents symmetrically, and whole; the first two from the problem's
+seeds, the others from their fixed starts. Then whole evaluations: designs per second and core, the share of
+the time spent outside IPOPT, and two workers against one. Processor time is given beside wall time, since a
+machine may be shared. Results go to benchmarks/results/inner_speed.json and are printed as Markdown tables.
+
+    python benchmarks/inner_speed.py [--designs 40] [--evaluations 96]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+from unittest import mock
+
+import numpy as np
+from inner_problem import HERE, Design, known_at, problem_at, random_designs
+
+from evodesign.pool.joblib_pool import JoblibPool
+from evodesign.posture.portfolio import Landscape
+from evodesign.posture.posture import PostureProblem, Symmetry
+from evodesign.posture.preparation import Preparation
+from evodesign.posture.program import RawSolution, Solver
+from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.start import Start
+from evodesign.problem.build import Problem
+from evodesign.problem.evaluate import AssessmentFactory, Evaluator
+from evodesign.records import Status
+
+DEFAULT_HEIGHTS = (0.8, 1.0, 1.2)
+
+
+def main() -> None:
+    """Measure, write and print."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--designs", type=int, default=40)
+    parser.add_argument("--evaluations", type=int, default=96)
+    options = parser.parse_args()
+    problem = problem_at(DEFAULT_HEIGHTS)
+    known = known_at(problem, 2)
+    designs = random_designs(problem, options.evaluations)
+    solves = [
+        _per_solve(name, compiled, landscape, starts, designs[: options.designs])
+        for compiled in (True, False)
+        for name, landscape, starts in _landscapes(problem, known, compiled)
+    ]
+    whole = _evaluations(problem, known, designs)
+    workers = _workers(problem, known, designs)
+    target = HERE / "results" / "inner_speed.json"
+    result = {**vars(options), "solves": solves, "evaluations": whole, "workers": workers}
+    target.write_text(json.dumps(result, indent=2) + "\n")
+    print(_table(solves))
+    print()
+    print(_table([{**whole, **workers}]))
+
+
+def _landscapes(
+    problem: Problem, known: Preparation, compiled: bool
+) -> Iterator[tuple[str, Landscape, Sequence[Start]]]:
+    """The programs with their starts."""
+    options = replace(problem.options, compiled=compiled)
+    scene, space, weights = problem.scene, problem.space, problem.weights
+    reach = ReachProblem(scene, space, options, symmetric=True)
+    yield "highest load", reach.landscape(HIGHEST), known.highest.seeds
+    yield "lowest load", reach.landscape(LOWEST), known.lowest.seeds
+    split = PostureProblem(scene, space, weights, options, Symmetry.ON, known)
+    yield "robot against V(X), 1.0 m", split.landscape(1.0), known.seeds(1.0)
+    for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
+        joint = PostureProblem(scene, space, weights, options, symmetry).landscape(1.0)
+        yield name, joint, joint.starts
+
+
+def _per_solve(
+    name: str, compiled: bool, landscape: Landscape, starts: Sequence[Start], designs: Sequence[Design]
+) -> dict[str, Any]:
+    """Medians over all designs and starts."""
+    rows = []
+    for design in designs:
+        for start in starts:
+            wall, processor = time.perf_counter(), time.process_time()
+            end = landscape.solve(design, start)
+            spent = time.perf_counter() - wall, time.process_time() - processor
+            rows.append((*spent, end.iterations, end.status is Status.SOLVED))
+    wall_s, processor_s, iterations, solved = np.array(rows, float).T
+    return {
+        "program": name,
+        "functions": "compiled" if compiled else "virtual machine",
+        "wall_ms": 1e3 * float(np.median(wall_s)),
+        "processor_ms": 1e3 * float(np.median(processor_s)),
+        "iterations": float(np.median(iterations)),
+        "solved_share": float(solved.mean()),
+    }
+
+
+def _evaluations(problem: Problem, known: Preparation, designs: Sequence[Design]) -> dict[str, float]:
+    """Whole evaluations in this process."""
+    evaluator = Evaluator(problem, known)
+    genomes = [problem.space.genome(design) for design in designs]
+    evaluator.assess(genomes[0])
+    inside = {"wall": 0.0, "processor": 0.0}
+    with _timed_solves(inside):
+        wall, processor = time.perf_counter(), time.process_time()
+        for genome in genomes:
+            evaluator.assess(genome)
+        spent = {"wall": time.perf_counter() - wall, "processor": time.process_time() - processor}
+    return {
+        "designs": len(genomes),
+        "designs_per_second_wall": len(genomes) / spent["wall"],
+        "designs_per_second_processor": len(genomes) / spent["processor"],
+        "outside_ipopt_wall": 1.0 - inside["wall"] / spent["wall"],
+        "outside_ipopt_processor": 1.0 - inside["processor"] / spent["processor"],
+    }
+
+
+@contextmanager
+def _timed_solves(inside: dict[str, float]) -> Iterator[None]:
+    """Add the time of every solve to `inside`."""
+    solve = Solver.solve
+
+    def timed(self: Solver, parameters: Sequence[float], start: Mapping[str, Any]) -> RawSolution:
+        wall, processor = time.perf_counter(), time.process_time()
+        end = solve(self, parameters, start)
+        inside["wall"] += time.perf_counter() - wall
+        inside["processor"] += time.process_time() - processor
+        return end
+
+    with mock.patch.object(Solver, "solve", timed):
+        yield
+
+
+def _workers(problem: Problem, known: Preparation, designs: Sequence[Design]) -> dict[str, float]:
+    """Throughput of two workers over that of one, and what lies between workers' work and the wall."""
+    genomes = [problem.space.genome(design) for design in designs]
+    rates, busy = {}, {}
+    for jobs in (1, 2):
+        factory = AssessmentFactory(f"benchmark {jobs}", problem.source, known)
+        with JoblibPool(jobs) as pool:
+            list(pool.run(factory, genomes[: 2 * jobs]))  # workers start and build
+            began = time.perf_counter()
+            spent = sum(finished.seconds for finished in pool.run(factory, genomes))
+            wall = time.perf_counter() - began
+        rates[jobs], busy[jobs] = len(genomes) / wall, spent / (jobs * wall)
+    return {"two_workers_over_one": rates[2] / rates[1], "busy_share_of_two_workers": busy[2]}
+
+
+def _table(rows: Sequence[Mapping[str, Any]]) -> str:
+    names = list(rows[0])
+    lines = [f"| {' | '.join(names)} |", "|" + "---|" * len(names)]
+    for row in rows:
+        cells = [f"{row[name]:.3g}" if isinstance(row[name], float) else str(row[name]) for name in names]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

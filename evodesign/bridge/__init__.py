@@ -1,0 +1,1 @@
+"""evodesign from Python: runs as tables and designs, problems for other optimisers."""

@@ -1,0 +1,151 @@
+"""One design of a run as a card for people: what it is worth, what it is made of, how it stands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from evodesign.cli.height_table import heights_table
+from evodesign.cli.opening import OpenedDesign
+from evodesign.cli.output import figure
+from evodesign.cli.tables import heading
+from evodesign.errors import on_one_line
+from evodesign.records import Assessment, HeightDetail, Parameter
+from evodesign.report.strain import most_strained
+
+__all__ = ["card"]
+
+JOINTS_SHOWN = 6
+"""Rows of joints per agent; the others bear less."""
+
+BAR = 16
+"""Columns of a parameter's bar."""
+
+
+def card(opened: OpenedDesign) -> Group:
+    """The card."""
+    assessment = opened.evaluation.assessment
+    sections: dict[str, Table] = {
+        "objectives": _objectives(opened),
+        "parameters": _parameters(opened),
+        f"the load at each height (reach: {_reach(assessment)})": heights_table(assessment, ""),
+    }
+    if opened.heights:
+        sections["largest joint torques [N m]"] = _torques(opened.heights)
+        sections["contact forces [N]"] = _contacts(opened.heights)
+    parts: list[RenderableType] = [_title(opened)]
+    for title, table in sections.items():
+        parts += [Text(f"\n{title}", style="italic"), table]
+    return Group(*parts)
+
+
+def _reach(assessment: Assessment) -> str:
+    reach = assessment.reach
+    return f"{figure(reach.lowest_m)} to {figure(reach.highest_m)} m" if reach else "unknown"
+
+
+def _title(opened: OpenedDesign) -> Text:
+    evaluation = opened.evaluation
+    standing = "on the front" if opened.on_front else "not on the front"
+    outcome = f"feasible, {standing}" if evaluation.feasible else "not feasible"
+    title = Text()
+    title.append(f"{on_one_line(opened.run.header.problem_name)}: design {evaluation.number}", style="bold")
+    title.append(f"\ngeneration {evaluation.generation}, {outcome}")
+    if not evaluation.feasible:
+        title.append(f": {on_one_line(evaluation.assessment.reason)}")
+    return title
+
+
+def _objectives(opened: OpenedDesign) -> Table:
+    table = _table("objective")
+    table.add_column("value", justify="right")
+    table.add_column("best of the run", justify="right")
+    assessment = opened.evaluation.assessment
+    for objective in opened.run.header.objectives:
+        best = max if objective.sense == "maximise" else min
+        found = [e.assessment.objectives.get(objective.name) for e in opened.run.evaluations if e.feasible]
+        values = [value for value in found if value is not None]
+        own = assessment.objectives.get(objective.name)
+        table.add_row(
+            escape(on_one_line(heading(objective))), figure(own), figure(best(values, default=None))
+        )
+    table.add_row(escape("violation [m]"), figure(assessment.violation), "")
+    return table
+
+
+def _parameters(opened: OpenedDesign) -> Table:
+    table = _table("parameter")
+    for column in ("value", "unit", "lower", "within its bounds", "upper"):
+        table.add_column(column, justify="right" if column in ("value", "lower") else "left")
+    for parameter in opened.run.header.parameters:
+        value = opened.evaluation.assessment.design[parameter.name]
+        unit = "" if parameter.unit == "1" else parameter.unit
+        bar = _bar(parameter, value)
+        ends = (f"{parameter.lower:g}", f"{parameter.upper:g}")
+        table.add_row(
+            escape(on_one_line(parameter.name)),
+            figure(value),
+            escape(on_one_line(unit)),
+            ends[0],
+            bar,
+            ends[1],
+        )
+    return table
+
+
+def _bar(parameter: Parameter, value: float) -> str:
+    share = (value - parameter.lower) / (parameter.upper - parameter.lower)
+    place = round(min(max(share, 0.0), 1.0) * (BAR - 1))
+    return "─" * place + "●" + "─" * (BAR - 1 - place)
+
+
+def _torques(heights: Sequence[HeightDetail]) -> Table:
+    table = _height_table(("agent", "joint"), heights)
+    for agent in heights[0].agents:
+        by_height = [detail.agents[agent].torques_n_m for detail in heights]
+        shown = most_strained(by_height)[:JOINTS_SHOWN]
+        for joint in shown:
+            row = [figure(torques.get(joint)) for torques in by_height]
+            table.add_row(agent, escape(on_one_line(joint)), *row, end_section=joint == shown[-1])
+    return table
+
+
+def _contacts(heights: Sequence[HeightDetail]) -> Table:
+    table = _height_table(("agent", "contact"), heights)
+    for agent in heights[0].agents:
+        rows = list(_forces(heights, agent))
+        for position, (contact, forces) in enumerate(rows):
+            last = position == len(rows) - 1
+            table.add_row(agent, escape(contact), *map(figure, forces), end_section=last)
+    return table
+
+
+def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, list[float]]]:
+    """Size of the force on each hand and foot, by height."""
+    postures = [detail.agents[agent] for detail in heights]
+    for part, wrenches in (
+        ("hand", [posture.hand_wrenches for posture in postures]),
+        ("foot", [posture.foot_wrenches for posture in postures]),
+    ):
+        for side in wrenches[0]:
+            yield f"{side} {part}", [math.hypot(*wrench[side][:3]) for wrench in wrenches]
+
+
+def _height_table(columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
+    table = _table(*columns)
+    for detail in heights:
+        table.add_column(f"{detail.height_m:g} m", justify="right")
+    return table
+
+
+def _table(*columns: str) -> Table:
+    """A table whose first columns hold names."""
+    table = Table()
+    for column in columns:
+        table.add_column(column, overflow="fold")
+    return table

@@ -1,0 +1,192 @@
+"""A comparison of runs as tables for people and as JSON for programs."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+from typing import Any
+
+from rich.table import Table
+
+from evodesign.analysis.attainment import AttainmentSurface
+from evodesign.analysis.best_designs import best_designs
+from evodesign.analysis.comparison import Compared, Comparison
+from evodesign.cli.output import figure, shown
+from evodesign.cli.tables import heading
+
+__all__ = ["comparison_json", "comparison_tables", "untested"]
+
+
+def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
+    """Searches, runs, tests and best designs; those that would be empty are left out."""
+    tables = [_searches(comparison), _runs(comparison)]
+    if any(test.p is not None for test in comparison.tests):
+        tables.append(_tests(comparison))
+    if any(run.front for run in comparison.runs):
+        tables.append(_best(comparison))
+    return tuple(tables)
+
+
+def untested(comparison: Comparison) -> list[str]:
+    """A sentence for each reason for which tests were not made."""
+    reasons: dict[str, list[str]] = {}
+    for test in comparison.tests:
+        if test.p is None:
+            reasons.setdefault(test.reason, []).append(" / ".join(test.samples))
+    return [f"not tested: {', '.join(samples)}: {reason}" for reason, samples in reasons.items()]
+
+
+def comparison_json(comparison: Comparison) -> dict[str, Any]:
+    """A comparison as a JSON object; its shape is a promise."""
+    return {
+        "objectives": [
+            {"name": each.name, "unit": each.unit, "sense": each.sense} for each in comparison.objectives
+        ],
+        "reference": comparison.reference,
+        "evaluations": comparison.evaluations,
+        "notes": list(comparison.notes),
+        "searches": [
+            {"name": name, "runs": len(members), "hypervolume": _summary(members)}
+            for name, members in comparison.searches.items()
+        ],
+        "runs": [_run(each) for each in comparison.runs],
+        "tests": [
+            {
+                "samples": list(test.samples),
+                "test": test.name,
+                "p": test.p,
+                "effect": test.effect,
+                "finding": test.finding,
+                "reason": test.reason,
+            }
+            for test in comparison.tests
+        ],
+        "attainment": [
+            {
+                "search": each.search,
+                "objectives": [objective.name for objective in each.objectives],
+                "surfaces": [_surface(surface) for surface in each.surfaces],
+            }
+            for each in comparison.attainments
+        ],
+        "best_designs": [
+            {
+                "reason": each.reason,
+                "run": str(each.run.run.directory),
+                "id": each.evaluation.number,
+                "objectives": each.evaluation.assessment.objectives,
+                "parameters": each.evaluation.assessment.design,
+            }
+            for each in best_designs(comparison)
+        ],
+    }
+
+
+def _run(each: Compared) -> dict[str, Any]:
+    header = each.run.header
+    curve = each.curve
+    return {
+        "run": str(each.run.directory),
+        "problem": header.problem_name,
+        "search": each.search,
+        "seed": header.search.seed,
+        "evaluations": len(each.run.evaluations),
+        "front": len(each.front),
+        "hypervolume": each.hypervolume,
+        "share": each.share,
+        "best": each.best,
+        "curve": None
+        if curve is None
+        else {
+            "evaluations": list(curve.evaluations),
+            "hypervolume": list(curve.hypervolume),
+            "best": {name: list(values) for name, values in curve.best.items()},
+        },
+    }
+
+
+def _surface(surface: AttainmentSurface) -> dict[str, Any]:
+    return {"share": surface.share, "corners": [list(corner) for corner in surface.corners]}
+
+
+def _summary(members: Sequence[Compared]) -> dict[str, float] | None:
+    """Median, least and greatest hypervolume of a search; None without any."""
+    volumes = [each.hypervolume for each in members if each.hypervolume is not None]
+    if not volumes:
+        return None
+    return {"median": statistics.median(volumes), "least": min(volumes), "greatest": max(volumes)}
+
+
+def _searches(comparison: Comparison) -> Table:
+    table = Table(title="Searches", title_justify="left")
+    table.add_column("search", overflow="fold")
+    for name in ("runs", "hypervolume, median", "least", "greatest", "median share of all"):
+        table.add_column(name, justify="right", overflow="fold")
+    for name, members in comparison.searches.items():
+        summary = _summary(members) or {}
+        shares = [each.share for each in members if each.share is not None]
+        table.add_row(
+            shown(name),
+            str(len(members)),
+            *(figure(summary.get(key)) for key in ("median", "least", "greatest")),
+            f"{statistics.median(shares):.1%}" if shares else "-",
+        )
+    return table
+
+
+def _runs(comparison: Comparison) -> Table:
+    table = Table(title="Runs", title_justify="left")
+    table.add_column("run", overflow="fold")
+    table.add_column("search", overflow="fold")
+    for name in ("seed", "front", "hypervolume"):
+        table.add_column(name, justify="right", overflow="fold")
+    for objective in comparison.objectives:
+        table.add_column(shown(f"best {heading(objective)}"), justify="right", overflow="fold")
+    for each in comparison.runs:
+        table.add_row(
+            shown(each.run.directory.name),
+            shown(each.search),
+            str(each.run.header.search.seed),
+            str(len(each.front)),
+            figure(each.hypervolume),
+            *(figure(each.best.get(objective.name)) for objective in comparison.objectives),
+        )
+    return table
+
+
+def _tests(comparison: Comparison) -> Table:
+    table = Table(title="Rank tests of the hypervolumes", title_justify="left")
+    for name in ("between", "test"):
+        table.add_column(name, overflow="fold")
+    for name in ("p", "first better"):
+        table.add_column(name, justify="right", overflow="fold")
+    table.add_column("finding at 5 %", overflow="fold")
+    for test in comparison.tests:
+        if test.p is None:
+            continue
+        table.add_row(
+            shown(" / ".join(test.samples)),
+            test.name,
+            figure(test.p),
+            "-" if test.effect is None else f"{test.effect:.0%}",
+            shown(test.finding),
+        )
+    return table
+
+
+def _best(comparison: Comparison) -> Table:
+    table = Table(title="Best designs of all runs", title_justify="left")
+    for name in ("", "run"):
+        table.add_column(name, overflow="fold")
+    table.add_column("design", justify="right", overflow="fold")
+    for objective in comparison.objectives:
+        table.add_column(shown(heading(objective)), justify="right", overflow="fold")
+    for each in best_designs(comparison):
+        values = each.evaluation.assessment.objectives
+        table.add_row(
+            shown(each.reason),
+            shown(each.run.run.directory.name),
+            str(each.evaluation.number),
+            *(figure(values[objective.name]) for objective in comparison.objectives),
+        )
+    return table

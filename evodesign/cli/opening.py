@@ -1,0 +1,99 @@
+"""Opening one design of a run: its evaluation and postures, and its robot where that is needed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from evodesign.analysis.front import front
+from evodesign.cli.output import show_notes
+from evodesign.errors import InputError, RunError
+from evodesign.records import Evaluation, HeightDetail, RunHeader
+from evodesign.report.stage import Cast
+from evodesign.runlog.run import Run, read_run
+
+if TYPE_CHECKING:
+    from evodesign.problem.build import Problem
+
+__all__ = ["OpenedDesign", "RebuiltProblem", "cast_of", "open_design"]
+
+
+class RebuiltProblem:
+    """The problem of a run, built from the header's text when it is first asked for, and once."""
+
+    def __init__(self, header: RunHeader) -> None:
+        self._header = header
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem."""
+        from evodesign.problem.build import build_problem  # CasADi takes its time to load
+
+        return build_problem(self._header.problem)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedDesign:
+    """One design of a run.
+
+    Args:
+        run: that holds it.
+        evaluation: as logged.
+        heights: its postures, from the log or solved anew.
+        on_front: whether no design of the run beats it.
+        rebuilt: the run's problem.
+    """
+
+    run: Run
+    evaluation: Evaluation
+    heights: tuple[HeightDetail, ...]
+    on_front: bool
+    rebuilt: RebuiltProblem
+
+
+def open_design(directory: Path, number: int, jobs: int) -> OpenedDesign:
+    """A design of a run by the number of its evaluation; one without logged postures is solved anew.
+
+    Args:
+        directory: of the run.
+        number: of the evaluation.
+        jobs: that may work out what a solve needs first.
+    Raises:
+        RunError: the run cannot be read, or holds no evaluation yet.
+        InputError: it holds no evaluation of that number.
+    """
+    run = read_run(directory)
+    show_notes(run.notes)
+    if not run.evaluations:
+        raise RunError(f"{directory}: holds no evaluation yet, so there is no design to open")
+    by_number = {evaluation.number: evaluation for evaluation in run.evaluations}
+    if number not in by_number:
+        wanted = f"the number of an evaluation, {min(by_number)} to {max(by_number)}"
+        raise InputError("DESIGN", "", wanted, f"{number}")
+    evaluation = by_number[number]
+    best = front(run.header.objectives, run.evaluations)
+    rebuilt = RebuiltProblem(run.header)
+    return OpenedDesign(
+        run, evaluation, _heights(run, evaluation, rebuilt, jobs), evaluation in best, rebuilt
+    )
+
+
+def _heights(
+    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int
+) -> tuple[HeightDetail, ...]:
+    logged = {detail.evaluation: detail for detail in run.details}
+    if evaluation.number in logged:
+        return logged[evaluation.number].heights
+    from evodesign.cli.ready import evaluator_of  # CasADi takes its time to load
+
+    show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
+    return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
+
+
+def cast_of(opened: OpenedDesign) -> Cast:
+    """Robot of the design, person and load, built from the problem in the run's header."""
+    problem = opened.rebuilt.problem
+    values = problem.space.values(opened.evaluation.genome)
+    return Cast.of(problem.scene, problem.space.resized(problem.scene.robot.tree, values))

@@ -1,0 +1,60 @@
+"""`show`: one design of a run as a card, as JSON, and as figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from evodesign.cli.card import card
+from evodesign.cli.opening import OpenedDesign, cast_of, open_design
+from evodesign.cli.output import console, print_json, show_notes
+from evodesign.errors import InputError
+from evodesign.report.export.design import design_json
+
+__all__ = ["show_design"]
+
+
+def show_design(directory: Path, number: int, jobs: int, json: bool, plot: Path | None) -> None:
+    """Print one design; write its figures if asked."""
+    if plot is not None:
+        _make(plot)
+    opened = open_design(directory, number, jobs)
+    if plot is not None:
+        _write_figures(opened, plot)
+    if json:
+        told = design_json(opened.run.header, opened.evaluation, opened.heights, on_front=opened.on_front)
+        print_json({"run": str(directory), **told})
+        return
+    console().print(card(opened))
+
+
+def _make(directory: Path) -> None:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        found = f"'{directory}' ({error.strerror})"
+        raise InputError("--plot", "", "a folder that can be written", found) from error
+
+
+def _write_figures(opened: OpenedDesign, directory: Path) -> None:
+    from evodesign.report.figures.joint_torques import joint_torques  # matplotlib takes its time to load
+    from evodesign.report.figures.paint import write_figure
+    from evodesign.report.figures.posture_figure import posture_figure
+    from evodesign.report.figures.torque_boxes import torque_boxes
+    from evodesign.report.stage import stage_of
+
+    name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
+    cast = cast_of(opened)
+    torques = {
+        agent: {detail.height_m: detail.agents[agent].torques_n_m for detail in opened.heights}
+        for agent in cast.trees
+    }
+    boxes = {agent: {h: [*by.values()] for h, by in heights.items()} for agent, heights in torques.items()}
+    stages = [stage_of(cast, detail) for detail in opened.heights]
+    figures = {
+        "torques": torque_boxes(boxes, f"{name}: joint torques"),
+        "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint"),
+        "postures": posture_figure(stages, f"{name}: postures"),
+    }
+    for stem, figure in figures.items():
+        written = write_figure(figure, directory, stem)
+        show_notes(f"written: {path}" for path in written)

@@ -1,0 +1,55 @@
+"""What is exported: one evaluation of a run with its robot and postures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from evodesign.records import Evaluation, HeightDetail, RunHeader
+from evodesign.report.stage import Cast
+
+__all__ = ["ExportedDesign", "design_json"]
+
+
+@dataclass(frozen=True, slots=True)
+class ExportedDesign:
+    """A design with everything that its files tell.
+
+    Args:
+        run: name of the run, for people.
+        header: of the run.
+        evaluation: the design.
+        cast: robot of the design, person and load.
+        heights: postures at the heights that were solved, in the problem's order.
+    """
+
+    run: str
+    header: RunHeader
+    evaluation: Evaluation
+    cast: Cast
+    heights: tuple[HeightDetail, ...]
+
+
+def design_json(
+    header: RunHeader, evaluation: Evaluation, heights: tuple[HeightDetail, ...], *, on_front: bool
+) -> dict[str, Any]:
+    """A design as a JSON object, as the log has it; its shape is a promise."""
+    assessment = evaluation.assessment
+    outcome: dict[str, Any] = msgspec.to_builtins(assessment)
+    return {
+        "problem": header.problem_name,
+        "id": evaluation.number,
+        "generation": evaluation.generation,
+        "on_front": on_front,
+        "status": outcome["status"],
+        "reason": outcome["reason"],
+        "objectives": outcome["objectives"],
+        "units": {objective.name: objective.unit for objective in header.objectives},
+        "parameters": outcome["design"],
+        "violation": outcome["violation"],
+        "reach": outcome["reach"],
+        "heights": outcome["heights"],
+        "postures": msgspec.to_builtins(heights),
+    }

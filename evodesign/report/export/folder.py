@@ -1,0 +1,124 @@
+"""Writing the folder of a design. File names are fixed, whatever the names in problem and robot are.
+
+Everything is made before anything is written, and only into a folder that is empty or new.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from evodesign.errors import InputError, ModelError
+from evodesign.report.export.design import ExportedDesign, design_json
+from evodesign.report.export.readme import readme_text
+from evodesign.report.export.tables import postures_csv, wrenches_csv
+from evodesign.report.replay.layout import layout_text
+from evodesign.report.replay.recording import write_replay
+from evodesign.report.stage import stage_of
+from evodesign.statics.balance import GRAVITY
+from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
+from evodesign.tree.urdf_write import urdf_text
+
+__all__ = ["Exported", "export_design", "refuse_full"]
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What came of an export.
+
+    Args:
+        files: what was written.
+        left_out: why a file is missing, by its name.
+    """
+
+    files: tuple[Path, ...]
+    left_out: dict[str, str]
+
+
+def refuse_full(directory: Path) -> None:
+    """Refuse a place where an export would mix with other files.
+
+    Raises:
+        InputError: it is a file, or a folder that holds something.
+    """
+    wanted = "a new or empty folder"
+    try:
+        if directory.exists() and not directory.is_dir():
+            raise InputError("--to", "", wanted, f"the file '{directory}'")
+        if directory.is_dir() and any(directory.iterdir()):
+            raise InputError("--to", "", wanted, f"'{directory}', which holds files")
+    except OSError as error:
+        raise InputError("--to", "", wanted, f"'{directory}' ({error.strerror})") from error
+
+
+def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) -> Exported:
+    """Write a design's folder.
+
+    Args:
+        design: what to write.
+        directory: a new or empty folder.
+        on_front: whether no design of the run beats it.
+    Raises:
+        InputError: the folder holds files already, or cannot be written.
+    """
+    refuse_full(directory)
+    contents, left_out = _contents(design, on_front=on_front)
+    names = [*contents]
+    contents = {"README.md": readme_text(design, names, left_out).encode(), **contents}
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for name, content in contents.items():
+            (directory / name).write_bytes(content)
+    except OSError as error:
+        found = f"'{directory}' ({error.strerror})"
+        raise InputError("--to", "", "a folder that can be written", found) from error
+    return Exported(tuple(directory / name for name in contents), left_out)
+
+
+def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, bytes], dict[str, str]]:
+    """Bytes of each file by name, and why others are missing."""
+    cast, heights = design.cast, design.heights
+    urdfs = {f"{name}.urdf": urdf_text(cast.trees[name]) for name in (ROBOT, HUMAN)}
+    told = design_json(design.header, design.evaluation, heights, on_front=on_front)
+    contents = {"robot.urdf": urdfs["robot.urdf"].encode()}
+    left_out = {}
+    try:
+        contents["robot.xml"] = mjcf_text(cast.trees[ROBOT], GRAVITY, _keys(design)).encode()
+    except ModelError as error:
+        left_out["robot.xml"] = str(error)
+    contents["human.urdf"] = urdfs["human.urdf"].encode()
+    contents["postures.json"] = msgspec.json.format(msgspec.json.encode(told), indent=2) + b"\n"
+    if not heights:
+        reason = "no posture was found at any height"
+        return contents, {**left_out, "postures.csv": reason, "replay.mcap": reason}
+    contents["postures.csv"] = postures_csv(cast, heights).encode()
+    contents["wrenches.csv"] = wrenches_csv(cast, heights).encode()
+    recording = io.BytesIO()
+    write_replay(recording, cast, heights, urdfs, _about(design))
+    contents["replay.mcap"] = recording.getvalue()
+    contents["layout.json"] = layout_text(cast, heights).encode()
+    return contents, left_out
+
+
+def _keys(design: ExportedDesign) -> dict[str, KeyPosture]:
+    """The robot's postures as keyframes, by the load's height."""
+    stages = [(stage_of(design.cast, detail), detail) for detail in design.heights]
+    root = design.cast.trees[ROBOT].root
+    return {
+        f"load at {stage.height:g} m": KeyPosture(stage.frames[ROBOT][root], detail.agents[ROBOT].joints_rad)
+        for stage, detail in stages
+    }
+
+
+def _about(design: ExportedDesign) -> dict[str, str]:
+    evaluation = design.evaluation
+    return {
+        "problem": design.header.problem_name,
+        "run": design.run,
+        "design": str(evaluation.number),
+        "time": "10 s per metre of the load's height",
+    }

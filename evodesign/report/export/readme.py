@@ -1,0 +1,102 @@
+"""The README of an exported folder: what each file is and how to open it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from evodesign.errors import on_one_line
+from evodesign.records import Objective
+from evodesign.report.export.design import ExportedDesign
+from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
+
+__all__ = ["FILES", "readme_text"]
+
+FILES: Final[Mapping[str, str]] = {
+    "robot.urdf": """\
+The robot of this design, made of spheres, cylinders and boxes; it needs no other file. Any URDF viewer opens
+it, `yourdfpy robot.urdf`, and in Python
+`pinocchio.buildModelFromUrdf("robot.urdf", pinocchio.JointModelFreeFlyer())`. MuJoCo opens it, too, but
+fixes its root: take the next file there.""",
+    "robot.xml": """\
+The same robot for MuJoCo, floating over a ground plane, with a keyframe per load height:
+`python -m mujoco.viewer --mjcf=robot.xml`, there Simulation, Key, Load key. Nothing drives the joints and
+there is no load, so pause it first.""",
+    "human.urdf": """\
+The person, for kinematics and viewing; MuJoCo refuses links that move and have no mass.""",
+    "postures.csv": """\
+Coordinates of the root links, joint positions and joint torques of robot and person, one joint per row.""",
+    "wrenches.csv": """\
+Force and moment on each hand (about the grasp point, in the agent's own frame) and foot (about the sole's
+origin, in the sole's frame).""",
+    "postures.json": """\
+All that is known of this design: parameters, objectives, reach, outcome and postures by height.""",
+    "replay.mcap": """\
+The postures as a recording, heights as time: ten seconds per metre, so a load at 1.2 m is at 12 s, and the
+last posture stays a second. Open it in Foxglove or Lichtblick with "Open local file". `/tf` holds all frames,
+`/scene/...` shapes and arrows, `/joint_states/...` positions, and torques as efforts; both URDF files are
+attached.""",
+    "layout.json": """\
+Panels for the recording. In Foxglove or Lichtblick: the layout menu, "Import from file".""",
+}
+"""What each file is."""
+
+FRAMES: Final = """\
+SI units throughout. World: origin on the ground under the load, x from the robot towards the person, z up. An
+agent's own frame is the world turned about z so that it looks along +x at the load. Roll, pitch and yaw are
+those of URDF. Joints that are not listed stand at zero.
+"""
+
+
+def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[str, str]) -> str:
+    """The README as Markdown.
+
+    Args:
+        design: what was exported.
+        files: names of the files that were written, of `FILES`.
+        left_out: why a file is missing, by its name.
+    """
+    evaluation = design.evaluation
+    objectives = (_objective(each, evaluation.assessment.objectives) for each in design.header.objectives)
+    missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
+    parts = [
+        f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
+        f"From the run {_code(design.run)}, generation {evaluation.generation}; {_outcome(design)}.",
+        "\n".join(objectives),
+        "## Files",
+        "\n".join((*(f"- `{name}`: {_indented(FILES[name])}" for name in files), *missing)),
+        "## Frames and units",
+        FRAMES + _scales(),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _scales() -> str:
+    ground, load = (1.0 / METRES_PER_NEWTON[by_ground] for by_ground in (True, False))
+    moment = 1.0 / METRES_PER_NEWTON_METRE
+    return (
+        f"In the recording 1 m of arrow is {ground:g} N from the ground (orange, at the centre of\n"
+        f"pressure), {load:g} N from the load (violet), {moment:g} N m of moment (green)."
+    )
+
+
+def _outcome(design: ExportedDesign) -> str:
+    evaluation = design.evaluation
+    if evaluation.feasible:
+        return "it is feasible"
+    return f"it is not feasible: {_code(evaluation.assessment.reason)}"
+
+
+def _objective(objective: Objective, values: Mapping[str, float]) -> str:
+    value = values.get(objective.name)
+    shown = "none" if value is None else f"{value!r} {objective.unit}"
+    return f"- {_code(objective.name)} ({objective.sense}): {shown}"
+
+
+def _indented(text: str) -> str:
+    return text.replace("\n", "\n  ")
+
+
+def _code(text: str) -> str:
+    """A name as a code span on one line, which Markdown shows letter by letter."""
+    return f"`{on_one_line(text).replace('`', chr(39))}`"

@@ -1,0 +1,79 @@
+"""Postures and wrenches as CSV: one row per number, or per wrench, as the log has them.
+
+Numbers are written with as many digits as read back to the same double.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+
+from evodesign.records import HeightDetail
+from evodesign.report.stage import Cast
+from evodesign.statics.scene import SIDES, Agent
+from evodesign.tree.model import JointKind, Tree
+
+__all__ = ["postures_csv", "wrenches_csv"]
+
+Row = Sequence[str | float]
+
+POSTURE_COLUMNS = ("height_m", "agent", "kind", "name", "position", "position_unit", "torque", "torque_unit")
+WRENCH_COLUMNS = (
+    *("height_m", "agent", "contact", "frame"),
+    *("force_x_n", "force_y_n", "force_z_n", "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"),
+)
+BASE = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
+"""Coordinates of the root link in its agent's frame."""
+
+
+def postures_csv(cast: Cast, heights: Iterable[HeightDetail]) -> str:
+    """Base coordinates, joint positions and torques of robot and person."""
+    return _text(POSTURE_COLUMNS, _posture_rows(cast, heights))
+
+
+def wrenches_csv(cast: Cast, heights: Iterable[HeightDetail]) -> str:
+    """Wrenches on hands (about the grasp point) and feet (about the sole's origin)."""
+    return _text(WRENCH_COLUMNS, _wrench_rows(cast, heights))
+
+
+def _posture_rows(cast: Cast, heights: Iterable[HeightDetail]) -> Iterator[Row]:
+    for detail in heights:
+        for name, tree in cast.trees.items():
+            posture = detail.agents[name]
+            base = (*posture.base_position_m, *posture.base_rpy_rad)
+            for (coordinate, unit), value in zip(BASE, base, strict=True):
+                yield detail.height_m, name, "base", coordinate, value, unit, "", ""
+            for joint, position in posture.joints_rad.items():
+                kind, *units = _joint(tree, joint)
+                torque = posture.torques_n_m[joint]
+                yield detail.height_m, name, kind, joint, position, units[0], torque, units[1]
+
+
+def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
+    """Kind of a joint, unit of its position, unit of its torque or force."""
+    kind = tree.joint_by_name[name].kind
+    return (kind, "m", "N") if kind is JointKind.PRISMATIC else (kind, "rad", "N m")
+
+
+def _wrench_rows(cast: Cast, heights: Iterable[HeightDetail]) -> Iterator[Row]:
+    for detail in heights:
+        for agent in cast.agents:
+            yield from _wrenches_of(agent, detail)
+
+
+def _wrenches_of(agent: Agent, detail: HeightDetail) -> Iterator[Row]:
+    posture = detail.agents[agent.name]
+    for side in SIDES:
+        frame = f"{agent.name}'s own, x at the load"
+        yield detail.height_m, agent.name, f"{side}_hand", frame, *posture.hand_wrenches[side]
+    for side in SIDES:
+        yield detail.height_m, agent.name, f"{side}_foot", agent.soles[side], *posture.foot_wrenches[side]
+
+
+def _text(columns: Sequence[str], rows: Iterable[Row]) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(rows)
+    return stream.getvalue()

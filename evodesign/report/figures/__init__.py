@@ -1,0 +1,1 @@
+"""Figures for print: functions of plain data that give matplotlib figures."""

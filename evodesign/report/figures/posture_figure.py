@@ -1,0 +1,130 @@
+"""Postures side by side, one panel per height: robot, person, load, and the contact forces as arrows.
+
+Faces are painted from far to near, shaded by their slope to a light above the camera's left shoulder. Ground
+forces begin at the centre of pressure and are orange as in the paper, hand forces are violet; the two have
+scales of their own, equal in all panels.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from evodesign.report.figures.faces import Camera, faces_of
+from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, new_figure
+from evodesign.report.stage import ContactWrench, Stage
+
+__all__ = ["posture_figure"]
+
+Array = NDArray[np.float64]
+
+LONGEST = 0.45
+"""Length [m] in the scene of the largest force of a kind."""
+
+FLOOR = ((-1.05, -0.55), (1.05, -0.55), (1.05, 0.55), (-1.05, 0.55))
+"""Corners of the piece of ground that is drawn [m]."""
+
+PANEL = 3.1
+"""Width of a panel [inches]."""
+
+HEAD = "-|>,head_width=0.22,head_length=0.45"
+
+COLORS = {True: GROUND_FORCE, False: HAND_FORCE}
+"""Of the forces that the ground exerts, and of those that the load does."""
+
+
+def posture_figure(stages: Sequence[Stage], title: str, camera: Camera | None = None) -> Figure:
+    """A figure of postures.
+
+    Args:
+        stages: one per panel.
+        title: over the figure.
+        camera: where it is seen from.
+    """
+    view = camera or Camera()
+    low, high = _limits(stages, view)
+    panels, (across, up) = max(len(stages), 1), high - low
+    figure = new_figure(max(PANEL * panels, 4.2), PANEL * up / across + 1.1, title)
+    axes = figure.subplots(1, panels, squeeze=False)[0]
+    longest = {by_ground: _longest(stages, by_ground) for by_ground in COLORS}
+    for panel, stage in zip(axes, stages, strict=False):
+        _paint(panel, stage, view)
+        for wrench in stage.wrenches:
+            if longest[wrench.by_ground]:
+                _arrow(panel, wrench, view, LONGEST / longest[wrench.by_ground])
+        panel.set_title(f"load at {stage.height:g} m", fontsize=10, color=INK)
+    for panel in axes:
+        panel.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        panel.set_axis_off()
+    if stages:
+        _key(figure, axes[0], longest)
+    else:
+        axes[0].text(0.5, 0.5, "no posture", ha="center", color=INK, transform=axes[0].transAxes)
+    return figure
+
+
+def _paint(axes: Axes, stage: Stage, view: Camera) -> None:
+    ground = view.seen(np.array([(x, y, 0.0) for x, y in FLOOR]))[:, :2]
+    axes.add_collection(PolyCollection([ground], facecolors="#eef0f2", edgecolors="#c6cbd1", linewidths=0.6))
+    light = np.array([-0.35, 0.55, 0.76]) @ view.axes
+    seen = []
+    for name, shape, place in stage.solids:
+        for face in faces_of(shape, place):
+            if float(face.normal @ view.axes[2]) > 0.0:
+                corners = view.seen(face.corners)
+                seen.append(
+                    (float(corners[:, 2].mean()), corners[:, :2], _shade(name, float(face.normal @ light)))
+                )
+    seen.sort(key=lambda item: item[0])
+    colors = [color for _, _, color in seen]
+    polygons = [outline for _, outline, _ in seen]
+    axes.add_collection(PolyCollection(polygons, facecolors=colors, edgecolors=colors, linewidths=0.25))
+
+
+def _shade(name: str, slope: float) -> tuple[float, float, float]:
+    """An agent's colour in the light: darker where a face turns away from it."""
+    brightness = 0.62 + 0.43 * max(slope, -0.2)
+    red, green, blue = (min(channel * brightness, 1.0) for channel in to_rgb(AGENTS[name]))
+    return red, green, blue
+
+
+def _longest(stages: Sequence[Stage], by_ground: bool) -> float:
+    """The largest force of a kind [N]."""
+    wrenches = [wrench for stage in stages for wrench in stage.wrenches if wrench.by_ground == by_ground]
+    return max((math.hypot(*wrench.force) for wrench in wrenches), default=0.0)
+
+
+def _arrow(axes: Axes, wrench: ContactWrench, view: Camera, scale: float) -> None:
+    tail = np.array(wrench.point)
+    (x, y, _), (to_x, to_y, _) = view.seen(np.array([tail, tail + scale * np.array(wrench.force)]))
+    if math.hypot(to_x - x, to_y - y) < 0.02:  # shorter than its head
+        return
+    style = {"arrowstyle": HEAD, "color": COLORS[wrench.by_ground], "linewidth": 1.9}
+    axes.annotate("", (to_x, to_y), (x, y), arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, zorder=5)
+
+
+def _limits(stages: Sequence[Stage], view: Camera) -> tuple[Array, Array]:
+    """Least and largest right and up [m] of everything that is drawn, each of shape (2,)."""
+    points = [np.array([(x, y, 0.0) for x, y in FLOOR])]
+    for stage in stages:
+        points += [face.corners for _, shape, place in stage.solids for face in faces_of(shape, place)]
+    seen = view.seen(np.vstack(points))[:, :2]
+    return seen.min(axis=0) - 0.03, seen.max(axis=0) + 0.03
+
+
+def _key(figure: Figure, axes: Axes, longest: Mapping[bool, float]) -> None:
+    words = {True: "force on the feet", False: "force on the hands"}
+    handles = [
+        axes.plot(
+            [], [], color=COLORS[kind], linewidth=2.2, label=f"{words[kind]}, the largest {force:.3g} N"
+        )[0]
+        for kind, force in longest.items()
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize=9)

@@ -1,0 +1,1 @@
+"""A running search as a local page that refreshes itself."""

@@ -1,0 +1,124 @@
+"""A layout for Foxglove and Lichtblick: the scene, and beside it the largest joint torques of each agent.
+
+The arrows and shapes are shown, the axes and names of the many frames are not. Both programs read the form.
+
+Source: layouts that Foxglove Studio exports (`configById`, `layout`, `globalVariables`, `playbackConfig`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from evodesign.records import HeightDetail
+from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
+from evodesign.report.stage import LOAD, Cast
+from evodesign.report.strain import most_strained
+from evodesign.statics.scene import HUMAN, ROBOT
+
+__all__ = ["layout_text"]
+
+SCENE, PLOTS = "3D!scene", {ROBOT: "Plot!robot", HUMAN: "Plot!human"}
+
+JOINTS_SHOWN: Final = 6
+"""Lines of a plot."""
+
+CAMERA: Final = {
+    "perspective": True,
+    "distance": 4.6,
+    "phi": 72.0,
+    "thetaOffset": 22.0,
+    "targetOffset": [0.0, 0.0, 0.8],
+    "target": [0.0, 0.0, 0.0],
+    "targetOrientation": [0.0, 0.0, 0.0, 1.0],
+    "fovy": 45.0,
+    "near": 0.05,
+    "far": 100.0,
+}
+
+GRID: Final = {
+    "layerId": "foxglove.Grid",
+    "instanceId": "ground",
+    "label": "ground",
+    "visible": True,
+    "frameLocked": True,
+    "frameId": WORLD,
+    "size": 4.0,
+    "divisions": 8,
+    "lineWidth": 1,
+    "color": "#8a909780",
+    "position": [0.0, 0.0, 0.0],
+    "rotation": [0.0, 0.0, 0.0],
+    "order": 1,
+}
+
+
+def layout_text(cast: Cast, heights: Sequence[HeightDetail]) -> str:
+    """The layout as JSON text.
+
+    Args:
+        cast: who stands there.
+        heights: postures, whose torques choose the joints that are plotted.
+    """
+    panels = {SCENE: _scene(cast), **{PLOTS[name]: _plot(name, heights) for name in cast.trees}}
+    plots = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
+    layout = {"first": SCENE, "second": plots, "direction": "row", "splitPercentage": 64}
+    whole = {
+        "configById": panels,
+        "globalVariables": {},
+        "userNodes": {},
+        "playbackConfig": {"speed": 1},
+        "layout": layout,
+    }
+    return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+
+
+def _scene(cast: Cast) -> dict[str, Any]:
+    frames = [
+        LOAD,
+        *(frame_id(name, link) for name, tree in cast.trees.items() for link in tree.link_by_name),
+    ]
+    return {
+        "cameraState": CAMERA,
+        "followMode": "follow-none",
+        "followTf": WORLD,
+        "scene": {"backgroundColor": "#f4f5f6", "labelScaleFactor": 0.0},
+        "transforms": {f"frame:{frame}": {"visible": False} for frame in (WORLD, *frames)},
+        "topics": {topic: {"visible": True} for topic in TOPICS if topic.startswith("/scene/")},
+        "layers": {"ground": GRID},
+        "publish": {},
+        "imageMode": {},
+    }
+
+
+def _plot(agent: str, heights: Sequence[HeightDetail]) -> dict[str, Any]:
+    torques = [detail.agents[agent].torques_n_m for detail in heights]
+    return {
+        "title": f"{agent}: joint torques [N m]; time [s] = 10 x height [m]",
+        "paths": [_path(agent, joint) for joint in _plotted(torques)],
+        "showLegend": True,
+        "legendDisplay": "floating",
+        "showPlotValuesInLegend": True,
+        "showXAxisLabels": True,
+        "showYAxisLabels": True,
+        "isSynced": True,
+        "xAxisVal": "timestamp",
+        "sidebarDimension": 240,
+    }
+
+
+def _path(agent: str, joint: str) -> dict[str, Any]:
+    value = f'/joint_states/{agent}.joints[:]{{name=="{joint}"}}.effort'
+    return {
+        "value": value,
+        "label": joint,
+        "enabled": True,
+        "timestampMethod": "receiveTime",
+        "showLine": True,
+    }
+
+
+def _plotted(torques: Sequence[Mapping[str, float]]) -> list[str]:
+    """The most strained joints, but for names that a message path cannot hold."""
+    return [joint for joint in most_strained(torques) if not set(joint) & set('"\\{}')][:JOINTS_SHOWN]

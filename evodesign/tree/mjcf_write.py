@@ -1,0 +1,162 @@
+"""A tree as MJCF text: MuJoCo's own format, floating over a ground plane, with postures as keyframes.
+
+    body     <inertial> where there is mass, <geom> for each solid and look, <joint> when it moves
+    key      position and quaternion of the root, then the joints in the order in which the file holds them
+
+The robot's geoms touch the ground and not each other: neighbouring shapes overlap at the joints.
+
+Source: MuJoCo XML reference (compiler, body, joint, inertial, geom, keyframe).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from lxml import etree
+
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Placement
+from evodesign.body.quaternion import quaternion_wxyz
+from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.errors import ModelError
+from evodesign.tree.model import Joint, JointKind, Link, Tree
+from evodesign.tree.xml_numbers import numbers_text
+
+__all__ = ["KeyPosture", "mjcf_text"]
+
+KINDS = {JointKind.REVOLUTE: "hinge", JointKind.CONTINUOUS: "hinge", JointKind.PRISMATIC: "slide"}
+TOUCHES_GROUND = {"contype": "0", "conaffinity": "1"}
+TOUCHES_NOTHING = {"contype": "0", "conaffinity": "0"}
+COLOR = "0.36 0.52 0.70 1"
+
+
+@dataclass(frozen=True, slots=True)
+class KeyPosture:
+    """A posture to be kept as a keyframe.
+
+    Args:
+        world_from_root: of the root link.
+        joints: positions [rad or m] by name; joints left out stand at zero.
+    """
+
+    world_from_root: Placement
+    joints: Mapping[str, float]
+
+
+def mjcf_text(tree: Tree, gravity: float, postures: Mapping[str, KeyPosture]) -> str:
+    """The tree as indented XML.
+
+    Args:
+        tree: of numbers.
+        gravity: [m/s^2], along -z.
+        postures: keyframes by name.
+    Raises:
+        ModelError: MuJoCo cannot hold the tree: a link that moves has no mass, or one is called `world`.
+    """
+    _check(tree)
+    model = etree.Element("mujoco", model=tree.name)
+    etree.SubElement(model, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
+    etree.SubElement(model, "option", gravity=numbers_text([0.0, 0.0, -gravity]))
+    world = etree.SubElement(model, "worldbody")
+    etree.SubElement(world, "light", pos="0 -2 4", dir="0 0.5 -1", directional="true")
+    ground = {"contype": "1", "conaffinity": "0", "rgba": "0.9 0.9 0.9 1"}
+    etree.SubElement(world, "geom", type="plane", size="3 3 0.1", **ground)
+    _add_body(world, tree, tree.root, Placement(), None)
+    if postures:
+        frame = etree.SubElement(model, "keyframe")
+        for name, posture in postures.items():
+            etree.SubElement(frame, "key", name=name, qpos=numbers_text(_coordinates(tree, posture)))
+    text: bytes = etree.tostring(model, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    return text.decode("utf-8")
+
+
+def _check(tree: Tree) -> None:
+    if "world" in tree.link_by_name:
+        raise ModelError(
+            tree.name, "link world", "another name, as MuJoCo has a 'world' of its own", "'world'"
+        )
+    for joint in tree.joints:
+        if joint.kind is not JointKind.FIXED and not _carried_mass(tree, joint.child):
+            wanted = "mass, which MuJoCo asks of every link that moves"
+            raise ModelError(tree.name, f"link {joint.child}", wanted, "none")
+
+
+def _carried_mass(tree: Tree, link: str) -> float:
+    """Mass [kg] of a link and of everything welded to it."""
+    welded = [joint.child for joint in tree.child_joints[link] if joint.kind is JointKind.FIXED]
+    return float(tree.link_by_name[link].inertia.mass) + sum(_carried_mass(tree, child) for child in welded)
+
+
+def _add_body(above: etree._Element, tree: Tree, name: str, place: Placement, joint: Joint | None) -> None:
+    link = tree.link_by_name[name]
+    body = etree.SubElement(above, "body", name=name, **_pose(place))
+    if joint is None:
+        etree.SubElement(body, "freejoint")
+    elif joint.kind is not JointKind.FIXED:
+        _add_joint(body, joint)
+    _add_inertial(body, link.inertia)
+    _add_geoms(body, link)
+    for below in tree.child_joints[name]:
+        _add_body(body, tree, below.child, below.parent_from_child, below)
+
+
+def _add_joint(body: etree._Element, joint: Joint) -> None:
+    element = etree.SubElement(
+        body, "joint", name=joint.name, type=KINDS[joint.kind], axis=numbers_text(joint.axis)
+    )
+    if joint.kind is not JointKind.CONTINUOUS and math.isfinite(joint.upper - joint.lower):
+        element.set("range", numbers_text([joint.lower, joint.upper]))
+    if math.isfinite(joint.effort) and joint.effort > 0.0:
+        element.set("actuatorfrcrange", numbers_text([-joint.effort, joint.effort]))
+
+
+def _add_inertial(body: etree._Element, inertia: Inertia) -> None:
+    if float(inertia.mass) == 0.0:
+        return
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.about_center
+    moments = numbers_text([xx, yy, zz, xy, xz, yz])
+    etree.SubElement(
+        body,
+        "inertial",
+        pos=numbers_text(inertia.center),
+        mass=numbers_text([inertia.mass]),
+        fullinertia=moments,
+    )
+
+
+def _add_geoms(body: etree._Element, link: Link) -> None:
+    for solid in link.solids:
+        _add_geom(body, solid.shape, solid.link_from_solid, TOUCHES_GROUND)
+    for look in link.looks:
+        _add_geom(body, look.shape, look.link_from_look, TOUCHES_NOTHING)
+
+
+def _add_geom(body: etree._Element, shape: Shape, place: Placement, touch: Mapping[str, str]) -> None:
+    match shape:
+        case Sphere(radius):
+            form = {"type": "sphere", "size": numbers_text([radius])}
+        case Cylinder(radius, length):
+            form = {"type": "cylinder", "size": numbers_text([radius, length / 2.0])}
+        case Box():
+            form = {"type": "box", "size": numbers_text([side / 2.0 for side in shape.sides])}
+    etree.SubElement(body, "geom", {**form, **_pose(place), "rgba": COLOR, **touch})
+
+
+def _pose(place: Placement) -> dict[str, str]:
+    return {"pos": numbers_text(place.translation), "quat": numbers_text(quaternion_wxyz(place.rotation))}
+
+
+def _coordinates(tree: Tree, posture: KeyPosture) -> list[float]:
+    place = posture.world_from_root
+    joints = [posture.joints.get(name, 0.0) for name in _order(tree, tree.root)]
+    return [*place.translation, *quaternion_wxyz(place.rotation), *joints]
+
+
+def _order(tree: Tree, link: str) -> Iterator[str]:
+    """Moving joints below a link, in the order in which bodies nest: depth first."""
+    for joint in tree.child_joints[link]:
+        if joint.kind is not JointKind.FIXED:
+            yield joint.name
+        yield from _order(tree, joint.child)

@@ -1,0 +1,49 @@
+"""Random postures of the default problem's robot and person, without solving anything."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evodesign.problem.build import Problem
+from evodesign.records import AgentDetail, Detail, HeightDetail
+from evodesign.report.stage import Cast, Stage, stage_of
+from evodesign.statics.scene import SIDES, Agent
+
+
+def random_values(problem: Problem, seed: int) -> tuple[float, ...]:
+    rng = np.random.default_rng(seed)
+    return problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters)).tolist()))
+
+
+def random_cast(problem: Problem, seed: int) -> Cast:
+    tree = problem.space.resized(problem.scene.robot.tree, random_values(problem, seed))
+    return Cast.of(problem.scene, tree)
+
+
+def random_detail(problem: Problem, seed: int, heights: tuple[float, ...] = (0.8, 1.0, 1.2)) -> Detail:
+    rng = np.random.default_rng(seed)
+    agents = (problem.scene.robot, problem.scene.human)
+    shown = tuple(
+        HeightDetail(height_m=height, agents={agent.name: random_posture(agent, rng) for agent in agents})
+        for height in heights
+    )
+    return Detail(evaluation=0, heights=shown)
+
+
+def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
+    def numbers(scale: float, count: int) -> tuple[float, ...]:
+        return tuple((scale * rng.normal(size=count)).tolist())
+
+    return AgentDetail(
+        base_position_m=numbers(1.0, 3),
+        base_rpy_rad=numbers(0.5, 3),
+        joints_rad=dict(zip(agent.joints, numbers(0.8, len(agent.joints)), strict=True)),
+        torques_n_m=dict(zip(agent.joints, numbers(10.0, len(agent.joints)), strict=True)),
+        hand_wrenches={side: numbers(10.0, 6) for side in SIDES},
+        foot_wrenches={side: (*numbers(10.0, 2), 300.0, *numbers(10.0, 3)) for side in SIDES},
+    )
+
+
+def random_stages(problem: Problem, seed: int) -> list[Stage]:
+    cast = random_cast(problem, seed)
+    return [stage_of(cast, detail) for detail in random_detail(problem, seed).heights]
