@@ -301,6 +301,21 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
+def report(
+    run: RunPath,
+    output: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The page.", show_default="RUN/report.html")
+    ] = None,
+    designs: Annotated[
+        str, typer.Option(metavar="NUMBERS", help="Designs to mark and to show postures of, such as 12,53.")
+    ] = "",
+) -> None:
+    """Write the page of a run: front, parameters, progress, failures, postures; one file, no network."""
+    from evodesign.cli.reports import write_report
+
+    write_report(run, output, designs)
+
+
 def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
     """What a problem is solved from: its seeds, and how well they lead other designs."""
     from evodesign.cli.seeding import show_seeds
@@ -346,6 +361,7 @@ COMMANDS = (
     resume,
     branch,
     front,
+    report,
     show,
     export,
     watch,
