@@ -43,6 +43,7 @@ bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
 	$(BIN)/python benchmarks/inner_speed.py
 	$(BIN)/python benchmarks/inner_quality.py
+	$(BIN)/python -m benchmarks.paper_formulation
 	$(BIN)/python benchmarks/gradients.py
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
