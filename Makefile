@@ -41,8 +41,8 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 
 bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
-	$(BIN)/python benchmarks/inner_speed.py
-	$(BIN)/python benchmarks/inner_quality.py
+	$(BIN)/python -m benchmarks.inner_speed
+	$(BIN)/python -m benchmarks.inner_quality
 	$(BIN)/python -m benchmarks.paper_formulation
 	$(BIN)/python benchmarks/gradients.py
 	$(BIN)/python benchmarks/idle_share.py

@@ -34,7 +34,7 @@ from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import Status
 
-__all__ = ["BOUNDED", "TOLERANCE", "Figures", "measure"]
+__all__ = ["BOUNDED", "TOLERANCE", "Figures", "measure", "measure_ours", "reaching_designs"]
 
 PROBLEM = Path(__file__).parent.parent / "problems" / "icub_lifting.toml"
 
