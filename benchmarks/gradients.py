@@ -39,11 +39,10 @@ OTHER_REACH = 0.001
 """Difference of the reach [m] between neighbours above which another optimum was found."""
 
 CLEAR = 1e-3
-"""Share of a range within which no limit may change. (The solver takes bounds as 1e-8 wider than they are: so
-near a kink, where slopes themselves change within 1e-3, that alone makes differences of 1e-5.)"""
+"""Share of a range within which no limit may change."""
 
-ZERO = 1e-6
-"""Gradient per range, relative to its objective, that counts as none."""
+SMALL = 1e-2
+"""Gradient per range, relative to its objective, below which errors are relative to this and not to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +80,7 @@ class Comparer:
         for name, found in tangent.sensitivities().items():
             gradient = np.array(directions) @ (np.array(list(found.gradient.values())) * ranges)
             differences = np.array([_extrapolated(name, pairs) for pairs in neighbours])
-            size = max(np.abs(gradient).max(), ZERO * abs(OBJECTIVES[name].value(result)))
+            size = max(np.abs(gradient).max(), SMALL * abs(OBJECTIVES[name].value(result)))
             errors[name] = float(np.abs(gradient - differences).max() / size)
         return Comparison(errors, "")
 

@@ -71,12 +71,12 @@ class IpoptOptions:
     """IPOPT's settings; the values are what measured best on posture problems (DESIGN 3).
 
     Args:
-        tolerance: of the scaled optimality error.
+        tolerance: of the scaled optimality error; bounds are taken as wider by as much, at most 1e-8.
         iterations: limit.
         seconds: limit of wall time per solve [s].
         compiled: whether the program's functions run as machine code; results are the same, sooner.
         near: whether solves begin at a solution, to be found again more exactly: the barrier starts small,
-            and bounds are taken as they are instead of a little wider.
+            and bounds are taken as they are.
     """
 
     tolerance: float = 1e-8
@@ -249,6 +249,7 @@ def _casadi_options(options: IpoptOptions) -> dict[str, Any]:
             "print_level": 0,
             "sb": "yes",
             "tol": options.tolerance,
+            "bound_relax_factor": min(options.tolerance, 1e-8),
             "max_iter": options.iterations,
             "max_wall_time": options.seconds,
             "fast_step_computation": "yes",
