@@ -309,11 +309,18 @@ def report(
     designs: Annotated[
         str, typer.Option(metavar="NUMBERS", help="Designs to mark and to show postures of, such as 12,53.")
     ] = "",
+    sensitivities: Annotated[
+        bool,
+        typer.Option(
+            "--sensitivities", help="Also how the marked designs' objectives move; solves these designs anew."
+        ),
+    ] = False,
+    jobs: Jobs = CORES,
 ) -> None:
     """Write the page of a run: front, parameters, progress, failures, postures; one file, no network."""
     from evodesign.cli.reports import write_report
 
-    write_report(run, output, designs)
+    write_report(run, output, designs, sensitivities, jobs)
 
 
 def seeds(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
