@@ -11,7 +11,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test check bench robot clean
+.PHONY: help install search test check bench faults robot clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST)
@@ -31,7 +31,7 @@ search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, JOBS=)
 	$(BIN)/evodesign search $(PROBLEM) --jobs $(JOBS) $(if $(RUN),--run $(RUN))
 
 test: $(VENV)/installed-dev  ## the tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 
 check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 	$(BIN)/ruff format --check .
@@ -42,6 +42,15 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
 	$(BIN)/python benchmarks/evolution_vs_gradient.py
+	$(BIN)/python -m benchmarks.inner_speed
+	$(BIN)/python -m benchmarks.inner_quality
+	$(BIN)/python -m benchmarks.paper_formulation
+	$(BIN)/python benchmarks/gradients.py
+	$(BIN)/python benchmarks/idle_share.py
+	$(BIN)/python benchmarks/overhead.py
+
+faults: $(VENV)/installed-dev  ## kill searches and damage logs, hundreds of times (half an hour)
+	$(BIN)/python -m tests.faults.campaign
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py

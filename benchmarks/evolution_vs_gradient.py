@@ -227,7 +227,7 @@ def summary(runs: dict[tuple[str, int], list[Row]], again: dict[int, float | Non
         own = [runs[arm, seed] for seed in seeds]
         arms[arm] = {
             f"after {count} solves": figures([best_after(rows, count) for rows in own], known)
-            for count in dict.fromkeys((solves // 2, FEW, solves))
+            for count in sorted({solves // 2, FEW, solves})
         }
         arms[arm]["hypervolume"] = spread([_volume(rows) for rows in own])
         arms[arm]["seconds per solve"] = spread([(rows[-1]["seconds"] or 0.0) / len(rows) for rows in own])

@@ -5,7 +5,7 @@ how many are solved and pass the check; how many solved ones lie within 1 % of t
 the same program; and how far robot and person solved one after the other lie from the best of 25 random
 starts of both together. Results go to benchmarks/results/inner_quality.json and are printed as a table.
 
-    python benchmarks/inner_quality.py [--designs 200] [--joint-designs 50] [--starts 25] [--jobs 2]
+    python -m benchmarks.inner_quality [--designs 200] [--joint-designs 50] [--starts 25] [--jobs 2]
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import json
 from dataclasses import dataclass
 
 import numpy as np
-from inner_problem import HEIGHTS, HERE, Design, known_at, problem_at, random_designs
 from joblib import Parallel, delayed
 
+from benchmarks.inner_problem import HEIGHTS, HERE, Design, known_at, problem_at, random_designs
 from evodesign.posture.portfolio import Landscape, random_start
 from evodesign.posture.posture import PostureProblem
 from evodesign.posture.preparation import Preparation

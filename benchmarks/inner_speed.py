@@ -3,10 +3,11 @@
 Medians per solve on one core, with compiled functions and on CasADi's virtual machine: reach, the robot
 against the person's value function, both agents symmetrically, and whole; the first two from the problem's
 seeds, the others from their fixed starts. Then whole evaluations: designs per second and core, the share of
-the time spent outside IPOPT, and two workers against one. Processor time is given beside wall time, since a
-machine may be shared. Results go to benchmarks/results/inner_speed.json and are printed as Markdown tables.
+the time spent outside IPOPT, two workers against one, and the paper's own formulation of the same posture
+problem. Processor time is given beside wall time, since a machine may be shared. Results go to
+benchmarks/results/inner_speed.json and are printed as Markdown tables.
 
-    python benchmarks/inner_speed.py [--designs 40] [--evaluations 96]
+    python -m benchmarks.inner_speed [--designs 40] [--evaluations 96] [--paper 3]
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from inner_problem import HERE, Design, known_at, problem_at, random_designs
 
+from benchmarks.inner_problem import HERE, Design, known_at, problem_at, random_designs
+from benchmarks.paper_formulation import measure, measure_ours, reaching_designs
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.portfolio import Landscape
 from evodesign.posture.posture import PostureProblem, Symmetry
@@ -44,6 +46,7 @@ def main() -> None:
     )
     parser.add_argument("--designs", type=int, default=40)
     parser.add_argument("--evaluations", type=int, default=96)
+    parser.add_argument("--paper", type=int, default=3)
     options = parser.parse_args()
     problem = problem_at(DEFAULT_HEIGHTS)
     known = known_at(problem, 2)
@@ -55,12 +58,11 @@ def main() -> None:
     ]
     whole = _evaluations(problem, known, designs)
     workers = _workers(problem, known, designs)
+    paper = _paper(problem, known, options.paper)
     target = HERE / "results" / "inner_speed.json"
-    result = {**vars(options), "solves": solves, "evaluations": whole, "workers": workers}
+    result = {**vars(options), "solves": solves, "evaluations": whole, "workers": workers, "paper": paper}
     target.write_text(json.dumps(result, indent=2) + "\n")
-    print(_table(solves))
-    print()
-    print(_table([{**whole, **workers}]))
+    print("\n\n".join([_table(solves), _table([{**whole, **workers}]), _table(paper)]))
 
 
 def _landscapes(
@@ -150,6 +152,23 @@ def _workers(problem: Problem, known: Preparation, designs: Sequence[Design]) ->
             wall = time.perf_counter() - began
         rates[jobs], busy[jobs] = len(genomes) / wall, spent / (jobs * wall)
     return {"two_workers_over_one": rates[2] / rates[1], "busy_share_of_two_workers": busy[2]}
+
+
+def _paper(problem: Problem, known: Preparation, count: int) -> list[dict[str, Any]]:
+    """The paper's formulation and ours at 1.0 m, in processor time."""
+    designs = reaching_designs(problem, 1.0, count)
+    paper, ours = measure(problem, designs, 1.0), measure_ours(problem, known, designs, 1.0)
+    return [
+        {
+            "formulation": name,
+            "ms_per_iteration": 1e3 * figures.seconds_per_iteration,
+            "iterations": figures.iterations,
+            "solved": f"{figures.solved} of {figures.tried}",
+            "seconds_per_solved_height": figures.seconds_per_solved_height,
+            "ratio": paper.seconds_per_solved_height / figures.seconds_per_solved_height,
+        }
+        for name, figures in (("the paper's", paper), ("ours", ours))
+    ]
 
 
 def _table(rows: Sequence[Mapping[str, Any]]) -> str:

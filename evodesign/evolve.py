@@ -2,51 +2,54 @@
 
 A search is told only what is on the disk. Starting and resuming are the same loop: it begins with a fresh
 search each time, and an evaluation that the log holds is compared and told instead of repeated (resume by
-replay). Whatever the number of workers, evaluations are logged in order of number, so that
+replay). An evaluation is on the disk as soon as it has arrived. Whatever the number of workers and the order
+of arrival,
 
     start with a budget of 2n  =  start with a budget of n, then resume with 2n,
 
 but for times and names of workers. The last generation is cut where the budget ends; a cut generation is
-neither concluded nor told, and a later session with a larger budget completes it.
+neither concluded nor told, and a later session with a larger budget completes it. A stop finishes what is in
+flight; what was not yet handed out is left to a later session as well.
 """
 
 from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing, suppress
 from pathlib import Path
+from typing import NoReturn
 
 import msgspec
 
-from evodesign.analysis.front import RunningFront, front, minimised
-from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.analysis.front import RunningFront
+from evodesign.analysis.stagnation import stagnant
+from evodesign.analysis.standing import Standing
 from evodesign.errors import Interrupted, RunError
-from evodesign.pool.base import Factory, Pool
+from evodesign.pool.base import Pool
+from evodesign.pool.gate import run_gated
+from evodesign.pool.serial import SerialPool
 from evodesign.records import (
-    Assessed,
     Evaluation,
-    Front,
-    Generation,
     Genome,
     RunHeader,
     SearchSettings,
 )
-from evodesign.runlog.arrival import Arrival, arrival_of
+from evodesign.runlog.arrival import arrival_of
 from evodesign.runlog.directory import locked, make_directory, run_segments
 from evodesign.runlog.memory import Memory
 from evodesign.runlog.observer import Observer, Silent
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
-from evodesign.search.base import Outcome, Search
+from evodesign.search.base import Search
+from evodesign.session import Evaluate, Session, conclude, outcome_of, remember
+from evodesign.steady import evolve_steadily
 
-__all__ = ["MakeSearch", "Observer", "Silent", "resume", "start"]
+__all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 
 MakeSearch = Callable[[SearchSettings], Search]
-Evaluate = Factory[Genome, Assessed]
 
 
 def never() -> bool:
@@ -79,14 +82,14 @@ def start(
         RunError: the directory holds a run already, or cannot be written.
         Interrupted: stopped, by `stop` or by Ctrl-C; what had arrived is logged.
     """
-    search = make_search(header.search)
+    evolve = _loop(header.search, make_search)
     make_directory(directory)
     with locked(directory):
         log = RunWriter(directory, header)
         fresh = Run(directory, header, (), (), (), (), complete=False, notes=())
         with log, Memory(fresh, lambda: log) as memory:
             running = RunningFront(header.objectives)
-            _work(_Session(directory, header, memory, lambda: factory, pool, observer, stop, running), search)
+            _work(Session(directory, header, memory, lambda: factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
 
 
@@ -122,33 +125,48 @@ def resume(
         run = read_run(directory)
         total = run.header.budget if budget is None else budget
         header = msgspec.structs.replace(renew(run.header), budget=total)
-        search = make_search(header.search)
+        evolve = _loop(header.search, make_search)
         factory = functools.cache(lambda: factory_of(header))
         with Memory(run, lambda: RunWriter.next_segment(directory, header)) as memory:
             running = RunningFront(header.objectives)
-            _work(_Session(directory, header, memory, factory, pool, observer, stop, running), search)
+            _work(Session(directory, header, memory, factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
 
 
-@dataclass(frozen=True, slots=True)
-class _Session:
-    """What the loop works with."""
-
-    directory: Path
-    header: RunHeader
-    memory: Memory
-    factory: Callable[[], Evaluate]
-    pool: Pool
-    observer: Observer
-    stop: Callable[[], bool]
-    front: RunningFront
+class _EndOfLog(Exception):
+    """A replay has come to where the log ends."""
 
 
-def _work(session: _Session, search: Search) -> None:
+def replay(run: Run, *, make_search: MakeSearch = registry.make_search) -> None:
+    """Ask and tell all that a run's log holds, as `resume` does, evaluating and writing nothing.
+
+    Raises:
+        ResumeMismatch: the log holds a genome that the rebuilt search does not ask for.
+    """
+
+    def end() -> NoReturn:
+        raise _EndOfLog
+
+    last = max((evaluation.number for evaluation in run.evaluations), default=-1)
+    header = msgspec.structs.replace(run.header, budget=1 + last, stagnation_generations=None)
+    running = RunningFront(header.objectives)
+    with Memory(run, end) as memory, SerialPool() as pool, suppress(_EndOfLog):
+        evolve = _loop(header.search, make_search)
+        evolve(Session(run.directory, header, memory, end, pool, Silent(), never, running))
+
+
+def _loop(settings: SearchSettings, make_search: MakeSearch) -> Callable[[Session], None]:
+    """The loop that suits the settings, with its search ready to ask."""
+    if settings.asynchronous:
+        return functools.partial(evolve_steadily, search=registry.make_steady_search(settings))
+    return functools.partial(_evolve, search=make_search(settings))
+
+
+def _work(session: Session, evolve: Callable[[Session], None]) -> None:
     """Run the loop; a stop becomes an error that says how to go on."""
     session.observer.started(session.header, session.memory.evaluations)
     try:
-        _evolve(session, search)
+        evolve(session)
     except KeyboardInterrupt:
         raise Interrupted(
             f"stopped after {session.memory.evaluations} of {session.header.budget} evaluations; "
@@ -162,25 +180,26 @@ def _finished(directory: Path, observer: Observer) -> Run:
     return run
 
 
-def _evolve(session: _Session, search: Search) -> None:
-    """Go through all generations, from the first one on, until the budget is used up."""
-    done: list[Evaluation] = []
-    reference: dict[str, float] | None = None
-    generation = 0
-    while len(done) < session.header.budget:
+def _evolve(session: Session, search: Search) -> None:
+    """Go through all generations, from the first one on, until the budget is used up or nothing is gained."""
+    standing = Standing(session.header.objectives)
+    done = generation = 0
+    while done < session.header.budget:
+        _heed(session.stop)
         begun = time.perf_counter()
         genomes = _ask(session, search)
-        born = _evaluate(session, generation, len(done), genomes[: session.header.budget - len(done)])
-        done += born
+        born = _evaluate(session, generation, done, genomes[: session.header.budget - done])
+        done += len(born)
         if len(born) < len(genomes):
-            session.memory.commit()
             return
-        reference = _conclude(session, generation, done, born, reference, begun)
-        search.tell([_outcome(session.header, evaluation) for evaluation in born])
+        conclude(session, generation, standing, born, begun)
+        if stagnant(standing.hypervolumes, session.header.stagnation_generations):
+            return
+        search.tell([outcome_of(session.header, evaluation) for evaluation in born])
         generation += 1
 
 
-def _ask(session: _Session, search: Search) -> list[Genome]:
+def _ask(session: Session, search: Search) -> list[Genome]:
     """The next generation's genomes, of Python numbers, so that they are equal to their copies in the log."""
     genomes = [tuple(float(coordinate) for coordinate in genome) for genome in search.ask()]
     if not genomes:
@@ -189,12 +208,7 @@ def _ask(session: _Session, search: Search) -> list[Genome]:
     return genomes
 
 
-def _outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
-    values = minimised(header.objectives, evaluation.assessment)
-    return Outcome(objectives=values, violation=evaluation.assessment.violation)
-
-
-def _evaluate(session: _Session, generation: int, first: int, genomes: Sequence[Genome]) -> list[Evaluation]:
+def _evaluate(session: Session, generation: int, first: int, genomes: Sequence[Genome]) -> list[Evaluation]:
     """Evaluations of a generation's genomes, numbered from `first`; those that are known are not repeated."""
     known = {
         number: evaluation
@@ -210,78 +224,28 @@ def _evaluate(session: _Session, generation: int, first: int, genomes: Sequence[
 
 
 def _evaluate_missing(
-    session: _Session, generation: int, missing: Mapping[int, Genome]
+    session: Session, generation: int, missing: Mapping[int, Genome]
 ) -> dict[int, Evaluation]:
-    """Evaluate genomes by number; log them in order of number, whatever the order in which they arrive.
+    """Evaluate genomes by number; each evaluation is on the disk before the next is looked at.
 
     Raises:
-        KeyboardInterrupt: by Ctrl-C or because `stop` asks for it; everything that had arrived is logged.
+        KeyboardInterrupt: by Ctrl-C, or because `stop` asked for it and all that was in flight has arrived.
     """
-    numbers, genomes = list(missing), list(missing.values())
-    logged: dict[int, Evaluation] = {}
-    early: dict[int, Arrival] = {}
-    _heed(session.stop)
-    results = session.pool.run(session.factory(), genomes)
-    try:
+    numbers, parameters = list(missing), session.header.parameters
+    arrived: dict[int, Evaluation] = {}
+    results = run_gated(session.pool, session.factory(), missing.values(), session.stop)
+    with closing(results):
         for finished in results:
             number = numbers[finished.index]
-            parameters = session.header.parameters
-            early[number] = arrival_of(number, generation, missing[number], parameters, finished)
-            while len(logged) < len(numbers) and (due := numbers[len(logged)]) in early:
-                _remember(session, early[due])
-                logged[due] = early.pop(due).evaluation
-            if len(logged) < len(numbers):
-                _heed(session.stop)
-    except BaseException:
-        with suppress(RunError):  # the error on its way says more than a log that cannot be written
-            for number in sorted(early):
-                _remember(session, early[number])
-        raise
-    finally:
-        if isinstance(results, Generator):
-            results.close()
-    return logged
+            arrival = arrival_of(number, generation, missing[number], parameters, finished)
+            remember(session, arrival, more=finished.more)
+            arrived[number] = arrival.evaluation
+    if len(arrived) < len(missing):
+        raise KeyboardInterrupt
+    return arrived
 
 
 def _heed(stop: Callable[[], bool]) -> None:
     """Do as Ctrl-C does if a stop is asked for."""
     if stop():
         raise KeyboardInterrupt
-
-
-def _remember(session: _Session, arrival: Arrival) -> None:
-    """Put an evaluation on the disk, with its postures if nothing so far beats it."""
-    evaluation = arrival.evaluation
-    session.memory.remember(evaluation, arrival.detail if session.front.enters(evaluation) else None)
-    session.observer.evaluated(evaluation, session.memory.evaluations, session.header.budget)
-
-
-def _conclude(
-    session: _Session,
-    generation: int,
-    done: Sequence[Evaluation],
-    born: Sequence[Evaluation],
-    reference: dict[str, float] | None,
-    begun: float,
-) -> dict[str, float] | None:
-    """Put a generation on the disk, with its state and front unless they are known; give the reference."""
-    known = session.memory.generation(generation)
-    if known is not None:
-        session.memory.commit()
-        return known.reference
-    objectives = session.header.objectives
-    reference = reference or reference_point(objectives, done)
-    state = Generation(
-        number=generation,
-        evaluations=len(done),
-        feasible_share=sum(evaluation.feasible for evaluation in born) / len(born),
-        hypervolume=None if reference is None else hypervolume(objectives, done, reference),
-        reference=reference,
-        best=best(objectives, done),
-        seconds=time.perf_counter() - begun,
-    )
-    numbers = tuple(evaluation.number for evaluation in front(objectives, done))
-    session.memory.conclude(state, Front(generation=generation, evaluations=numbers))
-    session.memory.commit()
-    session.observer.generation_done(state)
-    return reference

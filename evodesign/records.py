@@ -30,7 +30,9 @@ __all__ = [
     "RunHeader",
     "SearchSettings",
     "Sense",
+    "Stage",
     "Status",
+    "Turn",
     "design_of",
     "worst_status",
 ]
@@ -182,8 +184,23 @@ class Detail(Record, frozen=True):
     heights: tuple[HeightDetail, ...]
 
 
+class Turn(Record, frozen=True):
+    """When an asynchronous search was asked for a genome.
+
+    Attributes:
+        number: in the order of asking.
+        told: how many evaluations the search had been told.
+    """
+
+    number: int
+    told: int
+
+
 class Evaluation(Record, frozen=True):
-    """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs."""
+    """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs.
+
+    An asynchronous run has a `turn`, and counts its evaluations in the order in which they came.
+    """
 
     number: int
     generation: int
@@ -191,6 +208,7 @@ class Evaluation(Record, frozen=True):
     assessment: Assessment
     seconds: float
     worker: str
+    turn: Turn | None = None
 
     @property
     def feasible(self) -> bool:
@@ -221,8 +239,20 @@ class Front(Record, frozen=True):
     evaluations: tuple[int, ...]
 
 
+class Stage(Record, frozen=True):
+    """What a search was for its first so many generations, before a branch made it another one."""
+
+    algorithm: str
+    population: int
+    seed: int
+    generations: int
+
+
 class SearchSettings(Record, frozen=True):
-    """Everything that determines a search beside the evaluations it is told."""
+    """Everything that determines a search beside the evaluations it is told.
+
+    `past` holds the stages that a branch went through before, the earliest first; `start` is of the earliest.
+    """
 
     algorithm: str
     dimension: int
@@ -230,6 +260,8 @@ class SearchSettings(Record, frozen=True):
     population: int
     seed: int
     start: tuple[Genome, ...] = ()
+    past: tuple[Stage, ...] = ()
+    asynchronous: bool = False
 
 
 class ProblemSource(Record, frozen=True):
@@ -249,7 +281,11 @@ class ProblemSource(Record, frozen=True):
 
 
 class RunHeader(Record, frozen=True):
-    """First message of every segment of a run's log."""
+    """First message of every segment of a run's log.
+
+    `budget` counts evaluations of the run, `hours` wall time of each session, and `stagnation_generations`
+    generations in which the hypervolume may stand still.
+    """
 
     format_version: int
     problem: ProblemSource
@@ -261,3 +297,5 @@ class RunHeader(Record, frozen=True):
     versions: dict[str, str]
     git: str | None
     started: str
+    hours: float | None = None
+    stagnation_generations: int | None = None

@@ -17,6 +17,7 @@ from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.prepare import prepared
 from evodesign.problem.source import read_source
+from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
@@ -39,13 +40,15 @@ def problem() -> Problem:
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A cache of the tests' own, which commands started by tests use too.
+    """A cache of the tests' own, which commands started by tests and tests running side by side use too.
 
     It is new in each session, unless $EVODESIGN_TEST_CACHE names a directory that keeps it: working out the
     default problem takes a minute.
     """
     kept = os.environ.get("EVODESIGN_TEST_CACHE")
-    place = Path(kept) if kept else tmp_path_factory.mktemp("cache")
+    session = tmp_path_factory.getbasetemp()
+    own = session.parent / "cache" if "PYTEST_XDIST_WORKER" in os.environ else session / "cache"
+    place = Path(kept) if kept else own
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("EVODESIGN_CACHE", str(place))
         yield place
@@ -54,8 +57,9 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="session")
 def known(problem: Problem) -> Preparation:
     """What is worked out of the default problem beforehand, where commands started by tests find it too."""
-    with JoblibPool(2) as pool:
-        return prepared(problem, user_cache("prepared", os.environ), pool, Unwatched())
+    cache = user_cache("prepared", os.environ)
+    with cache.lock("default"), JoblibPool(2) as pool:
+        return prepared(problem, cache, pool, Unwatched())
 
 
 class Unwatched:
@@ -72,3 +76,14 @@ class Unwatched:
 def evaluator(problem: Problem, known: Preparation) -> Evaluator:
     """The default problem's inner problems."""
     return Evaluator(problem, known)
+
+
+@pytest.fixture(scope="session")
+def cluster() -> Iterator[Cluster]:
+    """A Dask scheduler with two workers, of which one has a nanny."""
+    with Cluster() as made:
+        made.start_scheduler()
+        made.add_worker()
+        made.add_worker("--no-nanny")
+        made.wait_for(2)
+        yield made

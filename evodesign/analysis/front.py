@@ -62,12 +62,15 @@ class RunningFront:
         self._values = np.empty((0, len(self._objectives)))
 
     def enters(self, evaluation: Evaluation) -> bool:
-        """Whether none shown before dominates or equals this one, which is shown by asking."""
+        """Whether none shown before dominates this one, which is shown by asking.
+
+        An equal one enters too: whichever of them is on the front in the end, it did.
+        """
         values = minimised(self._objectives, evaluation.assessment)
         if not evaluation.feasible or values is None:
             return False
         new = np.array(values)
-        if np.any(np.all(self._values <= new, axis=1)):
+        if np.any(np.all(self._values <= new, axis=1) & np.any(self._values < new, axis=1)):
             return False
         beaten = np.all(new <= self._values, axis=1)
         self._values = np.vstack([self._values[~beaten], new])

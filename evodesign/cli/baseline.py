@@ -7,7 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from evodesign.cli.output import console, counted
-from evodesign.cli.searching import Wishes, start
+from evodesign.cli.searching import Budgets, Wishes, Workers, start
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 from evodesign.runlog.directory import name_in_path
@@ -26,8 +26,10 @@ def start_baseline(
     """Solve the joint problem from many starts; print its front, and how the starts ended."""
     name = name_in_path(build_problem(read_source(problem)).name)
     directory = Path("runs") / f"{name}-baseline-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
-    wishes = Wishes(JOINT_STARTS, starts, min(starts, GENERATION), seed, None)
-    start(problem, directory, wishes, jobs, pool, json)
+    wishes = Wishes(JOINT_STARTS, min(starts, GENERATION), seed, asynchronous=False)
+    budgets = Budgets(starts, hours=None, stagnation_generations=0)
+    workers = Workers(pool, jobs, scheduler=None, cache=False)
+    start(problem, directory, wishes, budgets, workers, None, json)
     if json:
         return
     ended = Counter(evaluation.assessment.status for evaluation in read_run(directory).evaluations)

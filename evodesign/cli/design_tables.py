@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from rich.markup import escape
 from rich.table import Table
 
@@ -10,9 +12,13 @@ from evodesign.cli.output import figure
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import DesignResult
+from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
 
-__all__ = ["assessment_tables"]
+__all__ = ["assessment_tables", "sensitivity_table"]
+
+STRONGEST = 4
+"""Parameters shown per objective."""
 
 
 def assessment_tables(
@@ -28,3 +34,23 @@ def assessment_tables(
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
     return summary, heights_table(assessment, "the load at each height")
+
+
+def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:
+    """The parameters that move each objective most, for equal shares of their ranges."""
+    ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
+    table = Table(title="what 1 % more of a parameter's range changes", title_justify="left")
+    table.add_column("objective")
+    table.add_column("strongest parameters", overflow="fold")
+    for objective in problem.objectives:
+        found = sensitivities.get(objective.name)
+        if found is None:
+            continue
+        if found.gradient is None:
+            shown = next((kink for kink in found.kinks if "no gradient" in kink), "no gradient")
+        else:
+            moves = {name: value * ranges[name] * 0.01 for name, value in found.gradient.items()}
+            strongest = sorted(moves, key=lambda name: -abs(moves[name]))[:STRONGEST]
+            shown = ", ".join(f"{name} {moves[name]:+.2g}" for name in strongest if moves[name])
+        table.add_row(escape(heading(objective)), escape(shown or "nothing moves it"))
+    return table

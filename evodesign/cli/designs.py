@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.cli.design_tables import assessment_tables
+from evodesign.cli.design_tables import assessment_tables, sensitivity_table
 from evodesign.cli.model_table import model_json, model_tables
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.ready import evaluator_of
@@ -13,6 +13,7 @@ from evodesign.problem.answer import answer
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.notes import notes
+from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source, read_text
 
 __all__ = ["check_problem", "evaluate_design"]
@@ -29,10 +30,12 @@ def evaluate_design(
     evaluator = evaluator_of(built, jobs)
     result = evaluator.solve(values)
     assessment = evaluator.assessment(values, result)
+    moves = Sensitivities(built, evaluator.known).at(values, result).sensitivities()
     if json:
-        print_json(answer(built, values, result, assessment))
+        print_json(answer(built, values, result, assessment, moves))
         return
-    for table in assessment_tables(built, chosen, result, assessment):
+    tables = assessment_tables(built, chosen, result, assessment)
+    for table in (*tables, *([sensitivity_table(built, moves)] if moves else [])):
         console().print(table)
 
 

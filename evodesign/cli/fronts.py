@@ -10,6 +10,7 @@ from pathlib import Path
 from evodesign.analysis.aspiration import aspiration_of
 from evodesign.analysis.choice import Choice, Chosen, Order, choose
 from evodesign.analysis.conditions import conditions
+from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.quantities import quantities
 from evodesign.cli.output import console, print_json, show_notes, visible
 from evodesign.cli.tables import front_csv, front_json, front_table
@@ -112,10 +113,12 @@ def _print_table(run: Run, choice: Choice, chosen: Chosen) -> None:
     if shown:
         out.print(front_table(run, choice, shown))
     feasible = sum(evaluation.feasible for evaluation in run.evaluations)
+    counts = failures(run.evaluations)
+    failed = f", failed: {causes(counts)}" if counts else ""
     lines = [
         *_remarks(run, choice, chosen, len(shown)),
         f"{len(run.evaluations)} evaluations, {feasible} feasible, {len(chosen.front)} on the front"
-        f"{_such(choice)}; the run lies in {run.directory}",
+        f"{_such(choice)}{failed}; the run lies in {run.directory}",
     ]
     for line in lines:
         out.print(visible(line), highlight=False, markup=False, soft_wrap=True)

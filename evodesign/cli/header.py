@@ -10,12 +10,15 @@ from pathlib import Path
 
 import msgspec
 
+from evodesign.cli.output import show_notes
+from evodesign.errors import RunError
 from evodesign.problem.build import Problem
 from evodesign.records import FORMAT_VERSION, RunHeader, SearchSettings
+from evodesign.runlog.difference import version_differences
 
-__all__ = ["header_of", "renewed"]
+__all__ = ["header_of", "renewed", "versions"]
 
-PACKAGES = ("evodesign", "casadi", "pin", "numpy", "pymoo", "cma", "moocore", "joblib", "mcap")
+PACKAGES = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
 
 def header_of(problem: Problem, settings: SearchSettings, budget: int) -> RunHeader:
@@ -28,18 +31,34 @@ def header_of(problem: Problem, settings: SearchSettings, budget: int) -> RunHea
         objectives=problem.objectives,
         search=settings,
         budget=budget,
-        versions=_versions(),
+        versions=versions(),
         git=_git_state(),
         started=_now(),
     )
 
 
-def renewed(header: RunHeader) -> RunHeader:
-    """The header of a later session of the same run."""
-    return msgspec.structs.replace(header, versions=_versions(), git=_git_state(), started=_now())
+def renewed(header: RunHeader, directory: Path, accept_versions: bool) -> RunHeader:
+    """The header of a later session of the same run.
+
+    Raises:
+        RunError: packages that decide results have other versions, and that was not accepted.
+    """
+    new = msgspec.structs.replace(header, versions=versions(), git=_git_state(), started=_now())
+    differing = version_differences(header.versions, new.versions)
+    if differing and not accept_versions:
+        raise RunError(
+            f"{directory}: was written with {', '.join(differing)}, so that the resumed run might not equal "
+            "an uninterrupted one; install those versions, or go on all the same with --accept-versions"
+        )
+    if new.started < header.started:
+        show_notes(
+            [f"the clock stands before {header.started}, when the last session began: times will overlap"]
+        )
+    return new
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Versions, by package, of what is installed here."""
     return {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TextIO
@@ -21,6 +22,7 @@ from rich.progress import (
 )
 from rich.table import Table
 
+from evodesign.analysis.failures import causes, failures
 from evodesign.cli.output import console, figure
 from evodesign.cli.tables import heading
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
@@ -50,6 +52,7 @@ class PlainLines:
         self._stream = stream
         self._clock = _Clock()
         self._budget = 0
+        self._failures: Counter[Status] = Counter()
 
     def _write(self, line: str) -> None:
         self._stream.write(line + "\n")
@@ -69,6 +72,7 @@ class PlainLines:
     def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
         """Only count."""
         self._clock.tick(done)
+        self._failures += failures([evaluation])
 
     def generation_done(self, generation: Generation) -> None:
         """Say where the search stands."""
@@ -77,6 +81,7 @@ class PlainLines:
             f"generation {generation.number}: {generation.evaluations}/{self._budget} evaluations, "
             f"feasible {generation.feasible_share:.0%}, hypervolume {figure(generation.hypervolume)}, "
             f"best {best_values or '-'}, {self._clock.left()} left"
+            + (f"; failed in this session: {causes(self._failures)}" if self._failures else "")
         )
 
     def finished(self, run: Run) -> None:
@@ -139,7 +144,7 @@ class LivePanel:
     def _state(self) -> Table:
         tally, generation = self._tally, self._generation
         table = Table(box=None, show_header=False, padding=(0, 2))
-        table.add_row("feasible", tally.feasible_share, "failed", str(tally.failed))
+        table.add_row("feasible", tally.feasible_share, "failed", causes(tally.failures))
         number = "-" if generation is None else str(generation.number)
         volume = figure(None if generation is None else generation.hypervolume)
         table.add_row("generation", number, "hypervolume", volume)
@@ -154,7 +159,7 @@ class _Tally:
     def __init__(self, objectives: Sequence[Objective]) -> None:
         self.objectives = tuple(objectives)
         self.best: dict[str, float] = {}
-        self.failed = 0
+        self.failures: Counter[Status] = Counter()
         self._seen = 0
         self._feasible = 0
 
@@ -164,7 +169,7 @@ class _Tally:
 
     def count(self, evaluation: Evaluation) -> None:
         self._seen += 1
-        self.failed += evaluation.assessment.status not in (Status.SOLVED, Status.INFEASIBLE)
+        self.failures += failures([evaluation])
         if evaluation.feasible:
             self._feasible += 1
             self.learn(evaluation.assessment.objectives)

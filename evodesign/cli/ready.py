@@ -41,10 +41,12 @@ def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
     problem = build_problem(header.problem)
     factory: Evaluations
     if header.search.algorithm == JOINT_STARTS:
-        factory = BaselineFactory(f"{_digest(header.problem)}-{JOINT_STARTS}", header.problem)
+        factory = BaselineFactory(f"{_digest(header.problem)}-{JOINT_STARTS}", header.problem, problem.limits)
         compiled = problem.joint.options.compiled
     else:
-        factory = AssessmentFactory(_digest(header.problem), header.problem, known_of(problem, pool))
+        factory = AssessmentFactory(
+            _digest(header.problem), header.problem, known_of(problem, pool), problem.limits
+        )
         compiled = problem.options.compiled
     if compiled:
         _compile(factory)

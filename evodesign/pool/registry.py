@@ -12,22 +12,43 @@ from evodesign.pool.serial import SerialPool
 
 __all__ = ["POOLS", "make_pool"]
 
-POOLS: Final[Mapping[str, Callable[[int], Pool]]] = {
-    "serial": lambda jobs: SerialPool(),
-    "joblib": JoblibPool,
+
+def _dask(jobs: int, scheduler: str | None) -> Pool:
+    if scheduler is None:
+        wanted = "the address of a running Dask scheduler, such as tcp://127.0.0.1:8786"
+        raise InputError("--scheduler", "", wanted, "none")
+    try:
+        from evodesign.pool.dask_pool import DaskPool
+    except ModuleNotFoundError as error:
+        wanted = "'joblib', or Dask installed (pip install 'evodesign[dask]')"
+        raise InputError("--pool", "", wanted, f"'dask' ({error})") from error
+    return DaskPool(scheduler)
+
+
+POOLS: Final[Mapping[str, Callable[[int, str | None], Pool]]] = {
+    "serial": lambda jobs, scheduler: SerialPool(),
+    "joblib": lambda jobs, scheduler: JoblibPool(jobs),
+    "dask": _dask,
 }
-"""Constructors by name; each takes the number of jobs (the serial pool has one, whatever is asked)."""
+"""Constructors by name; each takes the number of jobs and the address of a scheduler, if it has a use for
+them: the serial pool has one job, Dask as many as its workers have threads."""
 
 
-def make_pool(name: str, jobs: int) -> Pool:
-    """The pool of a name with a number of jobs.
+def make_pool(name: str, jobs: int, scheduler: str | None = None) -> Pool:
+    """The pool of a name.
 
+    Args:
+        name: in the registry.
+        jobs: evaluations that run at the same time.
+        scheduler: address of a Dask scheduler.
     Raises:
-        InputError: no such pool, or fewer than one job.
+        InputError: no such pool, fewer than one job, or a scheduler that is missing, not asked for or silent.
     """
     if name not in POOLS:
         wanted = f"one of {', '.join(sorted(POOLS))}"
         raise InputError("--pool", "", wanted, f"'{name}'{nearest_name(name, POOLS)}")
     if jobs < 1:
         raise InputError("--jobs", "", "a whole number from 1", str(jobs))
-    return POOLS[name](jobs)
+    if scheduler is not None and name != "dask":
+        raise InputError("--scheduler", "", "no address without --pool dask", f"'{scheduler}'")
+    return POOLS[name](jobs, scheduler)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any, TypeVar
 
 from evodesign.pool.base import Factory, Finished, Pool
@@ -15,15 +15,15 @@ R = TypeVar("R")
 
 
 class SerialPool(Pool):
-    """Runs in this process: no start-up time, no protection against a task that kills its process."""
+    """Runs in this process: no start-up time, no protection against a task that kills or hangs it."""
 
     def __init__(self) -> None:
         self._bench: Workbench[Any, Any] | None = None
 
-    def run(self, factory: Factory[A, R], arguments: Sequence[A]) -> Iterator[Finished[R]]:
+    def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, in order; the task is kept for the next run with an equal factory."""
         if self._bench is None or self._bench.factory != factory:
-            self._bench = Workbench(factory)
+            self._bench = Workbench(factory, "local")
         bench = self._bench
         for index, argument in enumerate(arguments):
             yield bench.finish(index, argument)

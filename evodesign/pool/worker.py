@@ -7,11 +7,13 @@ serial pool in this process and each worker process of the others.
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import threading
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +21,7 @@ from typing import Any, Generic, TypeVar
 
 from evodesign.pool.base import Factory, Finished
 
-__all__ = ["Workbench", "explain", "finish_here", "start_worker", "worker_name"]
+__all__ = ["Workbench", "build_here", "explain", "finish_here", "start_worker"]
 
 A = TypeVar("A")
 R = TypeVar("R")
@@ -28,12 +30,24 @@ ORPHAN_CHECK = 1.0
 """Interval [s] at which a worker looks whether its parent still lives."""
 
 
+FIRST_TO_GO = "800"
+"""Linux takes a process with this mark, of at most 1000, before others when memory runs out."""
+
+NO_MEMORY = ("MemoryError", "bad_alloc")
+"""What Python and C++ say when there is no memory."""
+
+
 @dataclass(frozen=True, slots=True)
 class Attempt(Generic[R]):
     """What a call gave: a value, or a sentence saying why there is none."""
 
     value: R | None
     failure: str | None
+
+    @property
+    def out_of_memory(self) -> bool:
+        """Whether there is no value for want of memory."""
+        return self.failure is not None and any(word in self.failure for word in NO_MEMORY)
 
 
 def attempt(call: Callable[[], R]) -> Attempt[R]:
@@ -56,30 +70,37 @@ def explain(error: BaseException) -> str:
 
 
 class Workbench(Generic[A, R]):
-    """A factory and the task that it builds at the first argument, once, even when it fails."""
+    """A factory and the task that it builds at the first argument, once, even when it fails.
 
-    def __init__(self, factory: Factory[A, R]) -> None:
+    Args:
+        factory: builds the task.
+        place: first part of the worker's name.
+    """
+
+    def __init__(self, factory: Factory[A, R], place: str) -> None:
         self.factory = factory
+        self.name = f"{place}-{os.getpid()}"
 
     @cached_property
     def _built(self) -> Attempt[Callable[[A], R]]:
         return attempt(self.factory)
+
+    def build(self) -> bool:
+        """Build the task now, unless it is; gives whether there is one."""
+        return self._built.value is not None
 
     def finish(self, index: int, argument: A) -> Finished[R]:
         """Run the task on the argument of an index; its seconds do not count the building."""
         task = self._built.value
         if task is None:
             failure = f"the task could not be built: {self._built.failure or 'its factory gave None'}"
-            return Finished(index, None, failure, worker_lost=False, seconds=0.0, worker=worker_name())
+            return Finished(index, None, failure, worker_lost=False, seconds=0.0, worker=self.name)
         start = time.perf_counter()
         done = attempt(lambda: task(argument))
         seconds = time.perf_counter() - start
-        return Finished(index, done.value, done.failure, False, seconds, worker_name())
-
-
-def worker_name() -> str:
-    """Name of this process as a worker."""
-    return f"local-{os.getpid()}"
+        return Finished(
+            index, done.value, done.failure, False, seconds, self.name, out_of_memory=done.out_of_memory
+        )
 
 
 class _Process:
@@ -88,15 +109,32 @@ class _Process:
     bench: Workbench[Any, Any]
 
 
-def start_worker(factory: Factory[A, R]) -> None:
+def start_worker(factory: Factory[A, R], place: str, memory: int | None) -> None:
     """Make this process a worker: first thing that runs in it.
 
     Ctrl-C reaches every process of a terminal; the parent alone decides what it means. A worker whose
-    parent was killed ends by itself.
+    parent was killed ends by itself. When the machine runs out of memory, a worker goes before the search.
+
+    Args:
+        factory: builds the task.
+        place: first part of the worker's name.
+        memory: that this process may have [byte]; None for what the machine has.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(os.getppid(),), name="orphan-watch", daemon=True).start()
-    _Process.bench = Workbench(factory)
+    with suppress(OSError):  # not Linux, or not allowed
+        Path("/proc/self/oom_score_adj").write_text(FIRST_TO_GO, encoding="ascii")
+    if memory is not None:
+        hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+        allowed = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+        resource.setrlimit(resource.RLIMIT_DATA, (allowed, hard))
+    _Process.bench = Workbench(factory, place)
+
+
+def build_here() -> str:
+    """Build this worker's task, whether or not that succeeds; gives the name of the worker."""
+    _Process.bench.build()
+    return _Process.bench.name
 
 
 def finish_here(index: int, argument: A) -> Finished[Any]:

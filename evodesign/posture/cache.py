@@ -79,16 +79,24 @@ class Cache:
         return path
 
     @contextmanager
-    def lock(self, key: str) -> Iterator[bool]:
+    def lock(self, key: str, *, keep: bool = True) -> Iterator[bool]:
         """Hold a key alone among processes; gives whether another process had to be waited for.
 
         Two processes without the lock would both succeed; it spares doing the work twice.
+
+        Args:
+            key: to hold.
+            keep: whether the lock's file stays. Without it a process that waited and one that came later may
+                both hold the key, which is harmless when each looks first what was stored.
         """
         flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC
-        descriptor = os.open(self.directory / f"{key}.lock", flags, 0o600)
+        path = self.directory / f"{key}.lock"
+        descriptor = os.open(path, flags, 0o600)
         try:
             yield _acquire(descriptor)
         finally:
+            if not keep:
+                path.unlink(missing_ok=True)
             os.close(descriptor)
 
     def _entry(self, key: str) -> tuple[Path, bytes] | None:

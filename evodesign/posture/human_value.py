@@ -31,7 +31,7 @@ from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
 from evodesign.records import Status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["COST_UNIT", "TERMS", "HumanProblem", "HumanValue", "chebyshev_sum"]
+__all__ = ["COST_UNIT", "TERMS", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
 
 Array = Any
 
@@ -90,7 +90,7 @@ class HumanProblem:
 
     def __init__(self, form: Form, scene: Scene, weight: float, options: IpoptOptions) -> None:
         self._push = scene.stance.push
-        self._solver = Solver(_program(form, scene, weight), options)
+        self._solver = Solver(human_program(form, scene, weight), options)
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
@@ -144,7 +144,8 @@ class HumanProblem:
         ]
 
 
-def _program(form: Form, scene: Scene, weight: float) -> Program:
+def human_program(form: Form, scene: Scene, weight: float) -> Program:
+    """The person's program; its parameters are the height and the push."""
     height, push = ca.SX.sym("height"), ca.SX.sym("push")
     human = agent_block(form, form.agent.tree, scene, height)
     robot = free_hands(form, scene)

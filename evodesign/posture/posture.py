@@ -38,7 +38,10 @@ from evodesign.posture.split import SplitPostures
 from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["EffortWeights", "PostureProblem", "Symmetry"]
+__all__ = ["SYMMETRIC", "EffortWeights", "PostureProblem", "Symmetry", "posture_program"]
+
+SYMMETRIC = "symmetric"
+"""Name in results of the symmetric program over both agents."""
 
 
 class Symmetry(StrEnum):
@@ -130,7 +133,7 @@ class PostureProblem:
     @cached_property
     def _half(self) -> _Postures:
         """The symmetric program over both agents, built when it is first needed."""
-        return _Postures("symmetric", self._forms, *self._ingredients_of(refuge=bool(self._split_heights)))
+        return _Postures(SYMMETRIC, self._forms, *self._ingredients_of(refuge=bool(self._split_heights)))
 
     @cached_property
     def _full(self) -> _Postures:
@@ -159,7 +162,7 @@ class _Postures:
     ) -> None:
         self._name = name
         self._forms = forms
-        self._solver = Solver(_program(forms, scene, space, weights), options)
+        self._solver = Solver(posture_program(forms, scene, space, weights), options)
         self._fixed = fixed_starts(self._solver)
 
     def landscape(self, height: float) -> Landscape:
@@ -193,7 +196,10 @@ class _Postures:
         return Candidate(checked(start, raw, residuals), postures, residuals)
 
 
-def _program(forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights) -> Program:
+def posture_program(
+    forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights
+) -> Program:
+    """The program over both agents; its parameters are the design's, then the height."""
     design = ca.SX.sym("design", len(space.parameters))
     height = ca.SX.sym("height")
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))

@@ -17,7 +17,7 @@ import numpy as np
 from evodesign.posture.codegen import CompiledFunctions, NotCompiled, compiled_functions
 from evodesign.records import Status
 
-__all__ = ["Constraint", "IpoptOptions", "Program", "RawSolution", "Solver", "Variable"]
+__all__ = ["Constraint", "IpoptOptions", "Multipliers", "Program", "RawSolution", "Solver", "Variable"]
 
 Array = Any
 Expression = Any
@@ -71,16 +71,19 @@ class IpoptOptions:
     """IPOPT's settings; the values are what measured best on posture problems (DESIGN 3).
 
     Args:
-        tolerance: of the scaled optimality error.
+        tolerance: of the scaled optimality error; bounds are taken as wider by as much, at most 1e-8.
         iterations: limit.
         seconds: limit of wall time per solve [s].
         compiled: whether the program's functions run as machine code; results are the same, sooner.
+        near: whether solves begin at a solution, to be found again more exactly: the barrier starts small,
+            and bounds are taken as they are.
     """
 
     tolerance: float = 1e-8
     iterations: int = 300
     seconds: float = 20.0
     compiled: bool = False
+    near: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +95,58 @@ class Program:
     constraints: tuple[Constraint, ...]
     cost: Expression
     parameters: Expression
+
+    @property
+    def symbols(self) -> Expression:
+        """Everything that the solver varies, as one column."""
+        return ca.vertcat(*[variable.symbol for variable in self.variables])
+
+    @property
+    def rows(self) -> Expression:
+        """All constraints, as one column."""
+        return ca.vertcat(*[constraint.expression for constraint in self.constraints])
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds of the symbols."""
+        lower = np.concatenate([v.lower / v.scale for v in self.variables])
+        return lower, np.concatenate([v.upper / v.scale for v in self.variables])
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Lower and upper limits of the constraints' rows."""
+        counts = [c.expression.numel() for c in self.constraints]
+        lower = np.repeat([c.lower for c in self.constraints], counts)
+        return lower, np.repeat([c.upper for c in self.constraints], counts)
+
+    def packed(self, values: Mapping[str, Array]) -> Array:
+        """Symbols from values in SI units (variables left out: their own starting values)."""
+        blocks = [(v, values.get(v.name, v.start)) for v in self.variables]
+        return np.concatenate([np.asarray(value) / v.scale for v, value in blocks])
+
+    def unpacked(self, symbols: Array) -> dict[str, Array]:
+        """Values in SI units, by name, from a column of symbols or of their changes, shape (symbols, ...)."""
+        values, first = {}, 0
+        for variable in self.variables:
+            last = first + variable.symbol.numel()
+            values[variable.name] = variable.scale * symbols[first:last]
+            first = last
+        return values
+
+
+@dataclass(frozen=True, slots=True)
+class Multipliers:
+    """What the bounds and constraints of a program cost at its solution, per unit of each row.
+
+    Positive at an upper bound, negative at a lower one: grad f + (grad g) constraints + bounds = 0.
+
+    Args:
+        bounds: of the variables (their symbols), one per row.
+        constraints: one per row.
+    """
+
+    bounds: Array
+    constraints: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +160,9 @@ class RawSolution:
         iterations: number of iterations.
         seconds: wall time [s].
         cost: of the last iterate.
+        cost_slope: derivative of the optimal cost with respect to each parameter (envelope theorem; the
+            negative of CasADi's lam_p).
+        multipliers: of bounds and constraints.
     """
 
     values: Mapping[str, Array]
@@ -113,6 +171,8 @@ class RawSolution:
     iterations: int
     seconds: float
     cost: float
+    cost_slope: Array
+    multipliers: Multipliers
 
     def of(self, agent: str) -> dict[str, Array]:
         """The values of one agent's variables, by their name without the agent's."""
@@ -142,14 +202,8 @@ class Solver:
 
     def __init__(self, program: Program, options: IpoptOptions) -> None:
         self.program = program
-        symbols = ca.vertcat(*[variable.symbol for variable in program.variables])
-        constraints = ca.vertcat(*[constraint.expression for constraint in program.constraints])
-        rows = [(c.lower, c.upper, c.expression.numel()) for c in program.constraints]
-        self._lower = np.concatenate([np.full(count, low) for low, _, count in rows])
-        self._upper = np.concatenate([np.full(count, high) for _, high, count in rows])
-        self._lower_x = np.concatenate([v.lower / v.scale for v in program.variables])
-        self._upper_x = np.concatenate([v.upper / v.scale for v in program.variables])
-        problem = {"x": symbols, "p": program.parameters, "f": program.cost, "g": constraints}
+        self._bounds, self._limits = program.bounds, program.limits
+        problem = {"x": program.symbols, "p": program.parameters, "f": program.cost, "g": program.rows}
         self.functions: CompiledFunctions | NotCompiled = (
             compiled_functions(problem) if options.compiled else NotCompiled("compiling is switched off")
         )
@@ -163,35 +217,28 @@ class Solver:
 
     def solve(self, parameters: Sequence[float], start: Mapping[str, Array]) -> RawSolution:
         """Solve from a start (variables left out begin at the program's own values)."""
-        blocks = [(v, start.get(v.name, v.start)) for v in self.program.variables]
         began = time.perf_counter()
         result = self._solve(
-            x0=np.concatenate([np.asarray(value) / v.scale for v, value in blocks]),
+            x0=self.program.packed(start),
             p=np.asarray(parameters, float),
-            lbx=self._lower_x,
-            ubx=self._upper_x,
-            lbg=self._lower,
-            ubg=self._upper,
+            lbx=self._bounds[0],
+            ubx=self._bounds[1],
+            lbg=self._limits[0],
+            ubg=self._limits[1],
         )
         seconds = time.perf_counter() - began
         stats = self._solve.stats()
         word = str(stats["return_status"])
         return RawSolution(
-            values=self._unpack(np.asarray(result["x"]).ravel()),
+            values=self.program.unpacked(np.asarray(result["x"]).ravel()),
             status=_STATUS.get(word, Status.NUMERICAL_FAILURE),
             reason=word,
             iterations=int(stats["iter_count"]),
             seconds=seconds,
             cost=float(result["f"]),
+            cost_slope=-np.asarray(result["lam_p"]).ravel(),
+            multipliers=Multipliers(np.asarray(result["lam_x"]).ravel(), np.asarray(result["lam_g"]).ravel()),
         )
-
-    def _unpack(self, x: Array) -> dict[str, Array]:
-        values, first = {}, 0
-        for variable in self.program.variables:
-            last = first + variable.symbol.numel()
-            values[variable.name] = variable.scale * x[first:last]
-            first = last
-        return values
 
 
 def _casadi_options(options: IpoptOptions) -> dict[str, Any]:
@@ -202,9 +249,22 @@ def _casadi_options(options: IpoptOptions) -> dict[str, Any]:
             "print_level": 0,
             "sb": "yes",
             "tol": options.tolerance,
+            "bound_relax_factor": min(options.tolerance, 1e-8),
             "max_iter": options.iterations,
             "max_wall_time": options.seconds,
             "fast_step_computation": "yes",
             "nlp_scaling_method": "none",
+            **(_NEAR if options.near else {}),
         },
     }
+
+
+_NEAR = {
+    "mu_init": 1e-8,
+    "bound_push": 1e-9,
+    "bound_frac": 1e-9,
+    "slack_bound_push": 1e-9,
+    "slack_bound_frac": 1e-9,
+    "bound_mult_init_method": "mu-based",
+    "bound_relax_factor": 0.0,
+}

@@ -66,7 +66,11 @@ class Reach:
 
 
 class ReachProblem:
-    """One reach program for all designs of a scene."""
+    """One reach program for all designs of a scene.
+
+    Attributes:
+        form: of the robot.
+    """
 
     def __init__(
         self,
@@ -77,9 +81,14 @@ class ReachProblem:
         symmetric: bool,
         known: Preparation = NOTHING_KNOWN,
     ) -> None:
-        form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
-        self._solver = Solver(_program(form, scene, space), options)
+        self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
+        self._solver = Solver(_program(self.form, scene, space), options)
         self._seeds = {HIGHEST: known.highest.seeds, LOWEST: known.lowest.seeds}
+
+    @property
+    def program(self) -> Program:
+        """What is solved; its parameters are the design's, then the sense."""
+        return self._solver.program
 
     def landscape(self, sense: float) -> Landscape:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m], of which seeds are made."""
@@ -96,9 +105,13 @@ class ReachProblem:
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
         return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
 
+    def solves(self, values: Sequence[float], sense: float) -> list[RawSolution]:
+        """The result of every start in one sense."""
+        return [self._solver.solve([*values, sense], start) for start in self._seeds[sense] or FIXED]
+
     def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
-        solves = [self._solver.solve([*values, sense], start) for start in self._seeds[sense] or FIXED]
+        solves = self.solves(values, sense)
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
         if not solved:
             return None, solves[0]

@@ -33,7 +33,10 @@ from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["SplitPostures"]
+__all__ = ["SPLIT", "SplitPostures", "robot_program"]
+
+SPLIT = "split"
+"""The program's name in results."""
 
 
 class SplitPostures:
@@ -51,7 +54,7 @@ class SplitPostures:
         self._forms = forms
         self._scene = scene
         self._values = {value.height: value for value in values}
-        self._robot = Solver(_program(forms[0], scene, space, weights[0]), options)
+        self._robot = Solver(robot_program(forms[0], scene, space, weights[0]), options)
         self._human = HumanProblem(forms[1], scene, weights[1], options)
         self._fixed = fixed_starts(self._robot)
 
@@ -64,7 +67,7 @@ class SplitPostures:
     ) -> Trial:
         """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
         parameters = [*values, height, *self._values[height].coefficients]
-        starts = named_starts("split", seeds, self._fixed)
+        starts = named_starts(SPLIT, seeds, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 
@@ -101,7 +104,8 @@ def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolut
     )
 
 
-def _program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
+def robot_program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
+    """The robot's program; its parameters are the design's, the height and V's coefficients."""
     design = ca.SX.sym("design", len(space.parameters))
     height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", TERMS)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))

@@ -4,16 +4,26 @@ Its shape is a promise. Units: heights and positions [m], angles [rad], torques 
 Positions and hand wrenches are in the agent's own frame, which looks along +x at the load above its origin; a
 wrench is force, then moment, acting on the agent: at a hand about the grasp point, at a foot about the sole's
 origin and in the sole frame.
+
+`sensitivities` holds, for each objective that exists, how it moves with the design:
+
+    {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
+
+in the objective's unit per unit of the parameter (a length multiplier has none, a density is in kg/m^3). The
+gradient is that of the optimum that won; the sentences say which start won at each height and how far behind
+the next best optimum is, which limit of a posture a small change of one parameter reaches or leaves, and,
+where the gradient is null, why there is none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import DesignResult
+from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
 from evodesign.statics.scene import SIDES
 
@@ -21,7 +31,11 @@ __all__ = ["answer"]
 
 
 def answer(
-    problem: Problem, values: Sequence[float], result: DesignResult, assessment: Assessment
+    problem: Problem,
+    values: Sequence[float],
+    result: DesignResult,
+    assessment: Assessment,
+    sensitivities: Mapping[str, Sensitivity],
 ) -> dict[str, Any]:
     """The JSON object of one design."""
     return {
@@ -38,6 +52,10 @@ def answer(
             "reason": result.reach.reason,
         },
         "heights": [_height(height) for height in result.heights],
+        "sensitivities": {
+            name: {"gradient": found.gradient, "kinks": list(found.kinks)}
+            for name, found in sensitivities.items()
+        },
     }
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
 from evodesign.posture.joint import JointProblem, JointSolution
 from evodesign.posture.reach import Reach
@@ -104,10 +105,12 @@ class BaselineFactory:
     Args:
         digest: of the source; two factories of equal digest build the same baseline.
         source: the problem's text and files.
+        limits: of one start; they follow from the source.
     """
 
     digest: str
     source: ProblemSource = field(compare=False)
+    limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the joint problem and return the function from start to what it leads to."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
+from evodesign.pool.base import Limits
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.joint import JointSettings
 from evodesign.posture.posture import EffortWeights, Symmetry
@@ -24,6 +25,8 @@ from evodesign.tree.model import Tree
 
 __all__ = ["Problem", "build_problem"]
 
+GIGABYTE = 10**9
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -38,6 +41,7 @@ class Problem:
         weights: of the agents' efforts in the posture problem.
         objectives: in the file's order, minimised ones first.
         options: of the inner solver.
+        limits: of one evaluation.
         symmetry: which postures are looked for.
         seeds: whether solves begin at the problem's seeds.
         search: the file's `[search]` table.
@@ -54,6 +58,7 @@ class Problem:
     weights: EffortWeights
     objectives: tuple[Objective, ...]
     options: IpoptOptions
+    limits: Limits
     symmetry: Symmetry
     seeds: bool
     search: SearchTable
@@ -61,7 +66,9 @@ class Problem:
     joint: JointSettings
     joint_start: tuple[Genome, ...]
 
-    def settings(self, algorithm: str, population: int, seed: int) -> SearchSettings:
+    def settings(
+        self, algorithm: str, population: int, seed: int, asynchronous: bool = False
+    ) -> SearchSettings:
         """Settings of a search over this problem."""
         return SearchSettings(
             algorithm=algorithm,
@@ -70,6 +77,7 @@ class Problem:
             population=population,
             seed=seed,
             start=self.joint_start if algorithm == JOINT_STARTS else self.start,
+            asynchronous=asynchronous,
         )
 
 
@@ -106,6 +114,7 @@ def build_problem(source: ProblemSource) -> Problem:
         options=IpoptOptions(
             iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
         ),
+        limits=_limits(tables),
         symmetry=symmetry,
         seeds=tables.solver.seeds,
         search=tables.search,
@@ -165,6 +174,11 @@ def _stance(tables: ProblemFile, source: ProblemSource) -> StanceLimits:
         base_tilt=limits.base_tilt_rad,
         push=limits.push_n,
     )
+
+
+def _limits(tables: ProblemFile) -> Limits:
+    solver = tables.solver
+    return Limits(seconds=solver.evaluation_seconds, memory=int(solver.evaluation_memory_gb * GIGABYTE))
 
 
 def _heights(tables: ProblemFile, source: ProblemSource) -> tuple[float, ...]:

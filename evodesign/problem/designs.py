@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import msgspec
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
@@ -11,7 +13,10 @@ from evodesign.problem.file import DesignEntry, PopulationFile
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
-__all__ = ["read_designs", "start_genomes"]
+__all__ = ["designs_text", "read_designs", "start_genomes"]
+
+TABLES = {ParameterKind.LENGTH: "length", ParameterKind.DENSITY: "density_kg_per_m3"}
+"""A design's table for each kind of parameter."""
 
 
 def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict[str, tuple[float, ...]]:
@@ -33,12 +38,9 @@ def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict
 
 
 def _given(entry: DesignEntry, source: str, key: str, known: Mapping[str, float]) -> dict[str, float]:
-    tables = {
-        ParameterKind.LENGTH: ("length", entry.length),
-        ParameterKind.DENSITY: ("density_kg_per_m3", entry.density_kg_per_m3),
-    }
     given: dict[str, float] = {}
-    for kind, (table, values) in tables.items():
+    for kind, table in TABLES.items():
+        values: dict[str, float] = getattr(entry, table)
         for group, value in values.items():
             name = f"{kind}.{group}"
             if name not in known:
@@ -47,6 +49,34 @@ def _given(entry: DesignEntry, source: str, key: str, known: Mapping[str, float]
                 raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
             given[name] = value
     return given
+
+
+def designs_text(name: str, designs: Mapping[str, Sequence[float]], space: DesignSpace, remark: str) -> str:
+    """A population file that `read_designs` reads back to the same numbers.
+
+    Args:
+        name: of the file's population.
+        designs: parameter values by name.
+        space: the parameters.
+        remark: a line of comment.
+    """
+    lines = [f"# {remark}", f"name = {_quoted(name)}"]
+    for design, values in designs.items():
+        lines += ["", "[[design]]", f"name = {_quoted(design)}"]
+        for kind, table in TABLES.items():
+            given = [
+                f"{_quoted(parameter.group)} = {float(value)!r}"
+                for parameter, value in zip(space.parameters, values, strict=True)
+                if parameter.kind is kind
+            ]
+            if given:
+                lines.append(f"{table} = {{ {', '.join(given)} }}")
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    """A TOML basic string; its escapes are those of JSON."""
+    return msgspec.json.encode(text).decode()
 
 
 def start_genomes(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from evodesign.pool.base import Limits
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
@@ -33,10 +34,16 @@ __all__ = ["AssessmentFactory", "Evaluator", "detail_of", "outcome_of", "reach_o
 
 
 class Evaluator:
-    """The inner problems of a problem, built once and solved for any number of designs."""
+    """The inner problems of a problem, built once and solved for any number of designs.
+
+    Attributes:
+        problem: whose designs they are.
+        known: what is known beforehand.
+    """
 
     def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
         self.problem = problem
+        self.known = known
         scene, space, options = problem.scene, problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
         self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry, known)
@@ -151,11 +158,13 @@ class AssessmentFactory:
         digest: of the source; two factories of equal digest build the same evaluation.
         source: the problem's text and files.
         known: what was worked out beforehand; it follows from the source.
+        limits: of one evaluation; they follow from the source.
     """
 
     digest: str
     source: ProblemSource = field(compare=False)
     known: Preparation = field(compare=False)
+    limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to what it is worth."""

@@ -161,17 +161,22 @@ class SearchTable(Table, frozen=True):
     population: Annotated[int, Meta(ge=2, le=100_000)] = 48
     evaluations: Annotated[int, Meta(ge=1)] = 1920
     seed: Annotated[int, Meta(ge=0)] = 1
+    hours: Positive | None = None
+    stagnation_generations: Annotated[int, Meta(ge=0)] | None = None
     start: Name | None = None
+    asynchronous: bool = False
 
 
 class SolverTable(Table, frozen=True):
-    """`[solver]`: how the inner problems are solved, and limits of one solve."""
+    """`[solver]`: how the inner problems are solved; limits of a solve and of a whole evaluation."""
 
     symmetry: Symmetry = Symmetry.ON
     seeds: bool = True
     compile: bool = True
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0
+    evaluation_seconds: Positive = 600.0
+    evaluation_memory_gb: Annotated[float, Meta(ge=0.5)] = 8.0
 
 
 class TaskWeightsTable(Table, frozen=True):

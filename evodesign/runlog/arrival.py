@@ -6,6 +6,7 @@ decides: an assessment is taken as the log would give it back, and one that it c
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import msgspec
@@ -19,6 +20,7 @@ from evodesign.records import (
     Genome,
     Parameter,
     Status,
+    Turn,
     design_of,
 )
 
@@ -39,6 +41,7 @@ def arrival_of(
     genome: Genome,
     parameters: tuple[Parameter, ...],
     finished: Finished[Assessed],
+    turn: Turn | None = None,
 ) -> Arrival:
     """What came of a genome, with its place in the run; a failure becomes a status with its reason."""
     assessed = _assessed(genome, parameters, finished)
@@ -49,19 +52,42 @@ def arrival_of(
         assessment=assessed.assessment,
         seconds=finished.seconds,
         worker=finished.worker,
+        turn=turn,
     )
     return Arrival(evaluation, Detail(evaluation=number, heights=assessed.heights))
 
 
 def _assessed(genome: Genome, parameters: tuple[Parameter, ...], finished: Finished[Assessed]) -> Assessed:
     if finished.failure is not None:
-        status = Status.WORKER_LOST if finished.worker_lost else Status.NUMERICAL_FAILURE
-        return _failed(genome, parameters, status, finished.failure)
+        return _failed(genome, parameters, _status(finished), finished.failure)
+    if strange := _not_finite(msgspec.to_builtins(finished.value), ""):
+        reason = f"not a finite number: {strange}"
+        return _failed(genome, parameters, Status.NUMERICAL_FAILURE, reason)
     try:
         return msgspec.json.decode(msgspec.json.encode(finished.value), type=Assessed)
     except (msgspec.MsgspecError, TypeError) as error:
-        reason = f"the log cannot hold this assessment (a number that is not finite?): {error}"
+        reason = f"the log cannot hold this assessment: {error}"
         return _failed(genome, parameters, Status.NUMERICAL_FAILURE, reason)
+
+
+def _status(finished: Finished[Assessed]) -> Status:
+    if finished.worker_lost:
+        return Status.WORKER_LOST
+    return Status.TIME_LIMIT if finished.out_of_time else Status.NUMERICAL_FAILURE
+
+
+def _not_finite(value: object, name: str) -> str:
+    """The name and value of a number in a value that is not finite; empty when there is none."""
+    match value:
+        case float() if not math.isfinite(value):
+            return f"{name} is {value}"
+        case dict():
+            inner = ((f"{name}.{key}".lstrip("."), each) for key, each in value.items())
+        case list() | tuple():
+            inner = ((f"{name}[{index}]", each) for index, each in enumerate(value))
+        case _:
+            return ""
+    return next(filter(None, (_not_finite(each, key) for key, each in inner)), "")
 
 
 def _failed(genome: Genome, parameters: tuple[Parameter, ...], status: Status, reason: str) -> Assessed:

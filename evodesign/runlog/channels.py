@@ -19,6 +19,7 @@ __all__ = [
     "EVALUATION",
     "FRONT",
     "GENERATION",
+    "HEADER_COPY",
     "MESSAGE_ENCODING",
     "RECORDS",
     "RUN",
@@ -43,6 +44,9 @@ RECORDS: Final[Mapping[str, type[msgspec.Struct]]] = {
 
 AGENTS: Final = ("robot", "human")
 """Names of the agents, as fields of the schema."""
+
+HEADER_COPY: Final = "run.json.zst"
+"""Attachment that repeats the header, compressed: without a header a log is worth nothing."""
 
 MESSAGE_ENCODING: Final = "json"
 SCHEMA_ENCODING: Final = "jsonschema"

@@ -7,6 +7,7 @@ ends, so a crash leaves none behind.
 from __future__ import annotations
 
 import fcntl
+import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,6 +23,7 @@ __all__ = [
     "run_segments",
     "segment_path",
     "segments",
+    "synced",
 ]
 
 LOCK = "lock"
@@ -111,3 +113,13 @@ def locked(directory: Path) -> Iterator[None]:
         except OSError as error:
             raise RunError(f"{directory}: cannot be locked: {error.strerror}") from error
         yield
+
+
+def synced(*directories: Path) -> None:
+    """Make new names in directories durable: syncing a file does not sync its name."""
+    for directory in directories:
+        descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Final
 
 import msgspec
-from mcap.exceptions import EndOfFile
+import zstandard
+from mcap.exceptions import EndOfFile, McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, Message
 from mcap.stream_reader import StreamReader
@@ -22,9 +23,19 @@ from mcap.stream_reader import StreamReader
 from evodesign.errors import RunError
 from evodesign.runlog.channels import RECORDS
 from evodesign.runlog.directory import run_segments
-from evodesign.runlog.reader import DAMAGE
 
 __all__ = ["Follower", "Logged"]
+
+DAMAGE: Final = (
+    MemoryError,  # a damaged length
+    OverflowError,  # a damaged length
+    McapError,
+    ValueError,  # checksums, text that is not UTF-8
+    msgspec.MsgspecError,
+    struct.error,
+    zstandard.ZstdError,
+)
+"""What reading raises where a file is damaged."""
 
 MAGIC_SIZE: Final = 8
 """Bytes before the first record of an MCAP file."""

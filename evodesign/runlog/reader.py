@@ -1,42 +1,30 @@
-"""Reading one segment of a run's log, whole or cut off anywhere.
+"""Reading one segment of a run's log, whole, cut off or damaged anywhere.
 
-The file is read as a stream, from the front: a segment whose session was killed has neither index nor
-footer, and its last chunk may be half there. The first thing that cannot be read is taken as the end.
+A segment whose session was killed has neither index nor footer, and its last chunk may be half there. What is
+sound is read, also after a damaged part; what is not is said.
 """
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from typing import Final, TypeVar
 
 import msgspec
 import zstandard
-from mcap.exceptions import McapError, RecordLengthLimitExceeded
-from mcap.records import Channel, Message
-from mcap.stream_reader import StreamReader
 
 from evodesign.errors import RunError
 from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
-from evodesign.runlog.channels import RECORDS, RUN
+from evodesign.runlog.channels import HEADER_COPY, RECORDS, RUN
+from evodesign.runlog.scan import Scan, messages, scan, topics
 
-__all__ = ["Segment", "read_segment"]
-
-DAMAGE: Final = (
-    MemoryError,  # a damaged length
-    OverflowError,  # a damaged length
-    McapError,
-    ValueError,  # checksums, text that is not UTF-8
-    msgspec.MsgspecError,
-    struct.error,
-    zstandard.ZstdError,
-)
-"""What reading raises at the place where a file was cut off or damaged."""
+__all__ = ["Entry", "Segment", "entries", "read_content", "read_segment"]
 
 R = TypeVar("R")
+
+USUAL_TOPICS: Final = dict(enumerate(RECORDS, 1))
+"""Topics by channel number as the writer registers them, for a segment whose descriptions are damaged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,20 +33,33 @@ class Segment:
 
     Args:
         path: the file.
-        header: its first message; None when even that is missing.
+        headers: a single one, or of a merged segment one of each; none when even that is missing.
         evaluations, generations, fronts, details: in the order of the file.
         complete: whether the file is whole, to its last byte.
+        damaged: whether something is wrong that no kill explains.
         note: a sentence on what is missing; empty when nothing is.
     """
 
     path: Path
-    header: RunHeader | None
+    headers: tuple[RunHeader, ...]
     evaluations: tuple[Evaluation, ...]
     generations: tuple[Generation, ...]
     fronts: tuple[Front, ...]
     details: tuple[Detail, ...]
     complete: bool
+    damaged: bool
     note: str
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A record of the log with its topic, its number there, its time [ns since 1970] and its JSON."""
+
+    topic: str
+    sequence: int
+    time: int
+    data: bytes
+    record: msgspec.Struct
 
 
 class _Version(msgspec.Struct):
@@ -73,48 +74,67 @@ def read_segment(path: Path) -> Segment:
     Raises:
         RunError: the file cannot be opened, or a later version of evodesign wrote it.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise RunError(f"{path}: cannot be read: {error.strerror}") from error
-    stream = BytesIO(content)
-    records: list[msgspec.Struct] = []
-    damage, cut_off = "", False
-    try:
-        for record in _records(path, stream, len(content)):
-            records.append(record)  # noqa: PERF402 - what came before damage is kept
-    except DAMAGE as error:
-        damage = str(error) or type(error).__name__
-        cut_off = isinstance(error, RecordLengthLimitExceeded) or stream.tell() == len(content)
-    headers = _all(records, RunHeader)
+    found = scan(read_content(path))
+    records = [entry.record for entry in entries(path, found)]
+    headers = _all(records, RunHeader) or _header_copy(path, found)
     evaluations = _all(records, Evaluation)
-    where = f"after {len(evaluations)} evaluations" if headers else "before its header"
     return Segment(
         path=path,
-        header=headers[0] if headers else None,
+        headers=headers,
         evaluations=evaluations,
         generations=_all(records, Generation),
         fronts=_all(records, Front),
         details=_all(records, Detail),
-        complete=not damage,
-        note=_note(path, where, damage, cut_off),
+        complete=found.sound,
+        damaged=bool(found.damage) or (found.ended and not found.sound),
+        note=_note(path, found, len(evaluations), bool(headers)),
     )
 
 
-def _records(path: Path, stream: BytesIO, limit: int) -> Iterator[msgspec.Struct]:
-    """Records up to the end or the first damage; no part of it is longer than `limit` bytes."""
-    topics: dict[int, str] = {}
-    for entry in StreamReader(stream, validate_crcs=True, record_size_limit=limit).records:
-        if isinstance(entry, Channel):
-            topics[entry.id] = entry.topic
-        elif isinstance(entry, Message):
-            topic = topics.get(entry.channel_id)
-            if topic is None:
-                raise McapError(f"a message of the unknown channel {entry.channel_id}")
+def read_content(path: Path) -> bytes:
+    """The bytes of a segment.
+
+    Raises:
+        RunError: the file cannot be opened.
+    """
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise RunError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def entries(path: Path, found: Scan) -> Iterator[Entry]:
+    """All records in the order of the file; what this version does not know is passed over.
+
+    Raises:
+        RunError: a later version of evodesign wrote the file.
+    """
+    known = dict(USUAL_TOPICS)
+    for chunk in found.chunks:
+        known |= topics(chunk)
+        for message in messages(chunk):
+            topic = known.get(message.channel, "")
             if topic == RUN:
-                _check_version(path, entry.data)
-            if topic in RECORDS:
-                yield msgspec.json.decode(entry.data, type=RECORDS[topic])
+                _check_version(path, message.data)
+            if topic in RECORDS and (record := _decoded(topic, message.data)) is not None:
+                yield Entry(topic, message.sequence, message.time, message.data, record)
+
+
+def _decoded(topic: str, data: bytes) -> msgspec.Struct | None:
+    try:
+        return msgspec.json.decode(data, type=RECORDS[topic])
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        return None
+
+
+def _header_copy(path: Path, found: Scan) -> tuple[RunHeader, ...]:
+    """The header from its copy beside the messages."""
+    copies = [attachment.data for attachment in found.attachments if attachment.name == HEADER_COPY]
+    for copy in copies:
+        header = zstandard.ZstdDecompressor().decompress(copy)
+        _check_version(path, header)
+        return (msgspec.json.decode(header, type=RunHeader),)
+    return ()
 
 
 def _check_version(path: Path, header: bytes) -> None:
@@ -126,13 +146,18 @@ def _check_version(path: Path, header: bytes) -> None:
         )
 
 
-def _all(records: list[msgspec.Struct], kind: type[R]) -> tuple[R, ...]:
+def _all(records: Sequence[msgspec.Struct], kind: type[R]) -> tuple[R, ...]:
     return tuple(record for record in records if isinstance(record, kind))
 
 
-def _note(path: Path, where: str, damage: str, cut_off: bool) -> str:
-    if not damage:
+def _note(path: Path, found: Scan, evaluations: int, headed: bool) -> str:
+    """A sentence on what a file lacks."""
+    if found.sound:
         return ""
-    if cut_off:
-        return f"{path.name} ends {where}, without a footer: its session was killed, or is still writing"
-    return f"{path.name} cannot be read further {where}: {' '.join(damage.split())}"
+    where = f"after {evaluations} evaluations" if headed else "before its header"
+    if found.damage:
+        places = ", ".join(f"{gap.end - gap.start} bytes at {gap.start}" for gap in found.damage)
+        return f"{path.name} is damaged: {places} cannot be read; {evaluations} evaluations can"
+    if found.ended:
+        return f"{path.name} does not match its checksums, though each of its {evaluations} evaluations does"
+    return f"{path.name} ends {where}, without a footer: its session was killed, or is still writing"

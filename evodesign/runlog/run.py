@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-import msgspec
-
 from evodesign.errors import RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
+from evodesign.runlog.difference import differences
 from evodesign.runlog.directory import run_segments
 from evodesign.runlog.reader import Segment, read_segment
 
@@ -32,6 +31,7 @@ class Run:
         details: in order of evaluation, each once; every member of a front has one.
         complete: whether every segment is whole.
         notes: a sentence for everything that is missing or strange.
+        damaged: whether a segment has damage that no kill explains.
     """
 
     directory: Path
@@ -42,13 +42,14 @@ class Run:
     details: tuple[Detail, ...]
     complete: bool
     notes: tuple[str, ...]
+    damaged: bool = False
 
 
 def read_run(directory: Path) -> Run:
     """Everything that can be read of a run, also of one that was killed or is still being written.
 
     Raises:
-        RunError: the directory is missing or is not a run, the header of its first segment cannot be read,
+        RunError: the directory is missing or is not a run, none of its headers can be read,
             a later version of evodesign wrote it, or its segments come from different runs.
     """
     segments = [read_segment(path) for path in run_segments(directory).values()]
@@ -69,31 +70,27 @@ def read_run(directory: Path) -> Run:
         fronts=fronts,
         details=details,
         complete=all(segment.complete for segment in segments),
+        damaged=any(segment.damaged for segment in segments),
         notes=(*(segment.note for segment in segments if segment.note), *contradictions),
     )
 
 
 def _headers(directory: Path, segments: list[Segment]) -> list[RunHeader]:
     """Headers of the segments that have one, all of the same problem and search."""
-    first = segments[0]
-    if first.header is None:
+    headed = [(segment.path.name, header) for segment in segments for header in segment.headers]
+    if not headed:
         raise RunError(
-            f"{directory}: the header of {first.path.name} cannot be read, so nothing of this run can; "
+            f"{directory}: the header of {segments[0].path.name} cannot be read, so nothing of this run can; "
             "remove the directory, or choose another one with --run"
         )
-    for segment in segments:
-        if segment.header is not None and _identity(segment.header) != _identity(first.header):
+    first_name, first = headed[0]
+    for name, header in headed:
+        if differing := differences(first, header):
             raise RunError(
-                f"{directory}: {segment.path.name} is of another problem or search than {first.path.name}; "
-                "take it out of the directory"
+                f"{directory}: {name} is of another problem or search than {first_name}: "
+                f"{'; '.join(differing)}; take it out of the directory"
             )
-    return [segment.header for segment in segments if segment.header is not None]
-
-
-def _identity(header: RunHeader) -> RunHeader:
-    """A header without what may change from session to session."""
-    problem = msgspec.structs.replace(header.problem, path="")
-    return msgspec.structs.replace(header, problem=problem, budget=0, versions={}, git=None, started="")
+    return [header for _, header in headed]
 
 
 def _by_number(segments: list[Segment]) -> tuple[tuple[Evaluation, ...], list[str]]:

@@ -1,9 +1,9 @@
-"""Writing one segment of a run's log, so that nothing believed is ever lost.
+"""Writing the segments of a run's log, so that nothing believed is ever lost.
 
-Every evaluation is a chunk of its own, handed to the operating system at once: it survives the death of
-this process. `commit` also reaches the disk: what came before survives a power cut. The price is a log of
-about 1.0 kB instead of 0.5 kB per evaluation of 16 parameters and 3 heights (1.8 kB as JSON), and 5 kB
-more for each design with its postures.
+Every record is a chunk of its own, handed to the operating system at once: it survives the death of this
+process. `commit` also reaches the disk: what came before survives a power cut. Memory commits after every
+evaluation, before anyone is told of it. The price is a log of about 1.0 kB instead of 0.5 kB per evaluation
+of 16 parameters and 3 heights (1.8 kB as JSON), and 5 kB more for each design with its postures.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import BinaryIO, Self
 
 import msgspec
+import zstandard
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import RunError
@@ -26,19 +27,23 @@ from evodesign.runlog.channels import (
     EVALUATION,
     FRONT,
     GENERATION,
+    HEADER_COPY,
     MESSAGE_ENCODING,
     RECORDS,
     RUN,
     SCHEMA_ENCODING,
     described,
 )
-from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments
+from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
 
-__all__ = ["RunWriter"]
+__all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "register"]
+
+LONGEST_SEGMENT = 4096
+"""Messages after which `commit` begins the next segment: an open one keeps its index in memory, 2 kB each."""
 
 
 class RunWriter:
-    """Writes a new segment; a context manager that ends it.
+    """Writes a new segment, and the next one when it has grown long; a context manager that ends the last.
 
     A write that fails or is broken off spoils the segment: it then ends without a footer, after its last
     whole chunk, and the reader takes it so.
@@ -55,17 +60,34 @@ class RunWriter:
         if segment == 0:
             refuse_run(directory)
         make_directory(directory)
-        self.path = segment_path(directory, segment)
+        self._directory = directory
+        self._header = header
+        self._segment = segment
         self._spoilt = False
         self._closed = False
+        self._time = 0
+        self.path = segment_path(directory, segment)
         with self._writing():
-            self._file = self.path.open("xb")
-            self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
-            self._mcap.start(profile="", library="evodesign")
-            self._channels = _register(self._mcap, header)
-            self._add(RUN, header, sequence=segment)
-            _to_disk(self._file)
-            _entries_to_disk(directory, directory.parent)
+            self._begin()
+
+    def _begin(self) -> None:
+        """Open the file of the present segment and put its header on the disk."""
+        self.path = segment_path(self._directory, self._segment)
+        self._file = self.path.open("xb")
+        self._messages = 0
+        self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
+        self._mcap.start(profile="", library="evodesign")
+        self._channels = register(self._mcap, self._header)
+        self._add(RUN, self._header, sequence=self._segment)
+        add_header_copy(self._mcap, self._header, self._now())
+        _to_disk(self._file)
+        synced(self._directory, self._directory.parent)
+
+    def _end(self) -> None:
+        """Finish the present segment with its index and footer."""
+        self._mcap.finish()  # type: ignore[no-untyped-call]
+        _to_disk(self._file)
+        self._file.close()
 
     @classmethod
     def next_segment(cls, directory: Path, header: RunHeader) -> RunWriter:
@@ -93,9 +115,13 @@ class RunWriter:
             self._add(FRONT, front, front.generation)
 
     def commit(self) -> None:
-        """Return when all that was appended is on the disk."""
+        """Return when all that was appended is on the disk; the place where a long segment ends."""
         with self._writing():
             _to_disk(self._file)
+            if self._messages >= LONGEST_SEGMENT:
+                self._end()
+                self._segment += 1
+                self._begin()
 
     def close(self) -> None:
         """End the segment with its index and footer, unless it is spoilt; a second call does nothing."""
@@ -105,8 +131,7 @@ class RunWriter:
         try:
             if not self._spoilt:
                 with self._writing():
-                    self._mcap.finish()  # type: ignore[no-untyped-call]
-                    _to_disk(self._file)
+                    self._end()
         finally:
             with suppress(OSError):
                 self._file.close()
@@ -124,9 +149,15 @@ class RunWriter:
 
     def _add(self, topic: str, record: msgspec.Struct, sequence: int) -> None:
         """A chunk with one message, handed to the operating system."""
-        now = time.time_ns()
+        now = self._now()
         self._mcap.add_message(self._channels[topic], now, msgspec.json.encode(record), now, sequence)
         self._mcap.flush()  # type: ignore[no-untyped-call]
+        self._messages += 1
+
+    def _now(self) -> int:
+        """Time [ns since 1970] that never goes back within a segment, whatever the clock does."""
+        self._time = max(self._time, time.time_ns())
+        return self._time
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
@@ -140,8 +171,8 @@ class RunWriter:
         self._spoilt = False
 
 
-def _register(writer: Writer, header: RunHeader) -> dict[str, int]:
-    """Channel numbers by topic."""
+def register(writer: Writer, header: RunHeader) -> dict[str, int]:
+    """Describe all channels in a file; their numbers by topic."""
     channels = {}
     for topic, schema in described(header).items():
         number = writer.register_schema(RECORDS[topic].__name__, SCHEMA_ENCODING, schema)
@@ -149,16 +180,12 @@ def _register(writer: Writer, header: RunHeader) -> dict[str, int]:
     return channels
 
 
+def add_header_copy(writer: Writer, header: RunHeader, now: int) -> None:
+    """Attach the header once more, with a checksum of its own, at a time [ns since 1970]."""
+    data = zstandard.compress(msgspec.json.encode(header))
+    writer.add_attachment(now, now, HEADER_COPY, "application/zstd", data)
+
+
 def _to_disk(file: BinaryIO) -> None:
     file.flush()
     os.fsync(file.fileno())
-
-
-def _entries_to_disk(*directories: Path) -> None:
-    """Make new names in directories durable: syncing a file does not sync its name."""
-    for directory in directories:
-        descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)

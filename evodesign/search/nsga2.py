@@ -14,6 +14,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.config import Config
 from pymoo.core.population import Population
@@ -27,7 +28,7 @@ from evodesign.search.base import Outcome
 from evodesign.search.quasi_random import SobolStream, first_generation
 from evodesign.search.ranking import check_outcomes, infeasibility, usable
 
-__all__ = ["Nsga2"]
+__all__ = ["Nsga2", "nsga2_algorithm", "with_outcomes"]
 
 CROSSOVER_SHARE = 0.9
 CROSSOVER_INDEX = 15
@@ -47,17 +48,7 @@ class Nsga2:
         self._settings = settings
         self._stream = SobolStream(settings.dimension, stream_seed)
         start = first_generation(settings, self._stream)
-        Config.warnings["not_compiled"] = False  # pymoo would print a hint on standard output
-        problem = Problem(n_var=settings.dimension, n_obj=settings.objectives, n_ieq_constr=1, xl=0.0, xu=1.0)
-        self._algorithm = NSGA2(
-            pop_size=settings.population,
-            sampling=np.array(start, dtype=float),
-            crossover=SBX(prob=CROSSOVER_SHARE, eta=CROSSOVER_INDEX),
-            mutation=PM(eta=MUTATION_INDEX),
-            seed=algorithm_seed,
-            output=None,
-        )
-        self._algorithm.setup(problem, termination=NoTermination())
+        self._algorithm = nsga2_algorithm(settings, np.array(start, dtype=float), algorithm_seed)
         self._asked = self._next_generation()
 
     def ask(self) -> tuple[Genome, ...]:
@@ -71,9 +62,7 @@ class Nsga2:
             ValueError: outcomes that do not fit the genomes asked.
         """
         check_outcomes(self.ask(), outcomes, self._settings.objectives)
-        absent = (math.nan,) * self._settings.objectives
-        self._asked.set("F", np.array([usable(outcome) or absent for outcome in outcomes]))
-        self._asked.set("G", np.array([[infeasibility(outcome)] for outcome in outcomes]))
+        with_outcomes(self._asked, outcomes, self._settings.objectives)
         self._algorithm.tell(infills=self._asked)
         self._asked = self._next_generation()
 
@@ -85,3 +74,40 @@ class Nsga2:
             return offspring
         extra = Population.new(X=np.array(self._stream.take(self._settings.population - found)))
         return extra if offspring is None else Population.merge(offspring, extra)
+
+
+def nsga2_algorithm(
+    settings: SearchSettings,
+    start: NDArray[np.float64],
+    seed: np.random.SeedSequence,
+    *,
+    eliminate_duplicates: bool = True,
+) -> NSGA2:
+    """NSGA-II of pymoo over the unit cube, ready to ask.
+
+    Args:
+        settings: dimension, objectives and population.
+        start: the first generation [genomes x dimension].
+        seed: of its random state.
+        eliminate_duplicates: whether children that equal members are left out.
+    """
+    Config.warnings["not_compiled"] = False  # pymoo would print a hint on standard output
+    problem = Problem(n_var=settings.dimension, n_obj=settings.objectives, n_ieq_constr=1, xl=0.0, xu=1.0)
+    algorithm = NSGA2(
+        pop_size=settings.population,
+        sampling=start,
+        crossover=SBX(prob=CROSSOVER_SHARE, eta=CROSSOVER_INDEX),
+        mutation=PM(eta=MUTATION_INDEX),
+        seed=seed,
+        eliminate_duplicates=eliminate_duplicates,
+        output=None,
+    )
+    algorithm.setup(problem, termination=NoTermination())
+    return algorithm
+
+
+def with_outcomes(population: Population, outcomes: Sequence[Outcome], objectives: int) -> None:
+    """Give members their outcomes: infeasibility as the one constraint, NaN where there are no objectives."""
+    absent = (math.nan,) * objectives
+    population.set("F", np.array([usable(outcome) or absent for outcome in outcomes]))
+    population.set("G", np.array([[infeasibility(outcome)] for outcome in outcomes]))

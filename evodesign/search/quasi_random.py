@@ -8,6 +8,7 @@ Source: Sobol 1967; Owen, Scrambling Sobol and Niederreiter-Xing points, 1998 (a
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,10 +18,13 @@ from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.ranking import check_outcomes
 
-__all__ = ["QuasiRandom", "SobolStream", "first_generation"]
+__all__ = ["QuasiRandom", "SobolPoints", "SobolStream", "first_generation"]
 
 BLOCK = 64
 """Points computed at a time; a power of two, as the sequence's balance asks for."""
+
+KEPT_BLOCKS = 64
+"""Blocks that are at hand without computing them again."""
 
 
 class SobolStream:
@@ -41,6 +45,31 @@ class SobolStream:
             self._waiting.extend(tuple(row) for row in self._engine.random(BLOCK).tolist())
         taken, self._waiting = self._waiting[:count], self._waiting[count:]
         return tuple(taken)
+
+
+class SobolPoints:
+    """The points of the same sequence by number.
+
+    Args:
+        dimension: number of coordinates.
+        seed: everything that determines the scrambling.
+    """
+
+    def __init__(self, dimension: int, seed: np.random.SeedSequence) -> None:
+        self._block = functools.lru_cache(maxsize=KEPT_BLOCKS)(functools.partial(_block, dimension, seed))
+
+    def point(self, number: int) -> Genome:
+        """A point; numbers that are near each other cost little."""
+        block, place = divmod(number, BLOCK)
+        return self._block(block)[place]
+
+
+def _block(dimension: int, seed: np.random.SeedSequence, number: int) -> tuple[Genome, ...]:
+    fresh = np.random.SeedSequence(seed.entropy, spawn_key=seed.spawn_key)  # SciPy counts its uses of a seed
+    engine = qmc.Sobol(dimension, scramble=True, rng=np.random.default_rng(fresh))
+    if number > 0:  # SciPy cannot go forward by nothing
+        engine.fast_forward(number * BLOCK)
+    return tuple(tuple(row) for row in engine.random(BLOCK).tolist())
 
 
 def first_generation(settings: SearchSettings, stream: SobolStream) -> tuple[Genome, ...]:

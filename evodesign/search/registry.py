@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings
 from evodesign.search.base import JOINT_STARTS, Search
+from evodesign.search.branched import Branched
 from evodesign.search.cma_es import CmaEs
 from evodesign.search.nsga2 import Nsga2
 from evodesign.search.quasi_random import QuasiRandom
+from evodesign.search.steady import SteadySearch
+from evodesign.search.steady_cma_es import SteadyCmaEs
+from evodesign.search.steady_nsga2 import SteadyNsga2
+from evodesign.search.steady_random import SteadyRandom
 
-__all__ = ["SEARCHES", "make_search"]
+__all__ = ["SEARCHES", "STEADY_SEARCHES", "make_search", "make_steady_search"]
 
 SEARCHES: dict[str, Callable[[SearchSettings], Search]] = {
     "cma-es": CmaEs,
@@ -20,6 +25,13 @@ SEARCHES: dict[str, Callable[[SearchSettings], Search]] = {
     "random": QuasiRandom,
 }
 
+STEADY_SEARCHES: dict[str, Callable[[SearchSettings], SteadySearch]] = {
+    "cma-es": SteadyCmaEs,
+    "nsga2": SteadyNsga2,
+    "random": SteadyRandom,
+}
+"""The same without generations."""
+
 
 def make_search(settings: SearchSettings) -> Search:
     """The search that the settings describe, ready to ask.
@@ -27,15 +39,27 @@ def make_search(settings: SearchSettings) -> Search:
     Raises:
         InputError: an unknown algorithm, or settings that no search can use.
     """
-    if settings.algorithm not in SEARCHES:
-        hint = nearest_name(settings.algorithm, SEARCHES)
-        wanted = f"one of {', '.join(SEARCHES)}"
-        raise InputError("search", "algorithm", wanted, f"'{settings.algorithm}'{hint}")
-    _check(settings)
+    _check(settings, SEARCHES)
+    if settings.past:
+        return Branched(settings, make_search)
     return SEARCHES[settings.algorithm](settings)
 
 
-def _check(settings: SearchSettings) -> None:
+def make_steady_search(settings: SearchSettings) -> SteadySearch:
+    """The asynchronous search that the settings describe, ready to ask.
+
+    Raises:
+        InputError: as in `make_search`.
+    """
+    _check(settings, STEADY_SEARCHES)
+    return STEADY_SEARCHES[settings.algorithm](settings)
+
+
+def _check(settings: SearchSettings, searches: Collection[str]) -> None:
+    if settings.algorithm not in searches:
+        hint = nearest_name(settings.algorithm, searches)
+        wanted = f"one of {', '.join(searches)}"
+        raise InputError("search", "algorithm", wanted, f"'{settings.algorithm}'{hint}")
     for key, least in (("dimension", 1), ("objectives", 1), ("population", 1), ("seed", 0)):
         value = getattr(settings, key)
         if value < least:

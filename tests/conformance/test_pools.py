@@ -17,7 +17,8 @@ JOBS = 2
 
 @pytest.fixture(scope="module", params=sorted(POOLS))
 def pool(request: pytest.FixtureRequest) -> Iterator[Pool]:
-    with make_pool(request.param, JOBS) as made:
+    scheduler = request.getfixturevalue("cluster").address if request.param == "dask" else None
+    with make_pool(request.param, JOBS, scheduler) as made:
         yield made
 
 
@@ -49,7 +50,7 @@ def test_a_task_is_built_once_per_worker_and_kept_between_runs(pool: Pool, tmp_p
         equal_factory = Counted(str(tmp_path))
         workers |= {end.worker for end in pool.run(equal_factory, range(10))}
     built = [path.name.split("-")[0] for path in tmp_path.iterdir()]
-    assert sorted(f"local-{pid}" for pid in built) == sorted(workers)
+    assert sorted(built) == sorted(worker.rpartition("-")[2] for worker in workers)
     assert 1 <= len(built) <= JOBS
 
 
@@ -90,6 +91,20 @@ def test_a_run_left_early_does_not_disturb_the_next(pool: Pool) -> None:
     assert sorted(end.value for end in pool.run(picky, [0, 1, 2])) == [0, 1, 2]
 
 
+def test_an_argument_is_taken_when_its_turn_comes_and_may_follow_from_earlier_ends(pool: Pool) -> None:
+    given: list[int] = []
+
+    def arguments() -> Iterator[int]:
+        yield 1
+        while len(given) < 12:
+            yield 1 + sum(given[-1:])
+
+    for end in pool.run(squares, arguments()):
+        assert end.value is not None
+        given.append(end.value % 7)
+    assert len(given) < 12 + 4 * JOBS
+
+
 def test_a_closed_pool_starts_again(pool: Pool) -> None:
     pool.close()
     pool.close()
@@ -98,7 +113,7 @@ def test_a_closed_pool_starts_again(pool: Pool) -> None:
 
 def test_an_unknown_pool_names_the_nearest() -> None:
     with pytest.raises(
-        InputError, match=r"wanted one of joblib, serial, found 'jobli'; did you mean 'joblib'"
+        InputError, match=r"wanted one of dask, joblib, serial, found 'jobli'; did you mean 'joblib'"
     ):
         make_pool("jobli", 1)
 
@@ -107,3 +122,25 @@ def test_an_unknown_pool_names_the_nearest() -> None:
 def test_fewer_than_one_job_is_refused(jobs: int) -> None:
     with pytest.raises(InputError, match=f"--jobs: wanted a whole number from 1, found {jobs}"):
         make_pool("joblib", jobs)
+
+
+def test_an_address_is_refused_where_there_is_no_scheduler_in_play() -> None:
+    with pytest.raises(InputError, match="--scheduler: wanted no address without --pool dask, found 'tcp"):
+        make_pool("joblib", 1, "tcp://127.0.0.1:1")
+
+
+def test_dask_without_an_address_is_refused() -> None:
+    with pytest.raises(
+        InputError, match=r"--scheduler: wanted the address of a running Dask scheduler.*none"
+    ):
+        make_pool("dask", 1)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
+def test_a_silent_scheduler_is_refused_with_one_sentence(
+    address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("evodesign.pool.dask_pool.FIRST_PATIENCE", 0.5)
+    with pytest.raises(InputError, match=f"--scheduler: wanted the address .*, found '{address}' ") as caught:
+        make_pool("dask", 1, address)
+    assert "\n" not in str(caught.value)

@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from evodesign.pool.base import Limits
+
 
 @dataclass(frozen=True)
 class Counted:
@@ -107,3 +109,40 @@ def process() -> Callable[[float], int]:
         return os.getpid()
 
     return task
+
+
+@dataclass(frozen=True)
+class Within:
+    """A factory of `process` with limits."""
+
+    limits: Limits
+
+    def __call__(self) -> Callable[[float], int]:
+        return process()
+
+
+@dataclass(frozen=True)
+class SlowToBuild:
+    """A factory of `process` that takes its time [s]."""
+
+    seconds: float
+    limits: Limits
+
+    def __call__(self) -> Callable[[float], int]:
+        time.sleep(self.seconds)
+        return process()
+
+
+@dataclass(frozen=True)
+class Hoards:
+    """A task that takes as many bytes as its argument says."""
+
+    limits: Limits
+
+    def __call__(self) -> Callable[[int], int]:
+        return lambda size: len(bytearray(size))
+
+
+def mark() -> Callable[[object], str]:
+    """A task that reads how readily the system ends its process."""
+    return lambda _: Path("/proc/self/oom_score_adj").read_text().strip()

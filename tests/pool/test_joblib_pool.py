@@ -12,8 +12,19 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
-from tests.pool.tasks import KillsOnce, deadly, environment, process, unsendable
+from tests.pool.tasks import (
+    Hoards,
+    KillsOnce,
+    SlowToBuild,
+    Within,
+    deadly,
+    environment,
+    mark,
+    process,
+    unsendable,
+)
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 10.0
@@ -139,12 +150,68 @@ def test_a_result_that_does_not_pickle_is_a_failure_of_its_argument(pool: Joblib
     assert all(end.value == index for index, end in ends.items())
 
 
-def test_closing_a_run_early_ends_its_work_and_warns_nobody(pool: JoblibPool) -> None:
+def test_closing_a_run_early_ends_workers_at_work_and_keeps_the_others(pool: JoblibPool) -> None:
     pids = {end.value for end in pool.run(process, [0.02] * 10)}
-    ends = pool.run(process, [0.01, 60.0, 60.0, 60.0])
-    next(ends)
+    ends = pool.run(process, [0.01, 60.0])
+    idle = next(ends).value
     ends.close()  # type: ignore[attr-defined]
-    wait_until_all_end(pids)
+    wait_until_all_end(pids - {idle})
+    assert is_alive(idle)
+
+
+def test_arguments_are_taken_when_a_worker_is_free_and_not_before() -> None:
+    taken, given = [], []
+
+    def arguments() -> Iterator[float]:
+        for number in range(12):
+            taken.append(len(given))
+            yield 0.01 + number * 1e-9
+
+    with JoblibPool(3) as pool:
+        for end in pool.run(process, arguments()):
+            given.append(end)  # noqa: PERF402 - one by one is the point
+    assert taken == [0] * 6 + [0, 1, 2, 3, 4, 5], "three at work, three at the door"
+
+
+def test_an_argument_that_takes_too_long_is_ended_and_costs_no_other_its_worker() -> None:
+    with JoblibPool(2) as pool:
+        ends = {end.index: end for end in pool.run(Within(Limits(seconds=0.5)), [60.0, *[0.1] * 8])}
+        late = ends.pop(0)
+    assert late.out_of_time
+    assert not late.worker_lost
+    assert late.failure == "no result after 0.5 s, so the worker process was ended"
+    assert 0.5 <= late.seconds < 2.0
+    assert all(end.failure is None for end in ends.values())
+    assert late.worker.startswith("local-")
+
+
+def test_the_building_of_a_task_does_not_count_as_time_of_its_first_argument() -> None:
+    with JoblibPool(1) as pool:
+        (end,) = pool.run(SlowToBuild(seconds=0.8, limits=Limits(seconds=0.9)), [0.6])
+    assert end.failure is None
+
+
+def test_a_task_that_takes_for_ever_to_build_is_ended() -> None:
+    with JoblibPool(1) as pool:
+        (end,) = pool.run(SlowToBuild(seconds=60.0, limits=Limits(building_seconds=1.0)), [0.1])
+    assert end.out_of_time
+    assert end.failure == "no task built after 1 s, so the worker process was ended"
+
+
+def test_a_task_that_takes_all_memory_is_stopped_at_its_limit_and_retried_alone() -> None:
+    with JoblibPool(2) as pool:
+        ends = {end.index: end for end in pool.run(Hoards(Limits(memory=2**30)), [0, 2**32, 0])}
+        hoarder = ends.pop(1)
+    assert hoarder.out_of_memory
+    assert hoarder.failure is not None
+    assert hoarder.failure.startswith("MemoryError")
+    assert hoarder.failure.endswith("also when retried alone")
+    assert all(end.failure is None for end in ends.values())
+
+
+def test_a_worker_marks_itself_as_first_to_go_when_memory_runs_out(pool: JoblibPool) -> None:
+    (end,) = pool.run(mark, [None])
+    assert end.value == "800"
 
 
 def test_close_ends_workers_at_work() -> None:

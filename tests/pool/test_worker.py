@@ -31,17 +31,17 @@ def test_nothing_is_built_before_the_first_argument() -> None:
         built.append(1)
         return abs
 
-    bench = Workbench(factory)
+    bench = Workbench(factory, "local")
     assert built == []
     assert [bench.finish(index, -index).value for index in range(3)] == [0, 1, 2]
     assert built == [1]
 
 
 def test_a_value_of_none_is_not_a_failure() -> None:
-    end = Workbench(lambda: lambda argument: None).finish(0, "anything")
+    end = Workbench(lambda: lambda argument: None, "local").finish(0, "anything")
     assert (end.value, end.failure) == (None, None)
 
 
 def test_a_factory_that_gives_nothing_is_a_failure() -> None:
-    end = Workbench(lambda: None).finish(0, 1)  # type: ignore[arg-type, return-value]
+    end = Workbench(lambda: None, "local").finish(0, 1)  # type: ignore[arg-type, return-value]
     assert end.failure == "the task could not be built: its factory gave None"

@@ -46,7 +46,8 @@ def settings(weights: TaskWeights, enforced: Enforced = LIMITS, *, symmetric: bo
     return JointSettings(EffortWeights(), tasks, enforced, OPTIONS, symmetric)
 
 
-@pytest.mark.parametrize(("symmetry", "design"), [(Symmetry.ON, 0), (Symmetry.ON, 1), (Symmetry.OFF, 0)])
+@pytest.mark.parametrize("symmetry", [Symmetry.ON, Symmetry.OFF])
+@pytest.mark.parametrize("design", [0, 1])
 def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
     paper: Problem, symmetry: Symmetry, design: int
 ) -> None:
@@ -61,6 +62,7 @@ def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
     alone = [postures.solve(values, height, checker) for height in heights]
     cost = sum(min(a.cost for a in one.attempts if a.status is Status.SOLVED) for one in alone)
     chosen = settings(TaskWeights(), symmetric=symmetry is Symmetry.ON)
+    chosen = replace(chosen, options=replace(OPTIONS, near=True))  # to stay with the optimum it begins at
     joint = JointProblem(scene, space, heights, chosen, fixed=genome)
     together = joint.polish(genome, [one.postures for one in alone])
     assert together.solved

@@ -85,14 +85,14 @@ def test_damage_ends_a_segment_and_keeps_what_came_before(tmp_path: Path) -> Non
     file = tmp_path / "000.mcap"
     whole = file.read_bytes()
     noted = 0
-    places = range(len(whole) // 3, len(whole) * 2 // 3, 97)
+    places = range(len(whole) // 3, len(whole) // 2, 97)  # among the evaluations; the index comes after
     for place in places:
         content = bytearray(whole)
         content[place] ^= 0xFF
         file.write_bytes(content)
         follower = Follower(tmp_path)
         found = [each.record for each in follower.look() if isinstance(each.record, Evaluation)]
-        assert tuple(found) == read_segment(file).evaluations
+        assert found == list(EVALUATIONS[: len(found)])
         assert follower.look() == []
         noted += any(note.startswith("000.mcap cannot be read further") for note in follower.notes)
     assert noted > len(places) // 2, "a damaged length looks like a file that is still being written"

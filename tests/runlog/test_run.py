@@ -127,3 +127,18 @@ def test_reading_a_run_does_not_import_casadi() -> None:
         "sys.exit(any(name.split('.')[0] in ('casadi', 'pinocchio', 'pymoo') for name in sys.modules))"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_long_session_goes_on_in_a_further_segment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("evodesign.runlog.writer.LONGEST_SEGMENT", 4)
+    evaluations = toy_evaluations(HEADER, 11)
+    with RunWriter(tmp_path / "run", HEADER) as log:
+        for evaluation in evaluations:
+            log.evaluation(evaluation)
+            log.commit()
+    assert sorted(path.name for path in (tmp_path / "run").iterdir()) == [
+        f"00{each}.mcap" for each in range(4)
+    ]
+    run = read_run(tmp_path / "run")
+    assert list(run.evaluations) == evaluations
+    assert (run.complete, run.notes) == (True, ())

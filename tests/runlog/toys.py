@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -188,17 +188,22 @@ class ToyTask:
 
 
 class OrderedPool(Pool):
-    """Runs in this process and gives back in an order made from the number of arguments."""
+    """Runs in this process, one by one, or all at once and gives back in an order made from their number."""
 
-    def __init__(self, order: Callable[[int], Sequence[int]] = range) -> None:
+    def __init__(self, order: Callable[[int], Sequence[int]] | None = None) -> None:
         self._order = order
         self.closed_early = 0
 
-    def run(self, factory: Any, arguments: Sequence[Any]) -> Iterator[Finished[Any]]:
+    def run(self, factory: Any, arguments: Iterable[Any]) -> Iterator[Finished[Any]]:
         task = factory()
         try:
-            for index in self._order(len(arguments)):
-                yield self.finish(task, index, arguments[index])
+            if self._order is None:
+                for index, argument in enumerate(arguments):
+                    yield self.finish(task, index, argument)
+            else:
+                given = list(arguments)
+                for index in self._order(len(given)):
+                    yield self.finish(task, index, given[index])
         except GeneratorExit:
             self.closed_early += 1
             raise

@@ -10,7 +10,8 @@ from scipy.optimize import minimize
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.cma_es import MARGIN, CmaEs, default_population, uncrowded_cost
+from evodesign.search.cma_es import CmaEs
+from evodesign.search.cma_instances import MARGIN, default_population, uncrowded_cost
 
 FAILED = Outcome(None, None)
 
@@ -129,7 +130,7 @@ def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
     cma_es = search(objectives=2, dimension=4, population=32)
     for _ in range(60):
         cma_es.tell([Outcome(two_bowls(np.array(genome)), 0.0) for genome in cma_es.ask()])
-    best, worst = cma_es._extent
+    best, worst = cma_es._instances._extent
     reference = worst + MARGIN * (worst - best)
 
     def conquered_by(places):
@@ -141,8 +142,8 @@ def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
         )
 
     most = -minimize(lambda places: -conquered_by(places), [0.3, 0.45, 0.55, 0.7], method="Nelder-Mead").fun
-    found = moocore.hypervolume(np.array(cma_es._incumbents), ref=reference)
-    assert len(cma_es._incumbents) == 4
+    found = moocore.hypervolume(np.array(cma_es._instances._incumbents), ref=reference)
+    assert len(cma_es._instances._incumbents) == 4
     assert 0.995 * most < found < 1.0001 * most
 
 
@@ -152,18 +153,23 @@ def test_instances_begin_where_they_conquer_most_together():
     told += [Outcome((0.0, 3.0), 0.0), Outcome((3.0, 0.0), 0.0), Outcome(None, 0.1)]
     cma_es = search(objectives=2, dimension=4, population=32)
     cma_es.tell(told)
-    assert cma_es._incumbents[:3] == [(1.0, 1.0), (0.0, 3.0), (3.0, 0.0)]
+    assert cma_es._instances._incumbents[:3] == [(1.0, 1.0), (0.0, 3.0), (3.0, 0.0)]
     lonely = search(objectives=2, dimension=4, population=32)
     lonely.tell([*[FAILED] * 30, Outcome((1.0, 2.0), 0.0), Outcome(None, 0.1)])
-    assert lonely._incumbents == [(1.0, 2.0), None, None, None]
+    assert lonely._instances._incumbents == [(1.0, 2.0), None, None, None]
 
 
 def test_a_converged_instance_leaves_its_point_to_the_others_and_looks_elsewhere():
     cma_es = search(objectives=2, dimension=2, population=12)
     for _ in range(300):
         cma_es.tell([Outcome(two_bowls(np.array(genome)), 0.0) for genome in cma_es.ask()])
-    held = np.array([*cma_es._left_behind, *(values for values in cma_es._incumbents if values is not None)])
-    assert len(cma_es._left_behind) >= 3
+    held = np.array(
+        [
+            *cma_es._instances._left_behind,
+            *(values for values in cma_es._instances._incumbents if values is not None),
+        ]
+    )
+    assert len(cma_es._instances._left_behind) >= 3
     assert len(moocore.filter_dominated(held)) == len(held)
     assert np.diff(np.sort(held[:, 0])).min() > 0.02
 

@@ -3,7 +3,7 @@ from scipy.stats import qmc
 
 from evodesign.records import SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.quasi_random import QuasiRandom, SobolStream
+from evodesign.search.quasi_random import QuasiRandom, SobolPoints, SobolStream
 
 
 def test_the_stream_does_not_depend_on_how_it_is_taken():
@@ -35,3 +35,10 @@ def test_sampling_goes_on_where_the_first_generation_ended():
         search.tell([Outcome(None, None)] * 10)
     (seed,) = np.random.SeedSequence(3).spawn(1)
     assert asked == [(0.5, 0.5), *SobolStream(2, seed).take(39)]
+
+
+def test_points_by_number_are_those_of_the_stream_in_any_order():
+    stream = SobolStream(5, np.random.SeedSequence(7)).take(300)
+    points = SobolPoints(5, np.random.SeedSequence(7))
+    for number in (299, 0, 64, 63, 128, 1, 250, 64):
+        assert points.point(number) == stream[number]

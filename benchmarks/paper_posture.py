@@ -1,0 +1,181 @@
+"""The posture problem as the paper states it: torques and wrenches are functions of the posture.
+
+    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + comfort            over bases and joints
+    with        tau = (N B)^+ N h  and  f by Eq. 13                in the graph (`projected_graph`)
+
+Bounds, starts, and the constraints of hands, feet, stance, ground and push are the very ones of our whole
+posture program; comfort is ours without its terms in wrenches. The difference: our program chooses the
+wrenches and ties torques to them by equalities.
+
+Source: Sartore et al. 2022, Eq. 14 with pi fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
+from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.form import whole
+from evodesign.posture.load import LOAD_UNIT, push_of
+from evodesign.posture.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.posture.solution import AgentPosture
+from evodesign.posture.start import fixed_starts
+from evodesign.problem.build import Problem
+from evodesign.statics.scene import SIDES, Agent, Scene
+from evodesign.tree.model import Tree
+
+__all__ = ["PaperPostures", "PaperProgram", "paper_program"]
+
+Array = NDArray[np.float64]
+Expression = Any
+
+POSTURE = ("base_position", "base_angles", "joints")
+STATICS = ("torques", "force", "moment")
+
+
+@dataclass(frozen=True, slots=True)
+class PaperProgram:
+    """The paper's program for all designs and heights.
+
+    Args:
+        program: over bases and joints; its parameters are a design's values and the height, as ours.
+        statics: function from the robot's and the person's posture (base position and angles, then joints)
+            and the parameters to torques [N m] and wrenches [N, N m], in the order of `statics.coupled`.
+    """
+
+    program: Program
+    statics: Any
+
+
+class PaperPostures:
+    """The paper's program, ready to be solved."""
+
+    def __init__(self, problem: Problem, options: IpoptOptions) -> None:
+        self._scene, self._space = problem.scene, problem.space
+        self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
+        built = paper_program(problem)
+        self._statics = built.statics
+        self._solver = Solver(built.program, replace(options, compiled=False))
+        self._start = fixed_starts(self._solver)[0]
+
+    def solve(self, values: Sequence[float], height: float) -> RawSolution:
+        """What IPOPT finds for a design at a height [m], from the first of our fixed starts."""
+        return self._solver.solve([*values, height], self._start)
+
+    def residual(self, raw: RawSolution, values: Sequence[float], height: float) -> float:
+        """The largest residual (SI units) that the independent check finds in a solution."""
+        agents = (self._scene.robot, self._scene.human)
+        columns = [np.concatenate([raw.of(agent.name)[part] for part in POSTURE]) for agent in agents]
+        found = Statics(*[np.array(part).ravel() for part in self._statics(*columns, [*values, height])])
+        torques = np.split(found.torques, [len(self._scene.robot.joints)])
+        postures = {
+            agent.name: _posture(agent, raw.of(agent.name), torques[place], found, place)
+            for place, agent in enumerate(agents)
+        }
+        tree = self._space.resized(self._scene.robot.tree, values)
+        return max(Checker(self._scene, tree, self._human).residuals(postures, height).values())
+
+
+def paper_program(problem: Problem) -> PaperProgram:
+    """Build the graph of a problem; a few seconds."""
+    scene, space = problem.scene, problem.space
+    design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
+    robot_tree = space.resized(scene.robot.tree, ca.vertsplit(design))
+    robot = _part(scene.robot, robot_tree, scene, design, height)
+    human = _part(scene.human, scene.human.tree, scene, design, height)
+    parameters = ca.MX.sym("parameters", len(space.parameters) + 1)
+    postures, matrices = [robot.posture, human.posture], [robot.matrices, human.matrices]
+    found = projected_statics(scene, matrices, postures, parameters[:-1], DAMPING)
+    statics = ca.Function("statics", [*postures, parameters], [found.torques, found.wrenches])
+    return PaperProgram(_program(problem, (robot, human), found, parameters), statics)
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """An agent in the graph.
+
+    Args:
+        variables: base and joints, MX.
+        matrices: SX function from posture and design to M, h and Q^T.
+        constraints: of our agent block, less statics.
+        rows: SX function from posture, feet's wrenches, design and height to each constraint's expression.
+        comfort: SX function from posture to our comfort under vanishing wrenches.
+    """
+
+    variables: tuple[Variable, ...]
+    matrices: Any
+    constraints: tuple[Constraint, ...]
+    rows: Any
+    comfort: Any
+
+    @property
+    def posture(self) -> Expression:
+        """Base position and angles, then joints; their units are SI."""
+        return ca.vertcat(*[variable.symbol for variable in self.variables])
+
+
+def _part(agent: Agent, tree: Tree, scene: Scene, design: Expression, height: Expression) -> _Part:
+    block = agent_block(whole(agent), tree, scene, height)
+    variables = {variable.name.split(".", 1)[1]: variable for variable in block.variables}
+    posture = ca.vertcat(*[variables[name].value for name in POSTURE])
+    feet = ca.SX.sym("feet", 12)
+    kept = tuple(c for c in block.constraints if c.name.split(".", 1)[1] not in STATICS)
+    symbols = [variables[f"{side}_foot"] for side in SIDES]
+    rows = ca.substitute(
+        [c.expression for c in kept],
+        [variable.symbol for variable in symbols],
+        [part / symbols[0].scale for part in ca.vertsplit(feet, 6)],
+    )
+    wrenches = [v.symbol for name, v in variables.items() if name.endswith(("_hand", "_foot"))]
+    comfort = ca.substitute([block.comfort], wrenches, [ca.SX.zeros(symbol.numel()) for symbol in wrenches])
+    return _Part(
+        variables=tuple(_in_mx(variables[name]) for name in POSTURE),
+        matrices=agent_matrices(agent, tree, scene, design),
+        constraints=kept,
+        rows=ca.Function("rows", [posture, feet, design, height], rows),
+        comfort=ca.Function("comfort", [posture], comfort),
+    )
+
+
+def _in_mx(variable: Variable) -> Variable:
+    return replace(variable, symbol=ca.MX.sym(variable.name, variable.symbol.numel()))
+
+
+def _program(
+    problem: Problem, parts: tuple[_Part, _Part], statics: Statics, parameters: Expression
+) -> Program:
+    scene, weights = problem.scene, problem.weights
+    constraints = []
+    for place, part in enumerate(parts):
+        rows = part.rows(part.posture, statics.feet(place), parameters[:-1], parameters[-1])
+        pairs = zip(part.constraints, rows, strict=True)
+        constraints += [replace(constraint, expression=row) for constraint, row in pairs]
+    push = push_of(scene.robot, statics.hands(0)) / LOAD_UNIT
+    limit = scene.stance.push / LOAD_UNIT
+    robot_joints = len(scene.robot.joints)
+    effort = weights.robot * ca.sumsqr(statics.torques[:robot_joints])
+    effort += weights.human * ca.sumsqr(statics.torques[robot_joints:])
+    return Program(
+        name="paper",
+        variables=(*parts[0].variables, *parts[1].variables),
+        constraints=(*constraints, Constraint("load.push", push, -limit, limit)),
+        cost=effort / TORQUE_UNIT**2 + sum(part.comfort(part.posture) for part in parts),
+        parameters=parameters,
+    )
+
+
+def _posture(
+    agent: Agent, values: Mapping[str, Array], torques: Array, found: Statics, place: int
+) -> AgentPosture:
+    feet = np.split(found.feet(place), len(SIDES))
+    both = {f"{side}_foot": foot for side, foot in zip(SIDES, feet, strict=True)}
+    both.update({f"{side}_hand": hand for side, hand in found.hands(place).items()})
+    return whole(agent).expand({**values, "torques": torques, **both})

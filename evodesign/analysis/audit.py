@@ -1,0 +1,104 @@
+"""Whether a run's records agree with each other: everything in it that can be worked out a second time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import groupby
+
+from evodesign.analysis.standing import Standing
+from evodesign.records import Evaluation, Generation, RunHeader, design_of
+from evodesign.runlog.run import Run
+
+__all__ = ["audit"]
+
+TOLERANCE = 1e-9
+"""Relative difference of a hypervolume that rounding on another processor may cause."""
+
+
+def audit(run: Run) -> list[str]:
+    """A sentence for each contradiction; none in a sound run."""
+    return [
+        *_evaluations(run),
+        *_holes(run),
+        *_generations(run),
+        *_details(run),
+    ]
+
+
+def _evaluations(run: Run) -> Iterator[str]:
+    for evaluation in run.evaluations:
+        if fault := _fault(run.header, evaluation):
+            yield f"evaluation {evaluation.number}: {fault}"
+
+
+def _fault(header: RunHeader, evaluation: Evaluation) -> str:
+    """What is wrong with an evaluation by itself; empty if nothing is."""
+    assessment = evaluation.assessment
+    if len(evaluation.genome) != len(header.parameters):
+        return f"wanted {len(header.parameters)} coordinates, found {len(evaluation.genome)}"
+    if not all(0.0 <= coordinate <= 1.0 for coordinate in evaluation.genome):
+        return "its genome lies outside the unit cube"
+    if assessment.design != design_of(header.parameters, evaluation.genome):
+        return "its design is not that of its genome"
+    strange = set(assessment.objectives) - {objective.name for objective in header.objectives}
+    if strange:
+        return f"it has unknown objectives: {', '.join(sorted(strange))}"
+    if assessment.violation is not None and assessment.violation < 0.0:
+        return f"its violation is negative: {assessment.violation:g}"
+    return ""
+
+
+def _holes(run: Run) -> Iterator[str]:
+    """Evaluations that are missing from generations that were concluded."""
+    known = {evaluation.number for evaluation in run.evaluations}
+    concluded = max((generation.evaluations for generation in run.generations), default=0)
+    missing = [str(number) for number in range(concluded) if number not in known]
+    if missing:
+        yield f"missing evaluations: {', '.join(missing)}"
+
+
+def _generations(run: Run) -> Iterator[str]:
+    """Records of generations and fronts that the evaluations do not bear out."""
+    states = {state.number: state for state in run.generations}
+    fronts = {front.generation: front for front in run.fronts}
+    standing = Standing(run.header.objectives)
+    shown = 0
+    for number, group in groupby(run.evaluations, key=lambda evaluation: evaluation.generation):
+        born = list(group)
+        standing.add(born)
+        shown += len(born)
+        if number in states and states[number].evaluations != shown:
+            yield (
+                f"generation {number}: its record counts {states[number].evaluations} evaluations, "
+                f"the log holds {shown}; later ones were not looked at"
+            )
+            return
+        if number in states:
+            yield from _differing(states[number], standing.generation(number, born, states[number].seconds))
+        if number in fronts and number in states and fronts[number] != standing.front(number):
+            yield f"generation {number}: its front is not that of the evaluations"
+
+
+def _differing(logged: Generation, found: Generation) -> Iterator[str]:
+    for field in ("feasible_share", "reference", "best"):
+        if getattr(logged, field) != getattr(found, field):
+            yield f"generation {logged.number}: its {field.replace('_', ' ')} is not that of the evaluations"
+    one, other = logged.hypervolume, found.hypervolume
+    if (one is None) != (other is None) or (
+        one is not None and other is not None and not math.isclose(one, other, rel_tol=TOLERANCE)
+    ):
+        yield f"generation {logged.number}: its hypervolume is not that of the evaluations"
+
+
+def _details(run: Run) -> Iterator[str]:
+    """Postures without a design, and designs of a front without postures."""
+    known = {evaluation.number for evaluation in run.evaluations}
+    detailed = {detail.evaluation for detail in run.details}
+    members = {number for front in run.fronts for number in front.evaluations}
+    bare = sorted(members - detailed)
+    if detailed and bare:
+        yield f"no postures for members of a front: {', '.join(map(str, bare))}"
+    lost = sorted(number for number in detailed - known if number < max(known, default=0))
+    if lost:
+        yield f"postures without an evaluation: {', '.join(map(str, lost))}"

@@ -1,0 +1,85 @@
+"""How a session is stopped: Ctrl-C, SIGTERM, or the end of its wall time.
+
+The first request lets what is in flight arrive, for half a minute at most; the next one, or the end of that
+time, stops at once. Either way everything that had arrived is on the disk, and the run can be resumed.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from evodesign.cli.output import show_notes
+
+__all__ = ["GRACE_SECONDS", "Stop"]
+
+GRACE_SECONDS = 30.0
+"""How long evaluations in flight may take to arrive after a stop was asked for."""
+
+SECONDS_PER_HOUR = 3600.0
+
+
+class Stop:
+    """Whether a session is to stop; asked by the loop, told by signals.
+
+    Before and after `heeded`, a signal is a KeyboardInterrupt.
+
+    Args:
+        hours: wall time of the session from now on; None for no end.
+        grace_seconds: how long what is in flight may take.
+    """
+
+    def __init__(self, hours: float | None, grace_seconds: float = GRACE_SECONDS) -> None:
+        self._hours = hours
+        self._grace = grace_seconds
+        self._end = None if hours is None else time.monotonic() + hours * SECONDS_PER_HOUR
+        self._asked = threading.Event()
+        self._heeded = False
+        self._why = ""
+        signal.signal(signal.SIGTERM, self._on_request)
+        signal.signal(signal.SIGINT, self._on_request)
+
+    def __call__(self) -> bool:
+        """Whether no further evaluation is to begin."""
+        return self._asked.is_set()
+
+    @property
+    def why(self) -> str:
+        """What used up the session, as a clause; empty when a person stopped it."""
+        return self._why
+
+    @contextmanager
+    def heeded(self) -> Iterator[None]:
+        """Within this, the loop asks; signals do not break in at the first request."""
+        previous = signal.signal(signal.SIGALRM, self._on_alarm)
+        if self._end is not None:
+            signal.setitimer(signal.ITIMER_REAL, max(self._end - time.monotonic(), 1e-3))
+        self._heeded = True
+        try:
+            yield
+        finally:
+            self._heeded = False
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, previous)
+
+    def _on_request(self, signum: int, frame: FrameType | None) -> None:
+        if not self._heeded or self._asked.is_set():
+            raise KeyboardInterrupt
+        self._begin("Ctrl-C again stops at once")
+
+    def _on_alarm(self, signum: int, frame: FrameType | None) -> None:
+        if self._asked.is_set():
+            raise KeyboardInterrupt
+        self._why = f"its wall time of {self._hours:g} h is over"
+        self._begin(self._why)
+
+    def _begin(self, remark: str) -> None:
+        self._asked.set()
+        signal.setitimer(signal.ITIMER_REAL, self._grace)
+        sentence = f"waiting for what is in flight, at most {self._grace:g} s ({remark})"
+        # a thread of its own: the signal may have come while the main thread was writing
+        threading.Thread(target=show_notes, args=([sentence],), daemon=True).start()

@@ -1,0 +1,115 @@
+"""Worker processes of one machine, working side by side.
+
+Some arguments may wait at the door: a worker that is done takes the next one at once, without waiting until
+the caller has dealt with what is done (it may be writing to disk, or thinking).
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from typing import Generic, TypeVar
+
+from evodesign.pool.base import Finished
+from evodesign.pool.cell import Cell
+
+__all__ = ["Crew"]
+
+A = TypeVar("A")
+R = TypeVar("R")
+
+LOOK_EVERY = 0.2
+"""Interval [s] at which limits are looked at: a new worker's begins when its task is built."""
+
+
+class Crew(Generic[A, R]):
+    """Cells that are free, those at work, and what waits at the door.
+
+    Args:
+        cells: of one factory, all free.
+        door: arguments that may wait.
+    """
+
+    def __init__(self, cells: Iterable[Cell[A, R]], door: int = 0) -> None:
+        self._free = list(cells)
+        self._capacity = len(self._free) + door
+        self._busy: dict[Future[Finished[R]], tuple[int, Cell[A, R]]] = {}
+        self._waiting: deque[tuple[int, A]] = deque()
+        self._passed_on: set[Future[Finished[R]]] = set()
+        self._lock = threading.RLock()
+        self._ended = False
+
+    def free(self) -> int:
+        """Places for arguments, those at the door included."""
+        with self._lock:
+            return self._capacity - len(self._busy) - len(self._waiting)
+
+    def begin(self, index: int, argument: A) -> None:
+        """Give an argument to a free cell, or let it wait for one."""
+        with self._lock:
+            self._waiting.append((index, argument))
+            if self._free:
+                self._start(self._free.pop())
+
+    def more(self) -> bool:
+        """Whether another cell is done."""
+        with self._lock:
+            return any(future.done() for future in self._busy)
+
+    def next_end(self) -> Finished[R]:
+        """The first end to come, or the first that is too late."""
+        while True:
+            with self._lock:
+                busy = dict(self._busy)
+            earliest = min(cell.due for _, cell in busy.values())
+            patience = min(LOOK_EVERY, max(0.0, earliest - time.perf_counter()))
+            done, _ = wait(busy, patience, FIRST_COMPLETED)
+            late = (future for future, (_, cell) in busy.items() if cell.due <= time.perf_counter())
+            future = next(iter(done), None) or next(late, None)
+            if future is not None:
+                return self._end(future)
+
+    def end_work(self) -> None:
+        """End what is still at work."""
+        with self._lock:
+            self._ended = True
+            self._waiting.clear()
+            cells = [cell for _, cell in self._busy.values()]
+        for cell in cells:
+            cell.close()
+
+    def _start(self, cell: Cell[A, R]) -> None:
+        """Give a cell what has waited longest. The lock is held."""
+        index, argument = self._waiting.popleft()
+        future = cell.begin(index, argument)
+        self._busy[future] = index, cell
+        future.add_done_callback(self._pass_on)
+
+    def _pass_on(self, future: Future[Finished[R]]) -> None:
+        """Give the cell of a future that is done its next argument, in the executor's thread.
+
+        A cell that has lost its process, or whose end was taken already, is left to the caller's thread.
+        """
+        if future.exception() is not None:
+            return
+        with self._lock:
+            if self._waiting and not self._ended and future in self._busy:
+                self._passed_on.add(future)
+                self._start(self._busy[future][1])
+
+    def _end(self, future: Future[Finished[R]]) -> Finished[R]:
+        with self._lock:
+            index, cell = self._busy.pop(future)
+            passed_on = future in self._passed_on
+            self._passed_on.discard(future)
+        end = future.result() if passed_on else cell.end(index, future)
+        if not passed_on:
+            with self._lock:
+                if self._waiting:
+                    self._start(cell)
+                else:
+                    self._free.append(cell)
+        return end

@@ -1,0 +1,227 @@
+"""A pool of many machines: futures of a Dask scheduler that the user started.
+
+Twice as many arguments as the workers have threads are handed out, so that no worker waits for the next one.
+Workers may come and go: Dask gives the work of a lost one to another. When the scheduler goes, all that it
+held is forgotten; the pool waits until one answers again at the same address and hands out anew what had not
+come back.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+import weakref
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import suppress
+from queue import Empty, SimpleQueue
+from typing import Any, Generic, TypeVar
+
+from distributed import Client, Future
+from distributed.scheduler import KilledWorker
+
+from evodesign.errors import InputError, Interrupted
+from evodesign.pool.base import Factory, Finished, Pool
+from evodesign.pool.dispatch import ends_of
+from evodesign.pool.remote import deliver, finish_there
+from evodesign.pool.worker import explain
+
+__all__ = ["DaskPool"]
+
+A = TypeVar("A")
+R = TypeVar("R")
+
+HANDED_OUT_PER_THREAD = 2
+"""One argument that runs and one that waits at the worker's door."""
+
+COUNT_EVERY = 1.0
+"""Interval [s] at which workers are counted."""
+
+LOOK_EVERY = 0.5
+"""Interval [s] at which the connection is looked at while nothing comes back."""
+
+FIRST_PATIENCE = 10.0
+"""Longest wait [s] for the scheduler at the start."""
+
+PATIENCE = 3600.0
+"""Longest wait [s] for a scheduler that was lost."""
+
+FORGOTTEN = ("cancelled", "lost", "error")
+"""States of a future that will not have a value any more."""
+
+NO_WORKER = "dask-lost"
+"""Worker name of an argument of which no worker could report."""
+
+
+class DaskPool(Pool):
+    """Runs on the workers of a Dask scheduler, which need this package and its dependencies.
+
+    Args:
+        scheduler: address, such as `tcp://127.0.0.1:8786`.
+        patience: longest wait [s] for a scheduler that was lost.
+    Raises:
+        InputError: no scheduler answers there.
+    """
+
+    def __init__(self, scheduler: str, patience: float = PATIENCE) -> None:
+        self._scheduler = scheduler
+        self._patience = patience
+        self._current: weakref.ref[Generator[Any, None, None]] | None = None
+        try:
+            self._client: Client | None = _connect(scheduler, FIRST_PATIENCE)
+        except (OSError, ValueError) as error:
+            wanted = "the address of a running Dask scheduler, such as tcp://127.0.0.1:8786"
+            raise InputError("--scheduler", "", wanted, f"'{scheduler}' ({error})") from error
+
+    def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
+        """Every argument's end, in the order in which they come; ends a run that was left unfinished."""
+        self._end_run()
+        ends = self._ends(factory, arguments)
+        self._current = weakref.ref(ends)
+        return ends
+
+    def close(self) -> None:
+        """Leave the scheduler; its workers stay, and finish what they are at."""
+        self._end_run()
+        client, self._client = self._client, None
+        if client is not None:
+            client.close()
+
+    def _end_run(self) -> None:
+        unfinished = self._current() if self._current is not None else None
+        if unfinished is not None:
+            unfinished.close()
+
+    def _ends(self, factory: Factory[A, R], arguments: Iterable[A]) -> Generator[Finished[R], None, None]:
+        if self._client is None:
+            self._client = self._again()
+        yield from ends_of(_Crowd(self, factory), arguments)
+
+    def living(self) -> Client:
+        """A client with a connection; waits for the scheduler when that was lost.
+
+        Raises:
+            Interrupted: the scheduler has not come back.
+        """
+        client, start = self._client, time.monotonic()
+        while client is not None and client.status == "connecting":
+            time.sleep(LOOK_EVERY)
+            if time.monotonic() - start > self._patience:
+                break
+        if client is None or client.status != "running":
+            if client is not None:
+                client.close()
+            client = self._client = self._again()
+        return client
+
+    def _again(self) -> Client:
+        deadline = time.monotonic() + self._patience
+        while time.monotonic() < deadline:
+            try:
+                return _connect(self._scheduler, FIRST_PATIENCE)
+            except OSError:
+                time.sleep(LOOK_EVERY)
+        raise Interrupted(
+            f"the scheduler {self._scheduler} has not come back for {self._patience:g} s; "
+            "start it and its workers again, then resume the run"
+        )
+
+
+def _connect(scheduler: str, patience: float) -> Client:
+    return Client(scheduler, timeout=patience, set_as_default=False)
+
+
+class _Crowd(Generic[A, R]):
+    """The workers of all machines.
+
+    Args:
+        pool: that has the connection.
+        factory: of the task.
+    """
+
+    def __init__(self, pool: DaskPool, factory: Factory[A, R]) -> None:
+        self._pool = pool
+        self._factory = factory
+        self._work: Future | None = None
+        self._begun: dict[int, tuple[A, float]] = {}
+        self._futures: dict[str, tuple[int, Future]] = {}
+        self._done: SimpleQueue[str] = SimpleQueue()
+        self._ends: list[Finished[R]] = []
+        self._threads = 0
+        self._counted = float("-inf")
+        self._names = (f"evodesign-{id(self)}-{time.time_ns()}-{number}" for number in itertools.count())
+
+    def free(self) -> int:
+        """How many more arguments the workers may hold."""
+        if time.monotonic() - self._counted > COUNT_EVERY:
+            with suppress(OSError):  # just lost: what is on its way will come back as forgotten
+                self._threads = sum(self._pool.living().nthreads().values())
+            self._counted = time.monotonic()
+        return max(0, max(1, HANDED_OUT_PER_THREAD * self._threads) - len(self._begun))
+
+    def begin(self, index: int, argument: A) -> None:
+        """Hand an argument to the scheduler."""
+        self._begun[index] = argument, time.perf_counter()
+        self._submit(index)
+
+    def more(self) -> bool:
+        """Whether other ends have come back."""
+        return bool(self._ends) or not self._done.empty()
+
+    def next_end(self) -> Finished[R]:
+        """The next end to come back; what was forgotten with a scheduler is handed out anew."""
+        while not self._ends:
+            self._collect(self._names_done())
+        end = self._ends.pop()
+        del self._begun[end.index]
+        return end
+
+    def _submit(self, index: int) -> None:
+        client, name = self._pool.living(), next(self._names)
+        if self._work is None or self._work.client is not client or self._work.status in FORGOTTEN:
+            self._work = client.submit(deliver, self._factory, key=f"{name}-factory", pure=False)
+        argument, _ = self._begun[index]
+        future = client.submit(finish_there, self._work, index, argument, key=name, pure=False)
+        self._futures[name] = index, future
+        future.add_done_callback(lambda done: self._done.put(done.key))
+
+    def _names_done(self) -> list[str]:
+        """Names of the futures that ended in some way, each once; waits for one."""
+        try:
+            names = [self._done.get(timeout=LOOK_EVERY)]
+        except Empty:
+            living = self._pool.living()
+            return [name for name, (_, future) in self._futures.items() if future.client is not living]
+        while not self._done.empty():
+            names.append(self._done.get())
+        return [name for name in dict.fromkeys(names) if name in self._futures]
+
+    def _collect(self, names: list[str]) -> None:
+        """Take the ends of futures; hand out anew what is not there any more."""
+        ended = [self._futures.pop(name) for name in names]
+        there = [(index, future) for index, future in ended if future.status == "finished"]
+        found = {end.index: end for end in _gathered([future for _, future in there])}
+        for index, future in ended:
+            if index in found:
+                self._ends.append(found[index])
+            elif future.status == "error":
+                self._ends.append(self._failed(index, future))
+            else:
+                self._submit(index)
+
+    def _failed(self, index: int, future: Future) -> Finished[R]:
+        """The end of an argument of which Dask itself says that it failed."""
+        error = future.exception()
+        lost = isinstance(error, KilledWorker)
+        failure = "the Dask workers that had it died" if lost else f"no result came back: {explain(error)}"
+        seconds = time.perf_counter() - self._begun[index][1]
+        return Finished(index, None, failure, lost, seconds, NO_WORKER)
+
+
+def _gathered(futures: list[Future]) -> list[Finished[Any]]:
+    """The results of futures, without those that are lost."""
+    if not futures:
+        return []
+    try:
+        return list(futures[0].client.gather(futures, errors="skip"))
+    except Exception:  # noqa: BLE001 - whatever broke: without their results they are handed out anew
+        return []

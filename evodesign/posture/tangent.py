@@ -1,0 +1,272 @@
+"""How a design's postures and reach move with the design: their tangents.
+
+The solved posture is found again by the program that it came from, made exact, and differentiated
+(`sensitivity`). Where robot and person were solved one after the other, the person follows the push X:
+
+    d person / d pi = d person / dX  dX / d pi
+    d cost / d pi   = d cost_r / d pi + (cost_h'(X) - V'(X)) dX / d pi
+
+with cost_r the robot's optimal cost (which holds V) and cost_h the person's. A push at its limit stays there.
+
+Source: implicit function theorem and envelope theorem, see `sensitivity`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from evodesign.design.space import DesignSpace
+from evodesign.posture.form import Form, symmetric_forms, whole
+from evodesign.posture.human_value import HumanValue, human_program
+from evodesign.posture.kkt import Array, Kink
+from evodesign.posture.posture import SYMMETRIC, EffortWeights, posture_program
+from evodesign.posture.program import IpoptOptions, Program
+from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
+from evodesign.posture.solution import AgentPosture, HeightSolution
+from evodesign.posture.split import SPLIT, robot_program
+from evodesign.statics.scene import ROBOT, SIDES, Scene
+
+__all__ = ["PostureTangent", "PostureTangents", "labels_of"]
+
+SAME = 1e-2
+"""Difference of torques [N m] below which a posture that is found again is the same one."""
+
+Forms = tuple[Form, Form]
+
+
+@dataclass(frozen=True, slots=True)
+class PostureTangent:
+    """A posture made exact, and how it moves with the design.
+
+    Args:
+        forms: of robot and person, for which the values are.
+        values: by variable name, SI units.
+        slopes: their derivatives with respect to the design's parameters, shape (rows, parameters).
+        cost: the least cost of the posture problem.
+        cost_slope: its derivative, one per parameter.
+        compared: the cost by which starts are compared: with V(X) where the person is solved after the robot.
+        limits: every inequality, with slopes per parameter.
+    """
+
+    forms: Forms
+    values: Mapping[str, Array]
+    slopes: Mapping[str, Array]
+    cost: float
+    cost_slope: Array
+    compared: float
+    limits: tuple[Limit, ...]
+
+    def postures(self, step: Array) -> dict[str, AgentPosture]:
+        """To first order, the postures of a design that differs by a step, one number per parameter."""
+        moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
+        return {form.agent.name: form.expand(_of(form, moved)) for form in self.forms}
+
+
+class _Way(Protocol):
+    """A way of solving postures, with derivatives."""
+
+    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
+        """The tangent of a posture that this way might have found."""
+
+
+class PostureTangents:
+    """Tangents of the postures that `PostureProblem` finds, built from the same ingredients."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        space: DesignSpace,
+        weights: EffortWeights,
+        options: IpoptOptions,
+        values: Sequence[HumanValue],
+    ) -> None:
+        self._ingredients = (scene, space, weights, options)
+        self._values = {value.height: value for value in values}
+
+    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
+        """The tangent of a design's solved posture, or why it has none.
+
+        Args:
+            design: one number per parameter.
+            solution: of that design, solved.
+        """
+        found = self._way(solution).at(design, solution)
+        if isinstance(found, Kink):
+            return found
+        if not _same(found, solution):
+            return Kink("the posture was not found again")
+        return found if _determined(found) else Kink("the posture can move at no cost")
+
+    def _way(self, solution: HeightSolution) -> _Way:
+        """The program that found a posture, differentiated; built when it is first needed."""
+        program = solution.start.partition(":")[0]
+        if program == SPLIT:
+            return self._split
+        return self._half if program == SYMMETRIC else self._full
+
+    @cached_property
+    def _split(self) -> _Way:
+        scene, space, weights, options = self._ingredients
+        return _Split(symmetric_forms(scene), scene, space, weights, options, self._values)
+
+    @cached_property
+    def _half(self) -> _Way:
+        return _Joint(symmetric_forms(self._ingredients[0]), *self._ingredients)
+
+    @cached_property
+    def _full(self) -> _Way:
+        scene = self._ingredients[0]
+        return _Joint((whole(scene.robot), whole(scene.human)), *self._ingredients)
+
+
+class _Joint:
+    """Robot and person in one program."""
+
+    def __init__(
+        self, forms: Forms, scene: Scene, space: DesignSpace, weights: EffortWeights, options: IpoptOptions
+    ) -> None:
+        self._forms = forms
+        program = posture_program(forms, scene, space, weights)
+        self._both = Sensitivity(program, options, labels_of(forms))
+
+    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
+        """The tangent of a posture that this program might have found."""
+        start = _start(self._forms, self._both.program, solution.postures)
+        found = self._both.at([*design, solution.height], start)
+        if isinstance(found, Kink):
+            return found
+        own = slice(len(design))
+        return PostureTangent(
+            forms=self._forms,
+            values=found.values,
+            slopes={name: slope[:, own] for name, slope in found.slopes.items()},
+            cost=found.cost,
+            cost_slope=found.cost_slope[own],
+            compared=found.cost,
+            limits=tuple(_in(limit, np.eye(len(found.cost_slope))[:, own]) for limit in found.limits),
+        )
+
+
+class _Split:
+    """The robot against the person's value function, and then the person."""
+
+    def __init__(
+        self,
+        forms: Forms,
+        scene: Scene,
+        space: DesignSpace,
+        weights: EffortWeights,
+        options: IpoptOptions,
+        values: Mapping[float, HumanValue],
+    ) -> None:
+        self._forms, self._scene, self._values = forms, scene, values
+        labels = labels_of(forms)
+        self._robot = Sensitivity(robot_program(forms[0], scene, space, weights.robot), options, labels)
+        self._human = Sensitivity(human_program(forms[1], scene, weights.human), options, labels)
+
+    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
+        """The tangent of a posture that this pair of programs might have found."""
+        value = self._values[solution.height]
+        start = _start(self._forms, self._robot.program, solution.postures)
+        robot = self._robot.at([*design, solution.height, *value.coefficients], start)
+        if isinstance(robot, Kink):
+            return robot
+        own = np.eye(len(robot.cost_slope))[:, : len(design)]
+        push, push_slope = (self._push(part[f"{ROBOT}.left_hand"]) for part in (robot.values, robot.slopes))
+        held = any(limit.active and limit.name == "load.push" for limit in robot.limits)
+        human = self._person(solution, float(push), held=held)
+        if isinstance(human, Kink):
+            return human
+        follow = np.vstack([np.zeros(len(design)), push_slope @ own])  # d (height, push) / d design
+        expected = Chebyshev(value.coefficients, domain=[-value.push, value.push])
+        surprise = human.cost_slope[1] - float(expected.deriv()(push))
+        return PostureTangent(
+            forms=self._forms,
+            values={**robot.values, **human.values},
+            slopes={
+                **{name: slope @ own for name, slope in robot.slopes.items()},
+                **{name: slope @ follow for name, slope in human.slopes.items()},
+            },
+            cost=robot.cost - float(expected(push)) + human.cost,
+            cost_slope=robot.cost_slope @ own + surprise * follow[1],
+            compared=robot.cost,
+            limits=(
+                *(_in(limit, own) for limit in robot.limits),
+                *(_in(limit, follow) for limit in human.limits),
+            ),
+        )
+
+    def _person(self, solution: HeightSolution, push: float, *, held: bool) -> Optimum | Kink:
+        """The person under a push [N]; one that is held at its limit does not move the person."""
+        parameters = [solution.height, push]
+        start = _start(self._forms, self._human.program, solution.postures)
+        raw = self._human.solve(parameters, start)
+        if not held:
+            return self._human.of(parameters, raw)
+        still = {name: np.zeros((len(value), len(parameters))) for name, value in raw.values.items()}
+        return Optimum(raw.values, still, raw.cost, np.zeros(len(parameters)), ())
+
+    def _push(self, left_hand: Array) -> Array:
+        """The robot's push on the load [N] from the force on its left hand; the right one pushes alike."""
+        return np.asarray(-len(SIDES) * self._scene.robot.sign * left_hand[0])
+
+
+def _in(limit: Limit, change: Array) -> Limit:
+    """A limit whose parameters follow others, with their derivatives, shape (parameters, others)."""
+    return Limit(limit.name, limit.active, limit.margin, limit.slope @ change)
+
+
+def _same(tangent: PostureTangent, solution: HeightSolution) -> bool:
+    """Whether a posture that was found again has the torques that it had."""
+    found = tangent.postures(np.zeros_like(tangent.cost_slope))
+    return all(
+        abs(found[agent].torques[joint] - torque) < SAME
+        for agent, posture in solution.postures.items()
+        for joint, torque in posture.torques.items()
+    )
+
+
+def _determined(tangent: PostureTangent) -> bool:
+    """Whether everything of the agents has a derivative."""
+    return not any(
+        np.isnan(slope).any() for form in tangent.forms for slope in _of(form, tangent.slopes).values()
+    )
+
+
+def labels_of(forms: Sequence[Form]) -> dict[str, tuple[str, ...]]:
+    """Names of joints and trunk frames for the rows of variables and constraints about them."""
+    joints = {f"{form.agent.name}.{part}": form.joints for form in forms for part in ("joints", "torques")}
+    return joints | {f"{form.agent.name}.trunk_clear": form.trunk for form in forms}
+
+
+def _of(form: Form, values: Mapping[str, Array]) -> dict[str, Array]:
+    """The values of a form's agent, by their name without the agent's."""
+    prefix = f"{form.agent.name}."
+    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
+
+
+def _start(forms: Forms, program: Program, postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
+    """Whole postures as values of a program's variables; hands of an absent agent are the partner's."""
+    counts = {variable.name: variable.symbol.numel() for variable in program.variables}
+    known: dict[str, Any] = {}
+    for form in forms:
+        posture, agent = postures[form.agent.name], form.agent.name
+        present = f"{agent}.joints" in counts
+        hands = {
+            f"{agent if present else 'partner'}.{side}_hand": posture.hand_wrenches[side]
+            for side in form.sides
+        }
+        known |= {name: wrench[: counts[name]] for name, wrench in hands.items()}
+        if present:
+            known |= {f"{agent}.{side}_foot": posture.foot_wrenches[side] for side in form.sides}
+            known[f"{agent}.base_position"] = posture.base_position
+            known[f"{agent}.base_angles"] = posture.base_angles
+            known[f"{agent}.joints"] = [posture.joints[name] for name in form.joints]
+            known[f"{agent}.torques"] = [posture.torques[name] for name in form.joints]
+    return known

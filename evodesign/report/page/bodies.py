@@ -1,0 +1,103 @@
+"""Robot, person and load as the page's scripts draw them.
+
+The page gets the trees and the logged joint positions; it computes the link poses itself, by the same
+formula as `tree.kinematics`. A design's robot is told by what differs from the unscaled one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Box, Cylinder, Shape
+from evodesign.problem.build import Problem
+from evodesign.report.page.content import Bodies, JointBody, LinkBody, ShapeBody, TreeBody
+from evodesign.statics.scene import Agent
+from evodesign.tree.model import Joint, Link, Tree
+
+__all__ = ["agent_body", "bodies", "changes"]
+
+
+def bodies(problem: Problem) -> Bodies:
+    """Everything that stands in the problem's scene, the robot unscaled."""
+    scene = problem.scene
+    position = _positions(scene.robot.tree)
+    changing = {position[name] for parameter in problem.space.parameters for name in parameter.links}
+    return Bodies(
+        agents={agent.name: agent_body(agent) for agent in (scene.robot, scene.human)},
+        payload_size_m=scene.payload.size,
+        payload_mass_kg=scene.payload.mass,
+        changing=tuple(sorted(changing)),
+    )
+
+
+def changes(problem: Problem, values: Sequence[float]) -> tuple[dict[int, LinkBody], dict[int, JointBody]]:
+    """Links and joints of a design's robot that differ from the unscaled one's, by index in the tree."""
+    before = problem.scene.robot.tree
+    after = problem.space.resized(before, values)
+    position = _positions(after)
+    links = enumerate(zip(before.links, after.links, strict=True))
+    joints = enumerate(zip(before.joints, after.joints, strict=True))
+    return (
+        {index: _link(new) for index, (old, new) in links if new is not old},
+        {index: _joint(new, position) for index, (old, new) in joints if new is not old},
+    )
+
+
+def agent_body(agent: Agent) -> TreeBody:
+    """An agent's tree with its solids and looks, and which links are its soles."""
+    position = _positions(agent.tree)
+    return TreeBody(
+        links=tuple(_link(link) for link in agent.tree.links),
+        joints=tuple(_joint(joint, position) for joint in agent.tree.joints),
+        soles={side: position[name] for side, name in agent.soles.items()},
+    )
+
+
+def _positions(tree: Tree) -> Mapping[str, int]:
+    return {link.name: index for index, link in enumerate(tree.links)}
+
+
+def _link(link: Link) -> LinkBody:
+    solids = [_shape(solid.shape, solid.link_from_solid) for solid in link.solids]
+    looks = [_shape(look.shape, look.link_from_look) for look in link.looks]
+    return LinkBody(name=link.name, mass_kg=float(link.inertia.mass), shapes=(*solids, *looks))
+
+
+def _shape(shape: Shape, place: Placement) -> ShapeBody:
+    return ShapeBody(
+        kind=type(shape).__name__.lower(),
+        size=_size(shape),
+        rotation=_nine(place),
+        position=_three(place.translation),
+    )
+
+
+def _size(shape: Shape) -> tuple[float, ...]:
+    match shape:
+        case Box():
+            return _three(shape.sides)
+        case Cylinder():
+            return (float(shape.radius), float(shape.length))
+        case _:
+            return (float(shape.radius),)
+
+
+def _joint(joint: Joint, position: Mapping[str, int]) -> JointBody:
+    return JointBody(
+        name=joint.name,
+        kind=str(joint.kind),
+        parent=position[joint.parent],
+        child=position[joint.child],
+        rotation=_nine(joint.parent_from_child),
+        position=_three(joint.parent_from_child.translation),
+        axis=_three(joint.axis),
+    )
+
+
+def _nine(place: Placement) -> tuple[float, ...]:
+    return tuple(float(entry) for row in place.rotation for entry in row)
+
+
+def _three(vector: Sequence[float]) -> tuple[float, ...]:
+    return tuple(float(entry) for entry in vector)

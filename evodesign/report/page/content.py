@@ -1,0 +1,174 @@
+"""What stands in the page, as it is handed to its scripts: JSON in columns, units in the names.
+
+Numbers are the log's, unrounded. A number that does not exist is None.
+"""
+
+from __future__ import annotations
+
+from msgspec import Struct
+
+from evodesign.records import Generation, HeightDetail, HeightOutcome, Objective, Parameter
+
+__all__ = [
+    "Bodies",
+    "Cause",
+    "Content",
+    "Design",
+    "Facts",
+    "JointBody",
+    "LinkBody",
+    "Mark",
+    "Points",
+    "ShapeBody",
+    "TreeBody",
+]
+
+
+class Part(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of the page's parts."""
+
+
+class Facts(Part, frozen=True):
+    """The run in figures, for the page's head and foot."""
+
+    problem: str
+    directory: str
+    algorithm: str
+    population: int
+    seed: int
+    budget: int
+    started: str
+    versions: dict[str, str]
+    git: str | None
+    evaluations: int
+    feasible: int
+    front: int
+    seconds: float
+    problem_text: str
+
+
+class Points(Part, frozen=True):
+    """Evaluations in columns, by number; `kind` is `front`, `feasible` or `infeasible`."""
+
+    number: list[int]
+    kind: list[str]
+    objectives: dict[str, list[float | None]]
+    parameters: dict[str, list[float]]
+    violation_m: list[float | None]
+    lowest_m: list[float | None]
+    highest_m: list[float | None]
+    reason: list[str]
+
+
+class Mark(Part, frozen=True):
+    """A design worth a look; `kind` is `unscaled`, `best`, `knee`, `asked` or `near`."""
+
+    number: int
+    kind: str
+    label: str
+
+
+class Cause(Part, frozen=True):
+    """A cause of failure, how many designs failed by it, and the first one's reason."""
+
+    cause: str
+    count: int
+    example: int
+    reason: str
+
+
+class ShapeBody(Part, frozen=True):
+    """A solid or a look in its link's frame.
+
+    Attributes:
+        kind: `sphere` (size: radius), `cylinder` (radius, length along z) or `box` (x, y, z) [m].
+        rotation: nine numbers, rows of link_from_shape.
+        position: of the centre in the link's frame [m].
+    """
+
+    kind: str
+    size: tuple[float, ...]
+    rotation: tuple[float, ...]
+    position: tuple[float, ...]
+
+
+class LinkBody(Part, frozen=True):
+    """A link's mass [kg] and shapes."""
+
+    name: str
+    mass_kg: float
+    shapes: tuple[ShapeBody, ...]
+
+
+class JointBody(Part, frozen=True):
+    """A joint; links by their index in the tree, parents before children.
+
+    Attributes:
+        kind: `fixed`, `revolute`, `continuous` or `prismatic`.
+        rotation: nine numbers, rows of parent_from_child at joint position zero.
+        position: of the child's origin in the parent's frame [m].
+        axis: unit vector in the child's frame.
+    """
+
+    name: str
+    kind: str
+    parent: int
+    child: int
+    rotation: tuple[float, ...]
+    position: tuple[float, ...]
+    axis: tuple[float, ...]
+
+
+class TreeBody(Part, frozen=True):
+    """An agent: its tree, and the links that are its soles, by side."""
+
+    links: tuple[LinkBody, ...]
+    joints: tuple[JointBody, ...]
+    soles: dict[str, int]
+
+
+class Bodies(Part, frozen=True):
+    """Both agents by name, the load, and which robot links some parameter changes.
+
+    Attributes:
+        payload_size_m: depth (robot to person), width, height.
+        changing: indices of robot links.
+    """
+
+    agents: dict[str, TreeBody]
+    payload_size_m: tuple[float, ...]
+    payload_mass_kg: float
+    changing: tuple[int, ...]
+
+
+class Design(Part, frozen=True):
+    """A design that can be opened.
+
+    Attributes:
+        heights: how each height ended.
+        postures: one per solved height; empty when the log or the page's limit leaves them out.
+        links, joints: those that differ from the unscaled robot's, by index.
+        gradients: of each objective by parameter; empty when the log has none.
+    """
+
+    heights: tuple[HeightOutcome, ...]
+    postures: tuple[HeightDetail, ...] = ()
+    links: dict[int, LinkBody] = {}
+    joints: dict[int, JointBody] = {}
+    gradients: dict[str, dict[str, float]] = {}
+
+
+class Content(Part, frozen=True):
+    """The whole page."""
+
+    facts: Facts
+    objectives: tuple[Objective, ...]
+    parameters: tuple[Parameter, ...]
+    heights_m: tuple[float, ...]
+    points: Points
+    marks: tuple[Mark, ...]
+    generations: tuple[Generation, ...]
+    failures: tuple[Cause, ...]
+    bodies: Bodies | None
+    designs: dict[int, Design]
+    notes: tuple[str, ...]

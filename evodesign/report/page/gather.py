@@ -1,0 +1,150 @@
+"""From a run's log to what stands in its page."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from evodesign.analysis.front import front
+from evodesign.analysis.infeasible import causes_of_infeasibility
+from evodesign.errors import EvodesignError
+from evodesign.problem.build import Problem, build_problem
+from evodesign.records import Detail, Evaluation
+from evodesign.report.page import marks
+from evodesign.report.page.bodies import bodies, changes
+from evodesign.report.page.content import Cause, Content, Design, Facts, Mark
+from evodesign.report.page.points import MOST_POINTS, chosen_points, points
+from evodesign.report.thinning import thinned
+from evodesign.runlog.run import Run
+
+__all__ = ["MOST_POSTURES", "page_content"]
+
+MOST_POSTURES = 300
+"""Designs whose postures are in the page: the marked ones, then the front, evenly."""
+
+
+def page_content(run: Run, asked: Collection[int] = ()) -> Content:
+    """What stands in the page of a run.
+
+    Args:
+        run: whole or cut off anywhere.
+        asked: numbers of evaluations to mark, whose postures must be there.
+    Raises:
+        InputError: an asked number is not in the run.
+    """
+    problem, notes = _problem(run)
+    best = front(run.header.objectives, run.evaluations)
+    on_front = {evaluation.number for evaluation in best}
+    marked = _marks(run, problem, best, asked)
+    shown = chosen_points(run.evaluations, on_front, {mark.number for mark in marked}, MOST_POINTS)
+    opened, more_notes = _opened(run, marked, shown, on_front)
+    return Content(
+        facts=_facts(run, len(best)),
+        objectives=run.header.objectives,
+        parameters=run.header.parameters,
+        heights_m=_heights(run, problem),
+        points=points(run.header, shown, on_front),
+        marks=marked,
+        generations=run.generations,
+        failures=tuple(
+            Cause(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
+            for each in causes_of_infeasibility(run.evaluations)
+        ),
+        bodies=None if problem is None else bodies(problem),
+        designs=_designs(run, problem, shown, opened, marked, on_front),
+        notes=(*run.notes, *notes, *_thinned_note(run, shown), *more_notes),
+    )
+
+
+def _problem(run: Run) -> tuple[Problem | None, tuple[str, ...]]:
+    """The run's problem, rebuilt from the log; or a note on why this evodesign cannot."""
+    try:
+        return build_problem(run.header.problem), ()
+    except EvodesignError as error:
+        return None, (f"no robot is drawn, because the log's problem cannot be rebuilt: {error}",)
+
+
+def _marks(
+    run: Run, problem: Problem | None, best: Sequence[Evaluation], asked: Collection[int]
+) -> tuple[Mark, ...]:
+    first = () if problem is None else marks.unscaled(problem, run.evaluations)
+    named = marks.asked(asked, run.evaluations)
+    near = () if best else marks.nearest_to_feasible(run.evaluations)
+    return (*first, *named, *marks.chosen(run.header.objectives, best), *near)
+
+
+def _facts(run: Run, on_front: int) -> Facts:
+    header = run.header
+    return Facts(
+        problem=header.problem_name,
+        directory=str(run.directory),
+        algorithm=header.search.algorithm,
+        population=header.search.population,
+        seed=header.search.seed,
+        budget=header.budget,
+        started=header.started,
+        versions=header.versions,
+        git=header.git,
+        evaluations=len(run.evaluations),
+        feasible=sum(evaluation.feasible for evaluation in run.evaluations),
+        front=on_front,
+        seconds=sum(evaluation.seconds for evaluation in run.evaluations),
+        problem_text=header.problem.text,
+    )
+
+
+def _heights(run: Run, problem: Problem | None) -> tuple[float, ...]:
+    if problem is not None:
+        return problem.heights
+    return tuple(sorted({height.height_m for each in run.evaluations for height in each.assessment.heights}))
+
+
+def _thinned_note(run: Run, shown: Sequence[Evaluation]) -> tuple[str, ...]:
+    if len(shown) == len(run.evaluations):
+        return ()
+    return (
+        f"{len(shown)} of {len(run.evaluations)} evaluations are in this page: the marked designs, then the "
+        "front, then the others, evenly thinned; figures over evaluations and failures count all of them",
+    )
+
+
+def _opened(
+    run: Run, marked: Sequence[Mark], shown: Sequence[Evaluation], on_front: Collection[int]
+) -> tuple[dict[int, Detail], tuple[str, ...]]:
+    """Details that go into the page, by number, and a note on those that are left out."""
+    known = {detail.evaluation: detail for detail in run.details}
+    first = list(dict.fromkeys(mark.number for mark in marked if mark.number in known))
+    others = [e.number for e in shown if e.number in on_front and e.number in known and e.number not in first]
+    kept = thinned(others, max(0, MOST_POSTURES - len(first)))
+    opened = {number: known[number] for number in (*first, *kept)}
+    if len(kept) == len(others):
+        return opened, ()
+    return opened, (
+        f"postures of {len(opened)} of {len(first) + len(others)} designs are in this page; "
+        "evodesign report RUN --designs NUMBER,NUMBER puts in those that you name",
+    )
+
+
+def _designs(
+    run: Run,
+    problem: Problem | None,
+    shown: Sequence[Evaluation],
+    opened: dict[int, Detail],
+    marked: Sequence[Mark],
+    on_front: Collection[int],
+) -> dict[int, Design]:
+    wanted = {*on_front, *(mark.number for mark in marked)}
+    return {
+        evaluation.number: _design(problem, evaluation, opened.get(evaluation.number))
+        for evaluation in shown
+        if evaluation.number in wanted
+    }
+
+
+def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | None) -> Design:
+    heights = evaluation.assessment.heights
+    if problem is None or detail is None:
+        return Design(heights=heights)
+    parameters = problem.space.parameters
+    values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
+    links, joints = changes(problem, values)
+    return Design(heights=heights, postures=detail.heights, links=links, joints=joints)

@@ -1,0 +1,75 @@
+"""One file of a page: template, style, scripts, plotly and the content, with nothing left to fetch.
+
+What comes from the log stands in a block of packed JSON: half the size, and nothing in it that HTML could
+read as markup. Scripts put it into the page as text.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+from functools import cache
+from importlib.resources import files
+
+import msgspec
+from plotly.offline import get_plotlyjs
+
+from evodesign.report.page.content import Content
+
+__all__ = ["page_html"]
+
+TEMPLATE = files("evodesign.report.page").joinpath("template")
+
+STYLES = ("palette.css", "layout.css", "parts.css")
+
+SCRIPTS = (
+    "numbers.js",
+    "store.js",
+    "theme.js",
+    "front.js",
+    "parallel.js",
+    "progress.js",
+    "failures.js",
+    "table.js",
+    "matrices.js",
+    "kinematics.js",
+    "meshes.js",
+    "shaders.js",
+    "viewer.js",
+    "steering.js",
+    "scene.js",
+    "stage.js",
+    "torques.js",
+    "ingredients.js",
+    "reach.js",
+    "card.js",
+    "head.js",
+    "main.js",
+)
+"""In the order in which they stand in the page; all share one scope."""
+
+
+def page_html(content: Content) -> str:
+    """The page as one HTML document."""
+    parts = {
+        "{{style}}": "\n".join(_text(name) for name in STYLES),
+        "{{plotly}}": get_plotlyjs(),
+        "{{content}}": _packed(content),
+        "{{scripts}}": "\n".join(_text(name) for name in SCRIPTS),
+    }
+    page = _text("page.html")
+    pieces = []
+    for mark, part in parts.items():
+        before, _, page = page.partition(mark)
+        pieces += [before, part]
+    return "".join([*pieces, page])
+
+
+def _packed(content: Content) -> str:
+    """The content as JSON, compressed with gzip, in the letters of base64; the same for the same content."""
+    return base64.b64encode(gzip.compress(msgspec.json.encode(content), mtime=0)).decode()
+
+
+@cache
+def _text(name: str) -> str:
+    return TEMPLATE.joinpath(name).read_text(encoding="utf-8")

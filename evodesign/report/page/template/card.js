@@ -1,0 +1,151 @@
+// The card of the chosen design: what it is worth, how it stands, what it is made of.
+
+const against = (axis, row) => {
+  const reference = unscaledMark ? axis.column[rowOf.get(unscaledMark.number)] : null;
+  if (reference === null || reference === undefined || axis.column[row] === null) return "";
+  if (points.number[row] === unscaledMark.number) return "";
+  return `unscaled ${exact(reference)}`;
+};
+
+const worth = (row) =>
+  element(
+    "dl",
+    { class: "worth" },
+    ...axes
+      .slice(0, objectives.length)
+      .map((axis) =>
+        element(
+          "div",
+          {},
+          element("dt", { text: `${capital(words(axis.name))} ${axis.sense === "minimise" ? "↓" : "↑"}` }),
+          element(
+            "dd",
+            { "data-objective": axis.name },
+            exact(axis.column[row]),
+            element("small", { text: axis.column[row] === null ? " no value" : ` ${unitText(axis.unit)}` }),
+            element("span", { class: "against", text: against(axis, row) }),
+          ),
+        ),
+      ),
+  );
+
+const cardHead = (row) => {
+  const number = points.number[row];
+  const kind = { front: "on the front", feasible: "dominated", infeasible: "not feasible" }[points.kind[row]];
+  const labels = [...new Set(marksOf(number).map((mark) => `${symbolOf[mark.kind]} ${mark.label}`)), kind];
+  const step = (text, name, by) =>
+    element("button", { type: "button", class: "quiet", "aria-label": name, text, onclick: () => walk(by) });
+  const head = element(
+    "div",
+    {},
+    element(
+      "div",
+      { class: "heading" },
+      element("h2", { id: "card-title", text: `Design ${number}` }),
+      element(
+        "span",
+        { class: "choices" },
+        ...(hasFront
+          ? [step("‹", "Previous design of the front", -1), step("›", "Next design of the front", 1)]
+          : []),
+      ),
+    ),
+    element("p", { class: "labels", text: labels.join(" · ") }),
+    worth(row),
+    reachFigure(row),
+  );
+  if (points.reason[row])
+    head.append(
+      element("p", {
+        class: "plain",
+        text:
+          capital(points.reason[row]) +
+          (points.violation_m[row] === null ? "" : ` (violation ${figure(points.violation_m[row])} m)`),
+      }),
+    );
+  return head;
+};
+
+const whyNoPosture = (row) => {
+  if (!content.bodies) return "The robot cannot be drawn: see the notes at the top.";
+  if (points.kind[row] === "front")
+    return "The postures of this design are not in this page: see the notes at the top.";
+  if (points.kind[row] === "infeasible") return "The log keeps no postures of a design that is not feasible.";
+  return "The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived.";
+};
+
+const NOTHING_KNOWN = { heights: [], postures: [], gradients: {}, links: {}, joints: {} };
+
+// What the card shows now: how to draw it again, and how to show another height.
+const shown = { redraw: () => {}, height: () => {} };
+
+const titleOf = (details) => details.querySelector("summary").firstChild.textContent;
+
+// Fill the card; sections that the reader folded stay folded.
+const fillCard = (parts) => {
+  const card = byId("card");
+  const sections = () => [...card.querySelectorAll("details")];
+  const folded = new Map(sections().map((one) => [titleOf(one), one.open]));
+  card.querySelectorAll(".joint-plot").forEach(Plotly.purge);
+  card.replaceChildren(...parts.filter(Boolean));
+  for (const one of sections()) one.open = folded.get(titleOf(one)) ?? one.open;
+  card.scrollTop = 0;
+};
+
+const drawWithoutPostures = (row) => {
+  shownScene = null;
+  const why = element("div", {}, element("p", { class: "plain", text: whyNoPosture(row) }));
+  fillCard([cardHead(row), why, fold("Parameters", `${parameters.length}`, parameterTable(row))]);
+  Object.assign(shown, { redraw: () => {}, height: () => {} });
+};
+
+const drawWithPostures = (row, design) => {
+  const height = heightControl(design);
+  const torques = torqueSection(state.selected, design);
+  const wrenches = element("div");
+  const mass = massOf(treeOf("robot", design));
+  fillCard([
+    cardHead(row),
+    hasWebgl ? theStage() : withoutStage(),
+    height.box,
+    fold("Parameters", `${parameters.length}`, parameterTable(row)),
+    torques.section,
+    fold("Masses", `robot ${figure(mass)} kg`, massTable(design)),
+    fold("Contact wrenches", "", wrenches),
+    sensitivities(design),
+  ]);
+  torques.draw();
+  const showHeight = (moving) => {
+    height.show();
+    const posture = postureAt(design, content.heights_m[state.height]);
+    const missing = () => element("p", { class: "plain", text: "No posture at this height." });
+    wrenches.replaceChildren(posture ? wrenchTable(posture) : missing());
+    if (hasWebgl) showPosture(state.selected, design, moving);
+  };
+  Object.assign(shown, { redraw: torques.draw, height: showHeight });
+  showHeight(false);
+};
+
+const drawCard = () => {
+  const row = rowOf.get(state.selected);
+  if (row === undefined) return;
+  const design = content.designs[state.selected] ?? NOTHING_KNOWN;
+  if (content.bodies !== null && design.postures.length > 0) drawWithPostures(row, design);
+  else drawWithoutPostures(row);
+};
+
+const startCard = () => {
+  if (points.number.length === 0) {
+    const title = element("h2", { id: "card-title", text: "No design yet" });
+    const text = "Designs appear here as soon as the run holds an evaluation.";
+    byId("card").append(element("div", {}, title, element("p", { class: "plain", text })));
+    return;
+  }
+  state.height = content.heights_m.length > 1 ? 1 : 0;
+  on("selected", drawCard);
+  on("height", () => shown.height(true));
+  on("theme", () => {
+    shown.redraw();
+    shown.height(false);
+  });
+};

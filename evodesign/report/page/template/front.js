@@ -1,0 +1,292 @@
+// The front, in two or three of its objectives. With one objective: its value over the evaluations.
+
+const drawnIn = { across: 0, up: 1, colour: 2, solid: false };
+
+// How much the front's designs differ in an objective: interquartile range over the median's size.
+const spread = (axis) => {
+  const values = frontRows.map((row) => axis.column[row]);
+  const middle = quantile(values, 0.5);
+  return (quantile(values, 0.75) - quantile(values, 0.25)) / (Math.abs(middle) || 1);
+};
+
+const evaluationAxis = { name: "evaluation", unit: "number", sense: "", column: points.number };
+const frontAxes = objectives.length > 1 ? axes.slice(0, objectives.length) : [evaluationAxis, axes[0]];
+
+// Beyond this number SVG is slow; all traces then change to WebGL together, so that they keep their order.
+const manyPoints = frontRows.length + dominatedRows.length > 2500 && hasWebgl;
+
+const hover = (row) => {
+  const lines = [`<b>Design ${points.number[row]}</b>`];
+  for (const mark of marksOf(points.number[row])) lines.push(plain(mark.label));
+  for (const axis of axes.slice(0, objectives.length)) {
+    lines.push(`${plain(words(axis.name))} ${exact(axis.column[row])} ${plain(unitText(axis.unit))}`);
+  }
+  return lines.join("<br>");
+};
+
+const frontTrace = (wanted, name, marker, more = {}) => {
+  const { across, up, colour: third, solid } = drawnIn;
+  const column = (index) => wanted.map((row) => frontAxes[index].column[row]);
+  return {
+    type: solid ? "scatter3d" : manyPoints ? "scattergl" : "scatter",
+    mode: "markers",
+    name,
+    x: column(across),
+    y: column(up),
+    ...(solid ? { z: column(third) } : {}),
+    text: wanted.map(hover),
+    customdata: wanted.map((row) => points.number[row]),
+    hoverinfo: "text",
+    unselected: { marker: { opacity: 1 } },
+    marker,
+    ...more,
+  };
+};
+
+// From the front's best value to its worst but 5 %, with the marked designs: outliers must not squeeze it.
+const zoomed = (axis) => {
+  const values = frontRows.map((row) => axis.column[row]);
+  const marked = content.marks
+    .map((mark) => axis.column[rowOf.get(mark.number)])
+    .filter((value) => value !== null);
+  const [from, to] = axis.sense === "minimise" ? [0, 0.95] : axis.sense === "maximise" ? [0.05, 1] : [0, 1];
+  const low = Math.min(quantile(values, from), ...marked);
+  const high = Math.max(quantile(values, to), ...marked);
+  const margin = 0.06 * (high - low) || Math.abs(high) * 0.05 || 1;
+  return [low - margin, high + margin];
+};
+
+const colourScale = (axis) => {
+  const [low, high] = zoomed(axis);
+  return {
+    colorscale: strength(),
+    reversescale: axis.sense === "minimise",
+    cmin: low,
+    cmax: high,
+    showscale: true,
+    colorbar: {
+      title: { text: plain(label(axis)), side: "right" },
+      thickness: 10,
+      outlinewidth: 0,
+      len: 0.9,
+      tickfont: plotFont(),
+      ticklen: 3,
+      tickcolor: colour("faint"),
+    },
+  };
+};
+
+const markTraces = () => {
+  const shapes = drawnIn.solid
+    ? { unscaled: "cross", best: "diamond", knee: "square", asked: "circle" }
+    : { unscaled: "star", best: "diamond-open", knee: "square-open", asked: "triangle-up-open" };
+  return ["knee", "best", "asked", "unscaled"].flatMap((kind) => {
+    const marked = content.marks.filter((mark) => mark.kind === kind).map((mark) => rowOf.get(mark.number));
+    const drawn = marked.filter(complete);
+    if (drawn.length === 0) return [];
+    const size = drawnIn.solid ? (kind === "unscaled" ? 9 : 5) : kind === "unscaled" ? 15 : 14;
+    const line = {
+      width: drawnIn.solid ? 0 : kind === "unscaled" ? 1 : 2,
+      color: kind === "unscaled" ? colour("surface") : colour("second"),
+    };
+    return [frontTrace(drawn, kind, { size, symbol: shapes[kind], color: colour("second"), line })];
+  });
+};
+
+const frontTraces = () => {
+  const { solid } = drawnIn;
+  const third = frontAxes.length > 2 && !solid ? frontAxes[drawnIn.colour] : null;
+  const kept = frontRows.filter(inside);
+  const left = frontRows.filter((row) => !inside(row));
+  const around = dominatedRows.filter((row) => !filtered() || inside(row));
+  const size = solid ? 4 : 9;
+  const chosen =
+    state.selected !== null && rowOf.has(state.selected) ? [rowOf.get(state.selected)].filter(complete) : [];
+  const tint = third
+    ? { color: kept.map((row) => third.column[row]), ...colourScale(third) }
+    : { color: colour("accent") };
+  const traces = [
+    frontTrace(around, "dominated", {
+      size: solid ? 1.8 : 4,
+      color: colour("faint"),
+      opacity: solid ? 0.5 : 0.6,
+    }),
+    frontTrace(left, "left out", { size: size - 3, color: colour("faint"), opacity: 0.5 }),
+    frontTrace(kept, "front", { size, ...tint, line: { width: solid ? 0 : 0.8, color: colour("accent") } }),
+    ...markTraces(),
+  ];
+  const ring = solid
+    ? { size: 11, symbol: "circle-open", color: colour("ink"), line: { width: 3, color: colour("ink") } }
+    : { size: 19, symbol: "circle-open", color: colour("ink"), line: { width: 2.2, color: colour("ink") } };
+  return [...traces, frontTrace(chosen, "chosen", ring, { hoverinfo: "skip" })];
+};
+
+const frontLayout = () => {
+  const { across, up, colour: third, solid } = drawnIn;
+  if (solid) {
+    const axis = (index) => ({
+      ...plotAxis(label(frontAxes[index])),
+      range: zoomed(frontAxes[index]),
+      backgroundcolor: colour("surface"),
+      showbackground: false,
+      title: { text: plain(label(frontAxes[index])), font: plotFont() },
+    });
+    return plotLayout({
+      margin: { l: 0, r: 0, t: 0, b: 0 },
+      uirevision: `3d ${across} ${up} ${third}`,
+      scene: {
+        xaxis: axis(across),
+        yaxis: axis(up),
+        zaxis: axis(third),
+        aspectmode: "manual",
+        aspectratio: { x: 1.25, y: 1.25, z: 0.9 },
+        camera: { eye: { x: 1.4, y: -1.5, z: 0.65 }, center: { x: 0, y: 0, z: -0.27 } },
+      },
+    });
+  }
+  return plotLayout({
+    margin: { l: 62, r: 12, t: 30, b: 50 },
+    uirevision: `2d ${across} ${up}`,
+    selections: state.lasso ? (byId("front").layout?.selections ?? []) : [],
+    dragmode: "zoom",
+    xaxis: plotAxis(label(frontAxes[across]), { range: zoomed(frontAxes[across]), zeroline: false }),
+    yaxis: plotAxis(label(frontAxes[up]), { range: zoomed(frontAxes[up]), zeroline: false }),
+  });
+};
+
+const drawFront = () => {
+  if (!hasFront) return;
+  const config = { ...plotConfig, ...(drawnIn.solid ? {} : zoomButtons) };
+  const plot = byId("front");
+  const left = !state.lasso && plot.layout?.selections?.length;
+  if (left) Plotly.relayout(plot, { selections: [] }); // the frame of a selection that is no more
+  Plotly.react(plot, frontTraces(), frontLayout(), config);
+};
+
+// Left and right walk along the first axis.
+const walk = (step) => {
+  const column = frontAxes[drawnIn.across].column;
+  const order = frontRows.filter(inside).sort((a, b) => column[a] - column[b]);
+  if (order.length === 0) return;
+  const at = order.indexOf(rowOf.get(state.selected));
+  const next = at < 0 ? 0 : Math.min(Math.max(at + step, 0), order.length - 1);
+  select(points.number[order[next]]);
+};
+
+const axisChoice = (text, key) => {
+  const options = frontAxes.map((axis, index) =>
+    element("option", { value: index, text: words(axis.name), selected: drawnIn[key] === index }),
+  );
+  const choice = element(
+    "select",
+    {
+      id: `axis-${key}`,
+      onchange: () => {
+        drawnIn[key] = Number(choice.value);
+        drawFront();
+      },
+    },
+    ...options,
+  );
+  return element("label", { text }, choice);
+};
+
+const frontChoices = () => {
+  const form = byId("front-choices");
+  if (frontAxes.length < 3) return;
+  const segments = element("span", { class: "segments", role: "radiogroup", "aria-label": "Dimensions" });
+  for (const [text, solid] of [
+    ["2D", false],
+    ["3D", true],
+  ]) {
+    const radio = element("input", {
+      type: "radio",
+      name: "dimensions",
+      id: `front-${text}`,
+      checked: !solid,
+      disabled: solid && !hasWebgl,
+      onchange: () => {
+        drawnIn.solid = solid;
+        Plotly.purge(byId("front"));
+        wireFront();
+      },
+    });
+    segments.append(element("label", {}, radio, text));
+  }
+  form.append(
+    axisChoice("across", "across"),
+    axisChoice("up", "up"),
+    axisChoice("colour, depth", "colour"),
+    segments,
+  );
+};
+
+const wireFront = () => {
+  drawFront();
+  const plot = byId("front");
+  plot.on("plotly_click", (event) => select(event.points[0].customdata));
+  plot.on("plotly_selected", (event) => {
+    const drawnByHand = event?.range || event?.lassoPoints;
+    if (drawnByHand) lasso(new Set(event.points.map((point) => point.customdata)));
+  });
+  plot.on("plotly_deselect", () => lasso(null));
+};
+
+const startFront = () => {
+  const hint = byId("front-hint");
+  const plot = byId("front");
+  if (!hasFront) {
+    hint.textContent = content.facts.evaluations
+      ? "No design of this run is feasible, so there is no front yet. The designs that miss the least are below."
+      : "This run holds no evaluation yet.";
+    plot.hidden = true;
+    return;
+  }
+  if (objectives.length > 2) {
+    const order = objectives.map((_, index) => index).sort((a, b) => spread(axes[b]) - spread(axes[a]));
+    [drawnIn.across, drawnIn.up, drawnIn.colour] = order;
+  }
+  const { front, feasible } = content.facts;
+  const count = front === 1 ? "One design" : `${front} designs`;
+  const drawn = frontRows.length < front ? ` (${frontRows.length} are drawn)` : "";
+  const behind = feasible - front;
+  const small = dominatedRows.length < behind ? `${dominatedRows.length} of the ${behind}` : `the ${behind}`;
+  hint.textContent =
+    objectives.length > 1
+      ? `${count} that no other one beats in every objective${drawn}; small points are ${small} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.`
+      : "One objective: each point is a feasible design. Click a point to see its robot.";
+  plot.setAttribute("aria-label", `${hint.textContent} The same designs are in the table below.`);
+  frontChoices();
+  wireFront();
+  plot.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (step) {
+      event.preventDefault();
+      walk(step);
+    }
+  });
+  for (const event of ["selected", "filter", "theme"]) on(event, drawFront);
+};
+
+// Buttons for the designs worth a look.
+const startChips = () => {
+  const seen = [...new Set(content.marks.map((mark) => mark.number))];
+  const chips = seen.map((number) => {
+    const marks = marksOf(number);
+    const chip = element(
+      "button",
+      { type: "button", class: "chip", "data-number": number, onclick: () => select(number) },
+      element("i", { text: symbolOf[marks[0].kind], "aria-hidden": "true" }),
+      element("span", { text: [...new Set(marks.map((mark) => mark.label))].join(", ") }),
+      element("small", { text: `${number}` }),
+    );
+    return chip;
+  });
+  byId("chosen").append(...chips);
+  byId("chosen").hidden = chips.length === 0;
+  on("selected", () =>
+    chips.forEach((chip) =>
+      chip.setAttribute("aria-pressed", String(chip.dataset.number === String(state.selected))),
+    ),
+  );
+};

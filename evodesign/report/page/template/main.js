@@ -1,0 +1,22 @@
+// Everything in its place; then the first design: the sharpest knee, else the first one worth a look.
+
+startHead();
+startFront();
+startChips();
+startParallel();
+startProgress();
+startFailures();
+startTable();
+startCard();
+applyTheme(root.dataset.theme);
+
+const firstShown =
+  content.marks.find((mark) => mark.kind === "asked") ??
+  content.marks.find((mark) => mark.kind === "knee") ??
+  content.marks.find((mark) => mark.kind !== "unscaled") ??
+  content.marks[0];
+if (firstShown) select(firstShown.number, { announce: false });
+else if (points.number.length) select(points.number[0], { announce: false });
+
+// For whoever wants to script the page, and for its tests.
+window.evodesign = { content, state, select, brush, clearFilter, linkPoses, treeOf };

@@ -1,0 +1,63 @@
+// From a posture to the solids that the viewer draws.
+
+const NEWTONS_PER_METRE = 1000;
+
+// What is drawn of a posture at a load height [m].
+const sceneItems = (design, agents, height) => {
+  const items = [];
+  const solid = (mesh, rotation, position, size, tint, over = false) =>
+    items.push({ mesh, model: placed(rotation, position, size), size, tint, over });
+  const neutral = rgb("faint");
+  const tints = {
+    robot: [rgb("accent"), mixed(rgb("accent"), rgb("surface"), 0.52)],
+    human: [mixed(rgb("second"), neutral, 0.35), mixed(rgb("second"), neutral, 0.35)],
+  };
+  for (const [agent, posture] of Object.entries(agents)) {
+    const tree = treeOf(agent, design);
+    const poses = linkPoses(agent, tree, posture);
+    tree.links.forEach((link, index) => {
+      const tint = tints[agent][agent === "robot" && !content.bodies.changing.includes(index) ? 1 : 0];
+      for (const shape of link.shapes) {
+        const { rotation, position } = poses[index];
+        solid(
+          shape.kind,
+          times(rotation, shape.rotation),
+          plus(position, turned(rotation, shape.position)),
+          sizeOf(shape),
+          tint,
+        );
+      }
+    });
+    for (const { at, force } of groundForces(tree, poses, posture)) {
+      const long = length(force) / NEWTONS_PER_METRE;
+      if (long < 0.005) continue;
+      const rotation = fromZ(force);
+      const head = Math.min(0.09, 0.5 * long);
+      const beside = plus(at, [0, 0, 0.002]);
+      solid(
+        "cylinder",
+        rotation,
+        plus(beside, scaled((long - head) / 2, unit(force))),
+        [0.013, 0.013, long - head],
+        rgb("third"),
+        true,
+      );
+      solid(
+        "cone",
+        rotation,
+        plus(beside, scaled(long - head, unit(force))),
+        [0.035, 0.035, head],
+        rgb("third"),
+        true,
+      );
+    }
+  }
+  solid(
+    "box",
+    IDENTITY,
+    [0, 0, height],
+    content.bodies.payload_size_m,
+    mixed(rgb("soft"), rgb("surface"), 0.15),
+  );
+  return items;
+};

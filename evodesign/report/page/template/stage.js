@@ -1,0 +1,141 @@
+// The 3D view of the chosen design with its height slider.
+
+let viewer = null;
+let stageBox = null;
+let shownScene = null;
+const stillness = window.matchMedia("(prefers-reduced-motion: reduce)");
+
+const stageOf = () => {
+  const canvas = element("canvas", {
+    id: "posture",
+    tabindex: 0,
+    role: "application",
+    "aria-roledescription": "3D view",
+  });
+  const views = element(
+    "div",
+    { class: "views" },
+    ...Object.entries(VIEWS).map(([name, [turn, tilt]]) =>
+      element("button", {
+        type: "button",
+        class: "quiet",
+        text: name,
+        onclick: () => viewer.look(turn, tilt),
+      }),
+    ),
+  );
+  const missing = element("p", { class: "missing", hidden: true });
+  const key = (ink, text) => element("span", {}, element("i", { style: `background:${ink}` }), text);
+  const legend = element(
+    "p",
+    { class: "legend" },
+    key("var(--accent)", "robot: links that designs change"),
+    key("color-mix(in srgb, var(--accent) 48%, var(--surface))", "other links"),
+    key("color-mix(in srgb, var(--second) 65%, var(--faint))", "person"),
+    key("var(--third)", `force of the ground, 1 m for ${NEWTONS_PER_METRE} N`),
+  );
+  return element("div", { class: "stage" }, canvas, views, missing, legend);
+};
+
+// The stage is made once: its canvas holds what the graphics card was given.
+const theStage = () => {
+  if (!stageBox) {
+    stageBox = stageOf();
+    viewer = new Viewer(stageBox.querySelector("canvas"));
+    steer(viewer);
+  }
+  return stageBox;
+};
+
+const withoutStage = () =>
+  element("p", {
+    class: "plain stageless",
+    text: "This browser offers no WebGL, so postures are not drawn; their figures are below.",
+  });
+
+const postureAt = (design, height) => design.postures.find((one) => one.height_m === height);
+
+const heightControl = (design) => {
+  const last = content.heights_m.length - 1;
+  const slider = element("input", {
+    type: "range",
+    id: "height",
+    min: 0,
+    max: last,
+    step: 1,
+    value: state.height,
+    disabled: last === 0,
+  });
+  const output = element("output", { for: "height" });
+  const detail = element("p", { id: "height-detail" });
+  const show = () => {
+    const height = content.heights_m[state.height];
+    const outcome = design.heights.find((one) => one.height_m === height);
+    output.textContent = heightText(height);
+    const solved = outcome?.status === "solved";
+    detail.textContent = outcome
+      ? solved
+        ? `Solved: robot |torque| ${exact(outcome.robot_torque_norm)} N m, person ${exact(outcome.human_torque_norm)} N m; largest residual ${figure(outcome.residual, 2)}`
+        : `${capital(outcome.status)}: ${outcome.reason}`
+      : "The log holds no outcome for this height.";
+    slider.value = state.height;
+    slider.setAttribute("aria-valuetext", `${heightText(height)}, ${outcome?.status ?? "unknown"}`);
+  };
+  slider.addEventListener("input", () => {
+    state.height = Number(slider.value);
+    tell("height");
+  });
+  const box = element(
+    "div",
+    { class: "height" },
+    element("label", { for: "height", text: "Height of the load" }),
+    slider,
+    output,
+    detail,
+  );
+  return { box, show };
+};
+
+const showPosture = (number, design, moving) => {
+  const height = content.heights_m[state.height];
+  const posture = postureAt(design, height);
+  const missing = stageBox.querySelector(".missing");
+  missing.hidden = Boolean(posture);
+  missing.textContent = posture ? "" : `No posture at ${heightText(height)}.`;
+  stageBox
+    .querySelector("canvas")
+    .setAttribute(
+      "aria-label",
+      posture
+        ? `Design ${number} and the person holding the load at ${heightText(height)}. Arrow keys turn the view.`
+        : missing.textContent,
+    );
+  const from = shownScene?.number === number ? shownScene : null;
+  if (!posture) {
+    shownScene = null;
+    viewer.show(sceneItems(design, {}, height));
+    return;
+  }
+  const target = { number, height, agents: posture.agents };
+  if (!moving || !from || stillness.matches) {
+    shownScene = target;
+    viewer.show(sceneItems(design, target.agents, height));
+    return;
+  }
+  const begun = performance.now();
+  shownScene = target;
+  const frame = (now) => {
+    if (shownScene !== target) return;
+    const linear = Math.min(1, Math.max(0, (now - begun) / 280));
+    const share = linear * linear * (3 - 2 * linear);
+    const agents =
+      share === 1
+        ? target.agents
+        : Object.fromEntries(
+            Object.entries(target.agents).map(([name, to]) => [name, between(from.agents[name], to, share)]),
+          );
+    viewer.show(sceneItems(design, agents, from.height + share * (height - from.height)));
+    if (linear < 1) requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
+};

@@ -1,0 +1,75 @@
+// What the page knows, what is chosen in it, and who wants to be told.
+
+// JSON, compressed with gzip, in the letters of base64.
+const unpacked = async (text) => {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).json();
+};
+
+const content = await unpacked(byId("content").textContent);
+const { objectives, parameters, points } = content;
+
+const rowOf = new Map(points.number.map((number, row) => [number, row]));
+const rows = points.number.map((_, row) => row);
+const complete = (row) => objectives.every((objective) => points.objectives[objective.name][row] !== null);
+const frontRows = rows.filter((row) => points.kind[row] === "front");
+const dominatedRows = rows.filter((row) => points.kind[row] === "feasible" && complete(row));
+const infeasibleRows = rows.filter((row) => points.kind[row] === "infeasible");
+const hasFront = frontRows.length > 0;
+
+const marksOf = (number) => content.marks.filter((mark) => mark.number === number);
+const unscaledMark = content.marks.find((mark) => mark.kind === "unscaled");
+const symbolOf = { unscaled: "★", best: "◆", knee: "■", asked: "▲", near: "●" };
+
+// An axis of the parallel coordinates: one objective or parameter with its column.
+const axes = [
+  ...objectives.map((one) => ({ ...one, column: points.objectives[one.name], isObjective: true })),
+  ...parameters.map((one) => ({ ...one, column: points.parameters[one.name], isObjective: false })),
+];
+
+// Heights with the same number of decimals.
+const decimals = Math.max(
+  1,
+  ...content.heights_m.map((height) => (String(height).split(".")[1] ?? "").length),
+);
+const heightText = (height) => `${height.toFixed(decimals)} m`;
+
+const state = { selected: null, height: 0, brushes: new Map(), lasso: null };
+const listeners = { selected: [], filter: [], height: [], theme: [] };
+const on = (event, listener) => listeners[event].push(listener);
+const tell = (event) => listeners[event].forEach((listener) => listener());
+
+const inside = (row) => {
+  if (state.lasso && !state.lasso.has(points.number[row])) return false;
+  for (const [axis, [low, high]] of state.brushes) {
+    const value = axes[axis].column[row];
+    if (value === null || value < low || value > high) return false;
+  }
+  return true;
+};
+
+const filtered = () => state.brushes.size > 0 || state.lasso !== null;
+
+const select = (number, { announce = true } = {}) => {
+  state.selected = number;
+  tell("selected");
+  if (announce) byId("announce").textContent = `Design ${number} is shown.`;
+};
+
+const brush = (axis, range) => {
+  if (range) state.brushes.set(axis, range);
+  else state.brushes.delete(axis);
+  tell("filter");
+};
+
+const lasso = (numbers) => {
+  state.lasso = numbers;
+  tell("filter");
+};
+
+const clearFilter = () => {
+  state.brushes.clear();
+  state.lasso = null;
+  tell("filter");
+};

@@ -1,0 +1,159 @@
+// Joint torques of a design: boxes over the joints at each height, beside the unscaled robot's (the paper's
+// figure), and every joint at every height.
+
+const AGENT_NAMES = { robot: "Robot", human: "Person" };
+
+const torquesAt = (design, agent, height) => {
+  const posture = postureAt(design, height);
+  return posture ? posture.agents[agent].torques_n_m : null;
+};
+
+const boxTrace = (design, agent, name, ink, filled) => {
+  const [x, y, text] = [[], [], []];
+  for (const height of content.heights_m) {
+    for (const [joint, torque] of Object.entries(torquesAt(design, agent, height) ?? {})) {
+      x.push(heightText(height));
+      y.push(Math.abs(torque));
+      text.push(`${plain(joint)}<br>${exact(torque)} N m`);
+    }
+  }
+  return {
+    type: "box",
+    name,
+    x,
+    y,
+    text,
+    hoverinfo: "text",
+    boxpoints: "all",
+    jitter: 0.5,
+    pointpos: 0,
+    line: { color: colour(ink), width: 1.4 },
+    fillcolor: filled ? colour("accent-wash") : "rgba(0,0,0,0)",
+    marker: { size: 3, color: colour(ink), opacity: 0.55 },
+  };
+};
+
+const drawBoxes = (place, number, design, agent) => {
+  const reference =
+    unscaledMark && unscaledMark.number !== number ? content.designs[unscaledMark.number] : null;
+  const traces = [boxTrace(design, agent, `Design ${number}`, "accent", true)];
+  if (reference?.postures.length) traces.push(boxTrace(reference, agent, "Unscaled robot", "soft", false));
+  Plotly.react(
+    place,
+    traces,
+    plotLayout({
+      boxmode: "group",
+      boxgap: 0.25,
+      height: 250,
+      showlegend: traces.length > 1,
+      legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: plotFont() },
+      margin: { l: 46, r: 6, t: 30, b: 38 },
+      xaxis: plotAxis("height of the load", {
+        categoryorder: "array",
+        categoryarray: content.heights_m.map((height) => heightText(height)),
+      }),
+      yaxis: plotAxis("|torque| [N m]", { rangemode: "tozero", zeroline: false }),
+    }),
+    { ...plotConfig, displayModeBar: false },
+  );
+};
+
+const JOINT_SYMBOLS = ["circle", "diamond", "square", "triangle-up", "cross", "x", "star", "hexagon"];
+
+const drawJoints = (place, design, agent) => {
+  const solved = content.heights_m.filter((height) => torquesAt(design, agent, height));
+  const joints = [...new Set(solved.flatMap((height) => Object.keys(torquesAt(design, agent, height))))];
+  const most = (joint) =>
+    Math.max(...solved.map((height) => Math.abs(torquesAt(design, agent, height)[joint] ?? 0)));
+  const order = joints
+    .map((joint) => [joint, most(joint)])
+    .sort((a, b) => a[1] - b[1])
+    .map(([joint]) => joint);
+  const inks = (index) =>
+    mixedColour("accent", "second", solved.length > 1 ? index / (solved.length - 1) : 0);
+  const traces = solved.map((height, index) => {
+    const torques = torquesAt(design, agent, height);
+    return {
+      type: "scatter",
+      mode: "markers",
+      name: heightText(height),
+      x: order.map((joint) => torques[joint] ?? null),
+      y: order.map(plain),
+      text: order.map((joint) => `${plain(joint)} at ${heightText(height)}<br>${exact(torques[joint])} N m`),
+      hoverinfo: "text",
+      marker: {
+        size: 7,
+        symbol: JOINT_SYMBOLS[index % JOINT_SYMBOLS.length],
+        color: inks(index),
+        opacity: 0.9,
+      },
+    };
+  });
+  Plotly.react(
+    place,
+    traces,
+    plotLayout({
+      height: 86 + 16 * order.length,
+      showlegend: true,
+      legend: { orientation: "h", x: 0, y: 1, yanchor: "bottom", font: plotFont() },
+      margin: { l: 8, r: 8, t: 30, b: 40 },
+      xaxis: plotAxis("torque [N m]", { zeroline: true, zerolinecolor: colour("faint") }),
+      yaxis: plotAxis("", {
+        automargin: true,
+        type: "category",
+        ticks: "",
+        tickfont: { ...plotFont(), size: 11 },
+        dtick: 1,
+        range: [-0.7, order.length - 0.3],
+      }),
+    }),
+    { ...plotConfig, displayModeBar: false },
+  );
+};
+
+const torqueSection = (number, design) => {
+  const boxes = element("div", { class: "joint-plot", role: "img" });
+  const dots = element("div", { class: "joint-plot", role: "img" });
+  const segments = element("span", { class: "segments", role: "radiogroup", "aria-label": "Whose torques" });
+  const draw = (agent) => {
+    boxes.setAttribute(
+      "aria-label",
+      `Box plot of the ${AGENT_NAMES[agent].toLowerCase()}'s joint torques at each height`,
+    );
+    dots.setAttribute(
+      "aria-label",
+      `The ${AGENT_NAMES[agent].toLowerCase()}'s torque of each joint at each height`,
+    );
+    drawBoxes(boxes, number, design, agent);
+    drawJoints(dots, design, agent);
+  };
+  for (const agent of ["robot", "human"]) {
+    segments.append(
+      element(
+        "label",
+        {},
+        element("input", {
+          type: "radio",
+          name: "torques",
+          checked: agent === "robot",
+          onchange: () => draw(agent),
+        }),
+        AGENT_NAMES[agent],
+      ),
+    );
+  }
+  const section = element(
+    "details",
+    { open: true },
+    element("summary", { text: "Joint torques" }),
+    element("div", { class: "choices", style: "margin-top:10px" }, segments),
+    element("p", {
+      class: "hint",
+      text: "Sizes over all joints that move, one point per joint, at each height.",
+    }),
+    boxes,
+    element("p", { class: "hint", text: "Each joint with its sign, the most loaded first." }),
+    dots,
+  );
+  return { section, draw: () => draw("robot") };
+};

@@ -1,0 +1,161 @@
+// A small WebGL view of robot, person, load and the ground's forces.
+
+const LIGHT = unit([0.35, -0.5, 1]);
+
+const compiled = (gl) => {
+  const program = gl.createProgram();
+  for (const [kind, source] of [
+    [gl.VERTEX_SHADER, VERTEX],
+    [gl.FRAGMENT_SHADER, FRAGMENT],
+  ]) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+  return program;
+};
+
+const loadedMeshes = (gl, program) =>
+  Object.fromEntries(
+    Object.entries(MESHES).map(([name, make]) => {
+      const corners = new Float32Array(make());
+      const array = gl.createVertexArray();
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+      for (const [attribute, offset] of [
+        ["at", 0],
+        ["normal", 12],
+      ]) {
+        const place = gl.getAttribLocation(program, attribute);
+        gl.enableVertexAttribArray(place);
+        gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 24, offset);
+      }
+      return [name, { array, count: corners.length / 6 }];
+    }),
+  );
+
+const VIEWS = { Oblique: [-2.15, 0.2], Side: [-Math.PI / 2, 0.04], "Behind robot": [-Math.PI, 0.12] };
+
+class Viewer {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.gl = canvas.getContext("webgl2", {
+      antialias: true,
+      stencil: true,
+      alpha: true,
+      premultipliedAlpha: true,
+      preserveDrawingBuffer: true,
+    });
+    this.program = compiled(this.gl);
+    this.meshes = loadedMeshes(this.gl, this.program);
+    this.places = {};
+    [this.turn, this.tilt] = VIEWS["Oblique"];
+    this.distance = 5.7;
+    this.middle = 0.9;
+    this.items = [];
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  // items: [{ mesh, model, size, tint, over }], `over`: drawn over everything else, without a shadow
+  show(items) {
+    this.items = items;
+    this.draw();
+  }
+
+  place(name) {
+    if (!(name in this.places)) this.places[name] = this.gl.getUniformLocation(this.program, name);
+    return this.places[name];
+  }
+
+  draw() {
+    const { gl, canvas } = this;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    canvas.width = Math.max(1, Math.round(canvas.clientWidth * ratio));
+    canvas.height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    gl.viewport(0, 0, canvas.width, canvas.height);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+    gl.useProgram(this.program);
+    const target = [0, 0, this.middle];
+    const eye = plus(
+      target,
+      scaled(this.distance, [
+        Math.cos(this.tilt) * Math.cos(this.turn),
+        Math.cos(this.tilt) * Math.sin(this.turn),
+        Math.sin(this.tilt),
+      ]),
+    );
+    const camera = times4(perspective(0.44, canvas.width / canvas.height, 0.1, 40), lookAt(eye, target));
+    gl.uniformMatrix4fv(this.place("camera"), false, camera);
+    gl.uniform3fv(this.place("eye"), eye);
+    gl.uniform3fv(this.place("light"), LIGHT);
+    gl.uniform3fv(this.place("line"), rgb("faint"));
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.disable(gl.DEPTH_TEST);
+    this.mesh("ground", placed(IDENTITY, [0, 0, 0], [2.4, 2.4, 1]), [2.4, 2.4, 1], [0, 0, 0, 0], 1);
+    if (this.tilt > 0) this.shadows();
+    gl.enable(gl.DEPTH_TEST);
+    for (const item of this.items.filter(({ over }) => !over))
+      this.mesh(item.mesh, item.model, item.size, [...item.tint, 1], 0);
+    gl.clear(gl.DEPTH_BUFFER_BIT); // arrows stand inside the legs and are seen through them
+    for (const item of this.items.filter(({ over }) => over))
+      this.mesh(item.mesh, item.model, item.size, [...item.tint, 1], 0);
+  }
+
+  // Every solid flattened onto the ground along the light; the stencil keeps shadows from adding up.
+  shadows() {
+    const { gl } = this;
+    gl.enable(gl.STENCIL_TEST);
+    gl.stencilFunc(gl.EQUAL, 0, 255);
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
+    const flat = new Float32Array([
+      1,
+      0,
+      0,
+      0,
+      0,
+      1,
+      0,
+      0,
+      -LIGHT[0] / LIGHT[2],
+      -LIGHT[1] / LIGHT[2],
+      0,
+      0,
+      0,
+      0,
+      0,
+      1,
+    ]);
+    for (const item of this.items) {
+      if (!item.over) this.mesh(item.mesh, times4(flat, item.model), item.size, [0, 0, 0, 0.13], 2);
+    }
+    gl.disable(gl.STENCIL_TEST);
+  }
+
+  mesh(name, model, size, tint, mode) {
+    const { gl } = this;
+    const { array, count } = this.meshes[name];
+    gl.uniformMatrix4fv(this.place("model"), false, model);
+    gl.uniform3fv(this.place("scale"), size);
+    gl.uniform4fv(this.place("tint"), tint);
+    gl.uniform1i(this.place("mode"), mode);
+    gl.bindVertexArray(array);
+    gl.drawArrays(gl.TRIANGLES, 0, count);
+  }
+
+  look(turn, tilt) {
+    this.turn = turn;
+    this.tilt = Math.min(1.5, Math.max(-0.05, tilt));
+    this.draw();
+  }
+
+  zoom(factor) {
+    this.distance = Math.min(12, Math.max(1.5, this.distance * factor));
+    this.draw();
+  }
+}

@@ -1,0 +1,62 @@
+"""Failures are counted by cause, each design once."""
+
+from __future__ import annotations
+
+import msgspec
+
+from evodesign.analysis.infeasible import causes_of_infeasibility
+from evodesign.records import Evaluation, HeightOutcome, Status
+from tests.runlog.toys import toy_evaluations, toy_header
+
+
+def height(height_m: float, status: Status) -> HeightOutcome:
+    return HeightOutcome(
+        height_m=height_m,
+        status=status,
+        reason="",
+        robot_torque_norm=None,
+        human_torque_norm=None,
+        iterations=1,
+        residual=None,
+    )
+
+
+def failed(number: int, status: Status, *heights: HeightOutcome) -> Evaluation:
+    first = toy_evaluations(toy_header(), 1)[0]
+    assessment = msgspec.structs.replace(
+        first.assessment, violation=0.1, status=status, reason=f"reason {number}", heights=heights
+    )
+    return msgspec.structs.replace(first, number=number, assessment=assessment)
+
+
+LOW, HIGH = height(0.8, Status.SOLVED), height(1.2, Status.INFEASIBLE)
+
+
+def test_causes_name_the_heights_and_the_most_frequent_comes_first() -> None:
+    lost = failed(0, Status.WORKER_LOST)
+    missed = [failed(number, Status.INFEASIBLE, LOW, HIGH) for number in (1, 2)]
+    found = causes_of_infeasibility([lost, *missed])
+    assert [(each.cause, each.count, each.example) for each in found] == [
+        ("infeasible at 1.2 m", 2, 1),
+        ("worker lost", 1, 0),
+    ]
+    assert found[0].reason == "reason 1"
+
+
+def test_several_heights_are_one_cause() -> None:
+    tall = height(1.5, Status.INFEASIBLE)
+    assert (
+        causes_of_infeasibility([failed(0, Status.INFEASIBLE, LOW, HIGH, tall)])[0].cause
+        == "infeasible at 1.2 and 1.5 m"
+    )
+    assert (
+        causes_of_infeasibility([failed(0, Status.INFEASIBLE, HIGH, tall)])[0].cause
+        == "infeasible at every height"
+    )
+
+
+def test_feasible_designs_do_not_fail() -> None:
+    evaluations = toy_evaluations(toy_header(), 40)
+    found = causes_of_infeasibility(evaluations)
+    assert sum(each.count for each in found) == sum(not evaluation.feasible for evaluation in evaluations)
+    assert causes_of_infeasibility([evaluation for evaluation in evaluations if evaluation.feasible]) == ()

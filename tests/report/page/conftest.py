@@ -1,0 +1,73 @@
+"""A small real run: the named designs of the default problem and some random ones, evaluated and logged."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from evodesign.analysis.front import RunningFront, front
+from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.cli.header import header_of
+from evodesign.problem.build import Problem
+from evodesign.problem.evaluate import Evaluator
+from evodesign.records import Detail, Evaluation, Front, Generation
+from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.writer import RunWriter
+
+RANDOM_DESIGNS = 4
+
+
+@pytest.fixture(scope="session")
+def real_run(problem: Problem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """One generation of real evaluations, with the postures that a search would log."""
+    directory = tmp_path_factory.mktemp("page") / "real"
+    generator = random.Random(7)
+    genomes = [*problem.start]
+    genomes += [tuple(generator.random() for _ in genomes[0]) for _ in range(RANDOM_DESIGNS)]
+    settings = problem.settings("nsga2", len(genomes), 1)
+    objectives = problem.objectives
+    running = RunningFront(objectives)
+    done: list[Evaluation] = []
+    with RunWriter(directory, header_of(problem, settings, len(genomes))) as log:
+        for number, genome in enumerate(genomes):
+            assessed = evaluator.assess(genome)
+            evaluation = Evaluation(
+                number=number,
+                generation=0,
+                genome=genome,
+                assessment=assessed.assessment,
+                seconds=0.25,
+                worker="here",
+            )
+            done.append(evaluation)
+            log.evaluation(evaluation)
+            if running.enters(evaluation):
+                log.detail(Detail(evaluation=number, heights=assessed.heights))
+        reference = reference_point(objectives, done)
+        assert reference is not None
+        log.generation(
+            Generation(
+                number=0,
+                evaluations=len(done),
+                feasible_share=sum(evaluation.feasible for evaluation in done) / len(done),
+                hypervolume=hypervolume(objectives, done, reference),
+                reference=reference,
+                best=best(objectives, done),
+                seconds=3.0,
+            )
+        )
+        numbers = tuple(evaluation.number for evaluation in front(objectives, done))
+        log.front(Front(generation=0, evaluations=numbers))
+    return read_run(directory)
+
+
+@pytest.fixture(scope="session")
+def real_page(real_run: Run) -> Path:
+    """The page of the real run."""
+    from evodesign.report.page import page_content, page_html
+
+    path = real_run.directory / "report.html"
+    path.write_text(page_html(page_content(real_run)), encoding="utf-8")
+    return path

@@ -1,0 +1,361 @@
+"""The page in a real browser: it is quiet, asks for nothing, and its parts answer to each other."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import msgspec
+import numpy as np
+import pytest
+
+from evodesign.analysis.front import front
+from evodesign.problem.build import Problem
+from evodesign.records import AgentDetail, Objective, Sense
+from evodesign.report.page import page_content, page_html
+from evodesign.report.page.bodies import agent_body
+from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.writer import RunWriter
+from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.tree.kinematics import Pose, euler_rotation, forward
+from evodesign.tree.model import Tree
+from tests.report.page.chromium import Tab, browser, executable
+from tests.runlog.toys import toy_evaluations, toy_header
+from tests.tree.crane import crane
+
+if executable() is None and not os.environ.get("CI"):
+    pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)", allow_module_level=True)
+
+CANVAS = "document.getElementById('posture')"
+PLOT = "document.getElementById('front')"
+SHOWN = "document.getElementById('card-title').textContent"
+NAME = "<script>alert(1)</script>"
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+    with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
+        yield tab
+
+
+def open_page(tab: Tab, path: Path, theme: str = "light") -> None:
+    """Open a page and wait until its scripts are through."""
+    tab.open(path.as_uri(), theme=theme)
+    tab.wait_for("window.evodesign !== undefined")
+
+
+@pytest.fixture
+def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
+    """The real run's page, newly opened; at the end it must have been quiet."""
+    chromium.events.clear()
+    open_page(chromium, real_page)
+    yield chromium
+    assert chromium.complaints() == []
+    assert chromium.requests() == [real_page.as_uri()]
+
+
+def shown_as(value: float) -> str:
+    """A number as tiles and tables show it: four significant digits."""
+    return f"{value:#.4g}".rstrip(".").replace("-", "\u2212")
+
+
+def trace(tab: Tab, name: str) -> list[int]:
+    """Numbers of the designs that a trace of the front draws."""
+    drawn = tab.value(f"JSON.stringify({PLOT}.data.find(t => t.name === '{name}').customdata)")
+    return list(json.loads(drawn))
+
+
+def spot(tab: Tab, number: int) -> tuple[float, float]:
+    """Where in the window the front draws a design."""
+    left, top, _, _ = tab.place(PLOT)
+    x, y = tab.value(
+        f"(() => {{ const p = {PLOT}, t = p.data.find(t => t.name === 'front'), l = p._fullLayout;"
+        f"const i = t.customdata.indexOf({number});"
+        "return [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t]; })()"
+    )
+    return left + x, top + y
+
+
+def front_of(run: Run) -> dict[int, Any]:
+    return {each.number: each.assessment for each in front(run.header.objectives, run.evaluations)}
+
+
+def test_front_draws_every_design_of_it_in_2d_and_3d(page: Tab, real_run: Run) -> None:
+    assert trace(page, "front") == list(front_of(real_run))
+    assert trace(page, "unscaled") == [0]
+    page.value("document.getElementById('front-3D').click()")
+    page.wait_for(f"{PLOT}.data[0].type === 'scatter3d'")
+    assert trace(page, "front") == list(front_of(real_run))
+    assert trace(page, "unscaled") == [0]
+
+
+def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: Run) -> None:
+    track = "document.querySelector('[data-axis=\"length.thigh\"] .track')"
+    left, top, width, height = page.place(track)
+    page.drag((left + 0.5 * width, top + height / 2), (left + 0.99 * width, top + height / 2))
+    low, high = page.value("[...window.evodesign.state.brushes.values()][0]")
+    assert low == pytest.approx(0.6 + 0.5 * 1.2, abs=0.01)
+    inside = [n for n, worth in front_of(real_run).items() if low <= worth.design["length.thigh"] <= high]
+    assert 0 < len(inside) < len(front_of(real_run))
+    page.wait_for(f"{PLOT}.data.find(t => t.name === 'front').x.length === {len(inside)}")
+    assert trace(page, "front") == inside
+    assert f"{len(inside)} of {len(front_of(real_run))}" in page.value(
+        "document.getElementById('brushed').textContent"
+    )
+    page.value("document.getElementById('clear').click()")
+    assert trace(page, "front") == list(front_of(real_run))
+
+
+def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(page: Tab, real_run: Run) -> None:
+    page.value(f"Plotly.relayout({PLOT}, {{dragmode: 'select'}}).then(() => true)")
+    x, y = spot(page, page.value("window.evodesign.state.selected"))
+    page.drag((x - 25, y - 25), (x + 25, y + 25))
+    page.wait_for("window.evodesign.state.lasso !== null")
+    chosen = set(page.value("[...window.evodesign.state.lasso]"))
+    inside = [number for number in front_of(real_run) if number in chosen]
+    assert 0 < len(inside) < len(front_of(real_run))
+    assert trace(page, "front") == inside
+    page.value("document.getElementById('clear').click()")
+    page.wait_for(f"!{PLOT}.layout.selections?.length")
+    assert page.value("window.evodesign.state.lasso") is None
+    assert trace(page, "front") == list(front_of(real_run))
+
+
+def test_brush_moves_by_keyboard(page: Tab) -> None:
+    page.value("document.querySelector('[data-axis=\"length.thigh\"] input').focus()")
+    page.key("ArrowRight")
+    low, high = page.value("[...window.evodesign.state.brushes.values()][0]")
+    assert low == pytest.approx(0.6 + 1.2 / 1000)
+    assert high == 1.8
+
+
+def test_clicking_a_point_shows_its_card(page: Tab, real_run: Run) -> None:
+    marked = page.value("window.evodesign.content.marks.map(mark => mark.number)")
+    shown = page.value("window.evodesign.state.selected")
+    number = next(number for number in front_of(real_run) if number in marked and number != shown)
+    page.click(*spot(page, number))
+    page.wait_for(f"{SHOWN} === 'Design {number}'")
+    assert page.value("document.getElementById('announce').textContent") == f"Design {number} is shown."
+    worth = front_of(real_run)[number]
+    for name, value in worth.objectives.items():
+        tile = f"document.querySelector('[data-objective=\"{name}\"]').firstChild.textContent"
+        assert page.value(tile) == shown_as(value)
+    for name, value in worth.design.items():
+        cell = f"document.querySelector('[data-parameter=\"{name}\"]').textContent"
+        assert page.value(cell) == shown_as(value)
+
+
+def test_arrow_keys_walk_along_the_front(page: Tab, real_run: Run) -> None:
+    before = page.value(SHOWN)
+    page.value(f"{PLOT}.focus()")
+    page.key("ArrowLeft")
+    page.key("ArrowRight")
+    page.key("ArrowRight")
+    assert page.value(SHOWN) != before
+    assert int(page.value(SHOWN).removeprefix("Design ")) in front_of(real_run)
+
+
+def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: Run) -> None:
+    number = page.value("window.evodesign.state.selected")
+    before = page.value(f"{CANVAS}.toDataURL()")
+    wrenches = page.value("document.querySelector('.wrenches').textContent")
+    page.value("document.getElementById('height').focus()")
+    page.key("ArrowRight")
+    page.wait_for("document.querySelector('.height output').textContent === '1.2 m'")
+    page.wait_for(f"{CANVAS}.toDataURL() !== {json.dumps(before)}")
+    assert page.value("document.querySelector('.wrenches').textContent") != wrenches
+    details = next(detail for detail in real_run.details if detail.evaluation == number)
+    force = details.heights[2].agents[ROBOT].foot_wrenches["left"][2]
+    cell = "document.querySelector('[data-agent=robot] tr:nth-child(2)').children[3].textContent"
+    assert page.value(cell) == f"{force:.1f}"
+
+
+def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run) -> None:
+    first = page.value("window.evodesign.state.selected")
+    drawn = page.value(f"{CANVAS}.toDataURL()")
+    known = {detail.evaluation for detail in real_run.details}
+    bare = next(evaluation.number for evaluation in real_run.evaluations if evaluation.number not in known)
+    page.value(f"window.evodesign.select({bare})")
+    assert page.value(SHOWN) == f"Design {bare}"
+    assert page.value(f"{CANVAS} === null")
+    page.value(f"window.evodesign.select({first})")
+    page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
+
+
+def check_poses(tab: Tab, script: str, tree: Tree, posture: AgentDetail, turn: float) -> None:
+    """A script's link poses are those of our kinematics, for an agent's frame turned about z [rad]."""
+    world_from_agent = euler_rotation(ca.DM([0.0, 0.0, turn]))
+    base = Pose(
+        world_from_agent @ euler_rotation(ca.DM(posture.base_rpy_rad)),
+        world_from_agent @ ca.DM(posture.base_position_m),
+    )
+    poses = forward(tree, base, posture.joints_rad)
+    for link, pose in zip(tree.links, tab.value(script), strict=True):
+        wanted = poses[link.name]
+        np.testing.assert_allclose(pose["position"], np.array(wanted.position)[:, 0], atol=1e-9)
+        rotation = np.array(pose["rotation"]).reshape(3, 3)
+        np.testing.assert_allclose(rotation, np.array(wanted.rotation), atol=1e-9)
+
+
+def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem, real_run: Run) -> None:
+    detail = real_run.details[-1]
+    values = list(real_run.evaluations[detail.evaluation].assessment.design.values())
+    robot = problem.space.resized(problem.scene.robot.tree, values)
+    for place, height in enumerate(detail.heights):
+        for name, tree, turn in ((ROBOT, robot, 0.0), (HUMAN, problem.scene.human.tree, math.pi)):
+            script = (
+                f"(() => {{ const e = window.evodesign, d = e.content.designs[{detail.evaluation}];"
+                f"const posture = d.postures[{place}].agents.{name};"
+                f"return e.linkPoses('{name}', e.treeOf('{name}', d), posture); }})()"
+            )
+            check_poses(page, script, tree, height.agents[name], turn)
+
+
+def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: Problem) -> None:
+    tree = crane()
+    agent = replace(problem.scene.robot, tree=tree, soles={"left": "hook", "right": "flag"})
+    posture = AgentDetail(
+        base_position_m=(0.3, -0.2, 0.9),
+        base_rpy_rad=(0.4, -0.7, 1.9),
+        joints_rad={"swing": 0.8, "reach": 0.35, "twist": -2.9, "wave": 1.2},
+        torques_n_m={},
+        hand_wrenches={},
+        foot_wrenches={},
+    )
+    given = [msgspec.json.encode(part).decode() for part in (agent_body(agent), posture)]
+    check_poses(page, f"window.evodesign.linkPoses('robot', {given[0]}, {given[1]})", tree, posture, 0.0)
+
+
+def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: Run) -> None:
+    rows = page.value(
+        "[...document.querySelectorAll('#table tbody tr')].map(r => [...r.children].map(c => c.textContent))"
+    )
+    worth = front_of(real_run)
+    assert sorted(int(row[0]) for row in rows) == list(worth)
+    for row in rows:
+        assert row[1:4] == [shown_as(value) for value in worth[int(row[0])].objectives.values()]
+    page.value("document.querySelector('#table .open').click()")
+    assert page.value(SHOWN) == f"Design {rows[0][0]}"
+
+
+@pytest.mark.parametrize(("system", "other"), [("light", "dark"), ("dark", "light")])
+def test_page_follows_the_system_until_told_otherwise(
+    chromium: Tab, real_page: Path, system: str, other: str
+) -> None:
+    open_page(chromium, real_page, theme=system)
+    theme = "document.documentElement.dataset.theme"
+    assert chromium.value(theme) == system
+    chromium.value("document.getElementById('theme').click()")
+    assert chromium.value(theme) == other
+
+
+def test_everything_that_can_be_operated_has_a_name(page: Tab) -> None:
+    nameless = page.value(
+        "[...document.querySelectorAll('button, input, select, canvas[role], .plot')].filter(e =>"
+        "!(e.textContent.trim() || e.ariaLabel || e.labels?.length || e.getAttribute('aria-labelledby')))"
+        ".map(e => e.outerHTML)"
+    )
+    assert nameless == []
+
+
+def test_laptop_width_needs_no_sideways_scrolling(page: Tab) -> None:
+    for width in (1280, 1024, 600):
+        page.resize(width, 800)
+        page.wait_for(f"document.documentElement.scrollWidth <= {width}")
+
+
+def open_run(tab: Tab, run: Run) -> None:
+    """Write and open the page of a run, which must be quiet."""
+    path = run.directory / "report.html"
+    path.write_text(page_html(page_content(run)), encoding="utf-8")
+    tab.events.clear()
+    open_page(tab, path)
+    assert tab.complaints() == []
+    assert tab.requests() == [path.as_uri()]
+
+
+def toy_run(
+    directory: Path, count: int, *, feasible: bool = True, objectives: int = 2, title: str = "toy"
+) -> Run:
+    more = tuple(Objective(name=f"{NAME}{i}", sense=Sense.MINIMISE, unit="kg") for i in range(3))
+    parameters = tuple(
+        msgspec.structs.replace(one, name=f"{one.name}.{title}") for one in toy_header().parameters
+    )
+    header = msgspec.structs.replace(
+        toy_header(),
+        problem_name=title,
+        objectives=(*toy_header().objectives, *more)[:objectives],
+        parameters=parameters,
+    )
+    with RunWriter(directory, header) as log:
+        for evaluation in toy_evaluations(header, count):
+            if feasible or not evaluation.feasible:
+                worth = evaluation.assessment
+                values = {one.name: (0.5 - evaluation.genome[i % 2]) ** 2 for i, one in enumerate(more)}
+                worth = msgspec.structs.replace(worth, objectives={**worth.objectives, **values})
+                log.evaluation(msgspec.structs.replace(evaluation, assessment=worth))
+    return read_run(directory)
+
+
+def test_empty_run_says_so(chromium: Tab, tmp_path: Path) -> None:
+    open_run(chromium, toy_run(tmp_path / "run", 0))
+    assert "holds no evaluation yet" in chromium.value("document.body.innerText")
+
+
+def test_run_without_feasible_design_opens_the_nearest(chromium: Tab, tmp_path: Path) -> None:
+    run = toy_run(tmp_path / "run", 40, feasible=False)
+    open_run(chromium, run)
+    text = chromium.value("document.body.innerText")
+    assert "No design of this run is feasible" in text
+    assert "Infeasible at every height" in text
+    nearest = min(run.evaluations, key=lambda evaluation: evaluation.assessment.violation or 0.0)
+    assert chromium.value(SHOWN) == f"Design {nearest.number}"
+
+
+def test_one_objective_is_drawn_over_the_evaluations(chromium: Tab, tmp_path: Path) -> None:
+    open_run(chromium, toy_run(tmp_path / "run", 40, objectives=1))
+    assert chromium.value(f"{PLOT}.layout.xaxis.title.text") == "evaluation [number]"
+    assert len(trace(chromium, "front")) == 1
+
+
+def test_five_objectives_offer_any_three_as_axes(chromium: Tab, tmp_path: Path) -> None:
+    run = toy_run(tmp_path / "run", 60, objectives=5)
+    open_run(chromium, run)
+    assert trace(chromium, "front") == list(front_of(run))
+    assert chromium.value("document.querySelectorAll('#axis-across option').length") == 5
+
+
+def test_names_are_shown_as_text(chromium: Tab, tmp_path: Path) -> None:
+    open_run(chromium, toy_run(tmp_path / "run", 40, objectives=5, title=NAME))
+    assert chromium.value("document.getElementById('title').textContent") == NAME
+    assert chromium.value("document.title").startswith(NAME)
+    assert NAME + "0" in chromium.value("document.getElementById('table').textContent")
+    assert chromium.value("document.querySelectorAll('script').length") == 3
+    assert not [event for event in chromium.events if event["method"] == "Page.javascriptDialogOpening"]
+
+
+def test_run_cut_by_a_crash_shows_what_is_there_with_a_note(
+    chromium: Tab, tmp_path: Path, real_run: Run
+) -> None:
+    log = (real_run.directory / "000.mcap").read_bytes()
+    (tmp_path / "000.mcap").write_bytes(log[: len(log) * 2 // 3])
+    open_run(chromium, read_run(tmp_path))
+    assert "ends after" in chromium.value("document.getElementById('notes').innerText")
+    assert chromium.value("document.getElementById('card-title') !== null")
+
+
+def test_browser_without_webgl_says_what_it_cannot_draw(
+    real_page: Path, tmp_path: Path, real_run: Run
+) -> None:
+    with browser(tmp_path / "chromium", "--disable-3d-apis") as tab:
+        open_page(tab, real_page)
+        assert "offers no WebGL" in tab.value("document.getElementById('card').innerText")
+        assert tab.value("document.getElementById('front-3D').disabled")
+        assert trace(tab, "front") == list(front_of(real_run))
+        assert tab.complaints() == []
