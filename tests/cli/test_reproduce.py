@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
 
 from evodesign.cli.baseline import start_baseline
+from evodesign.cli.opening import cast_of, open_design
 from evodesign.cli.reproducing import reproduce_paper
 from evodesign.cli.reproduction import Effort
 from evodesign.errors import InputError
@@ -76,3 +78,24 @@ def test_a_baseline_counts_how_its_starts_ended(
     assert "how the 2 starts ended: iteration limit 2" in capsys.readouterr().out
     start_baseline(small, tmp_path / "again", 2, 1, 1, "serial", json=True)
     assert json.loads(capsys.readouterr().out)["statuses"] == {"iteration limit": 2}
+
+
+def test_a_design_of_a_baseline_is_where_its_start_ended(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Shown with its logged design, and solved anew from its start where the log holds no postures."""
+    start_baseline(folder / "problems" / "sartore2022.toml", tmp_path / "run", 3, 1, 1, "serial", json=True)
+    run = read_run(tmp_path / "run")
+    logged = {detail.evaluation for detail in run.details}
+    number = next(e.number for e in run.evaluations if e.number not in logged)
+    opened = open_design(tmp_path / "run", number, 1)
+    norms = {h.height_m: h.robot_torque_norm for h in opened.evaluation.assessment.heights}
+    for height in opened.heights:
+        norm = math.hypot(*height.agents["robot"].torques_n_m.values())
+        assert norm == pytest.approx(norms[height.height_m], rel=1e-9)
+    problem = opened.rebuilt.problem
+    arm = cast_of(opened).trees["robot"].link_by_name["l_upper_arm"].inertia.mass
+    values = list(opened.evaluation.assessment.design.values())
+    tree = problem.space.resized(problem.scene.robot.tree, values)
+    assert arm == tree.link_by_name["l_upper_arm"].inertia.mass
+    assert "solved anew" in capsys.readouterr().err
