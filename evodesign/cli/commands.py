@@ -301,6 +301,53 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     check_problem(problem, json)
 
 
+def baseline(
+    problem: ProblemPath,
+    starts: Annotated[int, typer.Option(min=1, help="How many starts.")] = 50,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Of the starts.", show_default="as in the problem")
+    ] = None,
+    run: Annotated[
+        Path | None, typer.Option(help="Directory of the new run.", show_default="runs/NAME-baseline-TIME")
+    ] = None,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """The paper's way: postures at all heights and the design in one program, from many starts."""
+    from evodesign.cli.baseline import start_baseline
+
+    start_baseline(problem, run, starts, seed, jobs, pool, json)
+
+
+def reproduce(
+    to: Annotated[
+        Path | None,
+        typer.Option(help="New folder for runs, figures and robots.", show_default="runs/reproduce-TIME"),
+    ] = None,
+    problem: Annotated[Path, typer.Option(metavar="FILE", help="The problem with physical limits.")] = Path(
+        "problems/sartore2022.toml"
+    ),
+    published: Annotated[
+        Path, typer.Option(metavar="FILE", help="The published setting, without limits.")
+    ] = Path("problems/sartore2022_as_published.toml"),
+    starts: Annotated[int, typer.Option(min=1, help="Starts of the joint problem.")] = 50,
+    evaluations: Annotated[int, typer.Option(min=1, help="Designs that the search evaluates.")] = 480,
+    seed: Annotated[int, typer.Option(min=0, help="Of starts and search.")] = 1,
+    minutes: Annotated[
+        float, typer.Option(min=0.1, help="After which both have ended, with what they have by then.")
+    ] = 12.0,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """Sartore et al. 2022 again: its table, claims and figures, with verdicts, then by evolution."""
+    from evodesign.cli.reproducing import reproduce_paper
+    from evodesign.cli.reproduction import Effort
+
+    reproduce_paper(problem, published, to, Effort(starts, evaluations, seed, minutes, jobs, pool), json)
+
+
 def report(
     run: RunPath,
     output: Annotated[
@@ -380,4 +427,6 @@ COMMANDS = (
     verify,
     recover,
     merge,
+    baseline,
+    reproduce,
 )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from evodesign.analysis.front import front
 from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
+from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation, HeightDetail, RunHeader
 from evodesign.report.stage import Cast
 from evodesign.runlog.run import Run, read_run
@@ -75,25 +76,23 @@ def open_design(directory: Path, number: int, jobs: int) -> OpenedDesign:
     evaluation = by_number[number]
     best = front(run.header.objectives, run.evaluations)
     rebuilt = RebuiltProblem(run.header)
-    return OpenedDesign(
-        run, evaluation, _heights(run, evaluation, rebuilt, jobs), evaluation in best, rebuilt
-    )
+    return OpenedDesign(run, evaluation, _heights(run, evaluation, jobs), evaluation in best, rebuilt)
 
 
-def _heights(
-    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int
-) -> tuple[HeightDetail, ...]:
+def _heights(run: Run, evaluation: Evaluation, jobs: int) -> tuple[HeightDetail, ...]:
     logged = {detail.evaluation: detail for detail in run.details}
     if evaluation.number in logged:
         return logged[evaluation.number].heights
-    from evodesign.cli.ready import evaluator_of  # CasADi takes its time to load
+    from evodesign.cli.ready import problem_factory  # CasADi takes its time to load
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
-    return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
+    with make_pool("joblib", jobs) as pool:
+        return problem_factory(run.header, pool)()(evaluation.genome).heights
 
 
 def cast_of(opened: OpenedDesign) -> Cast:
     """Robot of the design, person and load, built from the problem in the run's header."""
     problem = opened.rebuilt.problem
-    values = problem.space.values(opened.evaluation.genome)
+    design = opened.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
+    values = [design[parameter.name] for parameter in problem.space.parameters]
     return Cast.of(problem.scene, problem.space.resized(problem.scene.robot.tree, values))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import msgspec
 from rich.console import Console
 from rich.markup import escape
 
-__all__ = ["console", "figure", "print_json", "show_notes", "shown", "visible"]
+from evodesign.records import Status
+
+__all__ = ["console", "counted", "figure", "print_json", "show_notes", "shown", "visible"]
 
 PLAIN_WIDTH = 110
 """Columns of a table that is not shown on a terminal."""
@@ -25,6 +27,11 @@ def console(*, stderr: bool = False) -> Console:
 def figure(value: float | None) -> str:
     """A number with four significant figures, or a dash for none."""
     return "-" if value is None else f"{value:.4g}"
+
+
+def counted(statuses: Mapping[Status, int]) -> str:
+    """Statuses in words, such as `solved 48, infeasible 2`."""
+    return ", ".join(f"{status} {statuses[status]}" for status in Status if statuses.get(status)) or "none"
 
 
 def visible(text: str) -> str:

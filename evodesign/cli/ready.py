@@ -18,15 +18,20 @@ from evodesign.pool.registry import make_pool
 from evodesign.posture.cache import Cache, digest_of, user_cache
 from evodesign.posture.codegen import RECIPE, Compiler, NotCompiled, find_compiler
 from evodesign.posture.preparation import Preparation
+from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.prepare import prepared
 from evodesign.records import ProblemSource, RunHeader
+from evodesign.search.base import JOINT_STARTS
 
 __all__ = ["evaluator_of", "known_of", "problem_factory"]
 
 
-def problem_factory(header: RunHeader, pool: Pool) -> AssessmentFactory:
+Evaluations = AssessmentFactory | BaselineFactory
+
+
+def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
     """The evaluation of a header's problem as workers build it, with everything they share made ready.
 
     Args:
@@ -34,9 +39,16 @@ def problem_factory(header: RunHeader, pool: Pool) -> AssessmentFactory:
         pool: where what is missing is worked out.
     """
     problem = build_problem(header.problem)
-    known = known_of(problem, pool)
-    factory = AssessmentFactory(_digest(header.problem), header.problem, known, problem.limits)
-    if problem.options.compiled:
+    factory: Evaluations
+    if header.search.algorithm == JOINT_STARTS:
+        factory = BaselineFactory(f"{_digest(header.problem)}-{JOINT_STARTS}", header.problem, problem.limits)
+        compiled = problem.joint.options.compiled
+    else:
+        factory = AssessmentFactory(
+            _digest(header.problem), header.problem, known_of(problem, pool), problem.limits
+        )
+        compiled = problem.options.compiled
+    if compiled:
         _compile(factory)
     return factory
 
@@ -58,7 +70,7 @@ def _digest(source: ProblemSource) -> str:
     return digest_of(msgspec.json.encode(source, order="deterministic"))
 
 
-def _compile(factory: AssessmentFactory) -> None:
+def _compile(factory: Evaluations) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
@@ -75,7 +87,7 @@ def _compile(factory: AssessmentFactory) -> None:
         cache.store(key, b"ready")
 
 
-def _mark(factory: AssessmentFactory, compiler: Compiler) -> str:
+def _mark(factory: Evaluations, compiler: Compiler) -> str:
     """Key of the mark that a problem's functions are compiled."""
     parts = (factory.digest, RECIPE, version("casadi"), *compiler.command, compiler.version)
     return digest_of(*(part.encode() for part in parts))

@@ -22,6 +22,7 @@ from evodesign.errors import InputError, Interrupted, ResumeMismatch
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
+from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.notes import notes
 from evodesign.problem.remember import Remembering
 from evodesign.problem.source import read_source
@@ -92,7 +93,9 @@ class Workers:
     def factory(self, header: RunHeader, pool: Pool) -> Evaluate:
         """The evaluation of a header's problem; the pool works out what is missing for it."""
         factory = problem_factory(header, pool)
-        return Remembering(factory) if self.cache else factory
+        if self.cache and isinstance(factory, AssessmentFactory):  # a start is no design to know again
+            return Remembering(factory)
+        return factory
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +119,8 @@ def start(
     problem = build_problem(read_source(path, symmetry))
     show_notes(notes(problem))
     table = problem.search
-    settings = problem.settings(table.algorithm, table.population, table.seed, table.asynchronous)
+    algorithm = table.algorithm if wishes.algorithm is None else wishes.algorithm  # its start depends on it
+    settings = problem.settings(algorithm, table.population, table.seed, table.asynchronous)
     settings = wishes.applied(settings)
     header = header_of(problem, settings, table.evaluations)
     header = msgspec.structs.replace(

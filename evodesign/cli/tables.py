@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -40,6 +41,7 @@ def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
         "front": len(chosen.front),
         "order": choice.order,
         "where": [str(condition) for condition in choice.where],
+        "statuses": Counter(str(evaluation.assessment.status) for evaluation in run.evaluations),
         "designs": [
             {
                 "id": evaluation.number,

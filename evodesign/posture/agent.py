@@ -47,14 +47,23 @@ class AgentBlock:
         hand_wrenches: force [N] and moment about the grasp point [N m] on both hands by side, agent's frame;
             the load feels their negative.
         effort: squared norm of all the agent's torques [N^2 m^2], the mirrored ones included.
-        comfort: small convex cost that makes the posture unique where torques do not.
+        posture_comfort: small convex cost that makes the posture unique where torques do not.
+        wrench_comfort: likewise for the wrenches.
+        uprights: z_sole . z by side; 1 for a flat foot, -1 for one upside down, which joint limits rule out.
     """
 
     variables: tuple[Variable, ...]
     constraints: tuple[Constraint, ...]
     hand_wrenches: Mapping[str, Expression]
     effort: Expression
-    comfort: Expression
+    posture_comfort: Expression
+    wrench_comfort: Expression
+    uprights: Mapping[str, Expression]
+
+    @property
+    def comfort(self) -> Expression:
+        """Both comforts together."""
+        return self.posture_comfort + self.wrench_comfort
 
 
 def agent_block(form: Form, tree: Tree, scene: Scene, height: Expression) -> AgentBlock:
@@ -90,8 +99,15 @@ def agent_block(form: Form, tree: Tree, scene: Scene, height: Expression) -> Age
         equal(f"{agent.name}.moment", moment),
     ]
     effort = ca.dot(ca.DM(list(form.counts)), values["torques"] ** 2)
-    comfort = _comfort(form, values, hands, feet)
-    return AgentBlock(tuple(variables), tuple(constraints), hands, effort, comfort)
+    return AgentBlock(
+        variables=tuple(variables),
+        constraints=tuple(constraints),
+        hand_wrenches=hands,
+        effort=effort,
+        posture_comfort=_posture_comfort(form, values),
+        wrench_comfort=_wrench_comfort(form, hands, feet),
+        uprights={side: poses[form.agent.soles[side]].rotation[2, 2] for side in form.sides},
+    )
 
 
 def _variables(form: Form, scene: Scene) -> list[Variable]:
@@ -150,17 +166,18 @@ def _applied(
     return applied
 
 
-def _comfort(
-    form: Form,
-    values: Mapping[str, Expression],
-    hands: Mapping[str, Expression],
-    feet: Mapping[str, Expression],
-) -> Expression:
-    """Bent joints, a tilted base, sideways and twisting hands and unequal feet, all slightly disliked."""
+def _posture_comfort(form: Form, values: Mapping[str, Expression]) -> Expression:
+    """Bent joints and a tilted base, slightly disliked."""
     joints = [form.agent.tree.joint_by_name[name] for name in form.joints]
     ranges = [min(j.upper, math.pi) - max(j.lower, -math.pi) for j in joints]
     bent = ca.dot(ca.DM(list(form.counts)), (values["joints"] / ca.DM(ranges)) ** 2)
-    tilt = ca.sumsqr(values["base_angles"])
+    return COMFORT * (bent + ca.sumsqr(values["base_angles"]))
+
+
+def _wrench_comfort(
+    form: Form, hands: Mapping[str, Expression], feet: Mapping[str, Expression]
+) -> Expression:
+    """Sideways and twisting hands and unequal feet, slightly disliked."""
     lateral = sum(ca.sumsqr(wrench[:2]) + ca.sumsqr(wrench[3:]) for wrench in hands.values()) / HAND_UNIT**2
     split = ca.sumsqr(feet["left"] - feet["right"]) / FORCE_UNIT**2 if form.mirror is None else 0.0
-    return COMFORT * (bent + tilt + lateral + split)
+    return COMFORT * (lateral + split)

@@ -79,6 +79,24 @@ class Form:
             foot_wrenches=feet,
         )
 
+    def start(self, posture: AgentPosture, rows: Mapping[str, int]) -> dict[str, Array]:
+        """Starting values of a program from a posture, by full name; what `expand` takes, given back.
+
+        Args:
+            posture: of the whole agent.
+            rows: how many rows each variable has (a point grasp passes three).
+        """
+        values = {
+            "base_position": posture.base_position,
+            "base_angles": posture.base_angles,
+            "joints": np.array([posture.joints[name] for name in self.joints]),
+            "torques": np.array([posture.torques[name] for name in self.joints]),
+            **{f"{side}_hand": posture.hand_wrenches[side] for side in self.sides},
+            **{f"{side}_foot": posture.foot_wrenches[side] for side in self.sides},
+        }
+        full = {f"{self.agent.name}.{name}": value for name, value in values.items()}
+        return {name: value[: rows[name]] for name, value in full.items()}
+
 
 def _both_sides(known: Mapping[str, float], agent: Agent, mirror: Mirror) -> dict[str, float]:
     """Values of all joints of a symmetric agent from those of its half."""

@@ -21,10 +21,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property, partial
-from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import TORQUE_UNIT, agent_block
@@ -183,10 +181,11 @@ class _Postures:
         self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
     ) -> Trial:
         """What known whole postures lead to."""
+        rows = {v.name: v.symbol.numel() for v in self._solver.program.variables}
         start = {
-            f"{form.agent.name}.{part}": value
+            name: value
             for form in self._forms
-            for part, value in _blocks(postures[form.agent.name], self._solver, form.agent.name).items()
+            for name, value in form.start(postures[form.agent.name], rows).items()
         }
         end = self._solver.solve([*values, height], start)
         return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
@@ -216,17 +215,3 @@ def posture_program(
         cost=effort / TORQUE_UNIT**2 + robot.comfort + human.comfort,
         parameters=ca.vertcat(design, height),
     )
-
-
-def _blocks(posture: AgentPosture, solver: Solver, agent: str) -> dict[str, Any]:
-    """A whole posture as starting values of a whole agent's variables."""
-    rows = {v.name: v.symbol.numel() for v in solver.program.variables}
-    hands = {f"{side}_hand": wrench for side, wrench in posture.hand_wrenches.items()}
-    return {
-        "base_position": posture.base_position,
-        "base_angles": posture.base_angles,
-        "joints": np.array(list(posture.joints.values())),
-        "torques": np.array(list(posture.torques.values())),
-        **{name: wrench[: rows[f"{agent}.{name}"]] for name, wrench in hands.items()},
-        **{f"{side}_foot": wrench for side, wrench in posture.foot_wrenches.items()},
-    }

@@ -8,14 +8,17 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Limits
 from evodesign.posture.form import symmetric_forms
+from evodesign.posture.joint import JointSettings
 from evodesign.posture.posture import EffortWeights, Symmetry
 from evodesign.posture.program import IpoptOptions
 from evodesign.problem.agents import human_agent, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
+from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.objectives import OBJECTIVES
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
+from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Payload, Scene, StanceLimits
 from evodesign.tree.model import Tree
@@ -43,6 +46,8 @@ class Problem:
         seeds: whether solves begin at the problem's seeds.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
+        joint: the paper's joint problem.
+        joint_start: genomes that its starts begin with.
     """
 
     name: str
@@ -58,6 +63,8 @@ class Problem:
     seeds: bool
     search: SearchTable
     start: tuple[Genome, ...]
+    joint: JointSettings
+    joint_start: tuple[Genome, ...]
 
     def settings(
         self, algorithm: str, population: int, seed: int, asynchronous: bool = False
@@ -69,7 +76,7 @@ class Problem:
             objectives=len(self.objectives),
             population=population,
             seed=seed,
-            start=self.start,
+            start=self.joint_start if algorithm == JOINT_STARTS else self.start,
             asynchronous=asynchronous,
         )
 
@@ -90,18 +97,19 @@ def build_problem(source: ProblemSource) -> Problem:
     )
     space = _space(tables, source, scene.robot.tree)
     symmetry = _symmetry(tables, source, scene, space)
-    start: tuple[Genome, ...] = ()
+    start: dict[str, Genome] = {}
     if tables.search.start is not None:
         name = tables.search.start
         designs = read_designs(source.files[name], name, space, scene.robot.tree)
-        start = start_genomes(designs, space, name)
+        start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
+    weights = EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human)
     return Problem(
         name=tables.name,
         source=source,
         scene=scene,
         space=space,
         heights=_heights(tables, source),
-        weights=EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human),
+        weights=weights,
         objectives=_objectives(tables, source),
         options=IpoptOptions(
             iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
@@ -110,7 +118,9 @@ def build_problem(source: ProblemSource) -> Problem:
         symmetry=symmetry,
         seeds=tables.solver.seeds,
         search=tables.search,
-        start=start,
+        start=tuple(start.values()),
+        joint=joint_settings(tables, source, space, weights),
+        joint_start=joint_start(tables, source, start),
     )
 
 

@@ -15,7 +15,7 @@ from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.objectives import OBJECTIVES, DesignResult
+from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import (
     AgentDetail,
     Assessed,
@@ -30,7 +30,7 @@ from evodesign.records import (
 )
 from evodesign.statics.scene import HUMAN, ROBOT
 
-__all__ = ["AssessmentFactory", "Evaluator"]
+__all__ = ["AssessmentFactory", "Evaluator", "detail_of", "outcome_of", "reach_of"]
 
 
 class Evaluator:
@@ -57,7 +57,15 @@ class Evaluator:
         checker = Checker(scene, tree, self._human)
         reach = self._reach.solve(values)
         heights = tuple(self._at_height(values, height, reach, checker) for height in self.problem.heights)
-        return DesignResult(scene.robot, tree, reach, heights)
+        return DesignResult(
+            robot=scene.robot,
+            space=self.problem.space,
+            values=tuple(values),
+            tree=tree,
+            reach=reach,
+            heights=heights,
+            paper=self.problem.joint,
+        )
 
     def assess(self, genome: Genome) -> Assessed:
         """What a genome is worth, with its postures."""
@@ -66,28 +74,20 @@ class Evaluator:
     def assess_values(self, values: Sequence[float]) -> Assessed:
         """What a design given as one number per parameter is worth, with its postures."""
         result = self.solve(values)
-        heights = tuple(_detail(height) for height in result.heights if height.solved)
+        heights = tuple(detail_of(height) for height in result.heights if height.solved)
         return Assessed(assessment=self.assessment(values, result), heights=heights)
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
-        found = {
-            objective.name: OBJECTIVES[objective.name].value(result) for objective in self.problem.objectives
-        }
-        heights = tuple(_outcome(height) for height in result.heights)
+        heights = tuple(outcome_of(height) for height in result.heights)
         failed = [height for height in result.heights if not height.solved]
         return Assessment(
             design=dict(self.problem.space.named(values)),
-            objectives={name: value for name, value in found.items() if value is not None},
+            objectives=objective_values(self.problem.objectives, result),
             violation=_violation(result),
             status=worst_status([result.reach.status, *(height.status for height in result.heights)]),
             reason=failed[0].reason if failed else "solved",
-            reach=ReachOutcome(
-                lowest_m=result.reach.lowest,
-                highest_m=result.reach.highest,
-                status=result.reach.status,
-                reason=result.reach.reason,
-            ),
+            reach=reach_of(result.reach),
             heights=heights,
         )
 
@@ -114,7 +114,15 @@ def _violation(result: DesignResult) -> float | None:
     return total
 
 
-def _outcome(height: HeightSolution) -> HeightOutcome:
+def reach_of(reach: Reach) -> ReachOutcome:
+    """The reachable interval, as it is logged."""
+    return ReachOutcome(
+        lowest_m=reach.lowest, highest_m=reach.highest, status=reach.status, reason=reach.reason
+    )
+
+
+def outcome_of(height: HeightSolution) -> HeightOutcome:
+    """A height in short, as it is logged."""
     return HeightOutcome(
         height_m=height.height,
         status=height.status,
@@ -126,7 +134,8 @@ def _outcome(height: HeightSolution) -> HeightOutcome:
     )
 
 
-def _detail(height: HeightSolution) -> HeightDetail:
+def detail_of(height: HeightSolution) -> HeightDetail:
+    """The postures at a height, as they are logged."""
     agents = {
         name: AgentDetail(
             base_position_m=tuple(posture.base_position.tolist()),

@@ -15,7 +15,7 @@ from evodesign.posture.posture import Symmetry
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 
-__all__ = ["HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
+__all__ = ["BaselineTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
@@ -179,6 +179,39 @@ class SolverTable(Table, frozen=True):
     evaluation_memory_gb: Annotated[float, Meta(ge=0.5)] = 8.0
 
 
+class TaskWeightsTable(Table, frozen=True):
+    """`[baseline.weights]`: W1 to W4 of the paper's tasks.
+
+    torque: of |tau|^2 in (10 N m)^2; density: of distances to the preferred densities in 1000 kg/m^3,
+    multiplied; center_of_pressure: of squared distances from the middle of the sole, in m^2; mass_height:
+    of 1 / z^2 of the standing robot's centre of mass, in 1/m^2.
+    """
+
+    torque: Positive = 1.0
+    density: NotNegative = 0.0
+    center_of_pressure: NotNegative = 0.0
+    mass_height: NotNegative = 0.0
+
+
+class BaselineTable(Table, frozen=True):
+    """`[baseline]`: the paper's joint problem, postures of all heights and the design in one program.
+
+    `start` names designs of the file `search.start` with which the starts begin; left out: all of it.
+    `compile` pays for hundreds of starts only: the program of all heights is long.
+    """
+
+    start: tuple[Name, ...] | None = None
+    weights: TaskWeightsTable = TaskWeightsTable()
+    preferred_densities_kg_per_m3: tuple[Positive, ...] = ()
+    joint_limits: bool = True
+    contact_limits: bool = True
+    stance_limits: bool = True
+    length_bounds: bool = True
+    compile: bool = False
+    iterations: Annotated[int, Meta(ge=1)] = 1000
+    seconds: Positive = 60.0
+
+
 class ProblemFile(Table, frozen=True):
     """A whole problem file."""
 
@@ -192,6 +225,7 @@ class ProblemFile(Table, frozen=True):
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()
+    baseline: BaselineTable = BaselineTable()
 
 
 class DesignEntry(Table, frozen=True):

@@ -6,18 +6,23 @@ gives None where its value does not exist (no posture, no reach): absent, never 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from evodesign.design.space import DesignSpace
+from evodesign.posture.agent import TORQUE_UNIT
+from evodesign.posture.joint import JointSettings
 from evodesign.posture.reach import Reach
 from evodesign.posture.solution import HeightSolution
+from evodesign.posture.tasks import pressure_task
+from evodesign.records import Objective
 from evodesign.statics.balance import standing_height_of_mass
 from evodesign.statics.scene import HUMAN, ROBOT, Agent
 from evodesign.tree.model import Tree
 
-__all__ = ["OBJECTIVES", "DesignResult", "ObjectiveKind"]
+__all__ = ["OBJECTIVES", "DesignResult", "ObjectiveKind", "objective_values"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,15 +31,21 @@ class DesignResult:
 
     Args:
         robot: the agent as the file describes it.
+        space: design parameters.
+        values: one number per design parameter.
         tree: the robot of the design.
         reach: interval of load heights that it can hold.
         heights: one solution per required height.
+        paper: the paper's tasks and their weights.
     """
 
     robot: Agent
+    space: DesignSpace
+    values: Sequence[float]
     tree: Tree
     reach: Reach
     heights: tuple[HeightSolution, ...]
+    paper: JointSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +105,22 @@ def mass(result: DesignResult) -> float:
 
 def com_height(result: DesignResult) -> float:
     """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
-    return standing_height_of_mass(result.tree, tuple(result.robot.soles.values()))
+    return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
+
+
+def paper_cost(result: DesignResult) -> float | None:
+    """W1 t1 + W3 t3 of all heights + W2 t2 + W4 t4 [(10 N m)^2], the paper's scalar cost (Eq. 14)."""
+    robot, human = _torque_norms(result, ROBOT), _torque_norms(result, HUMAN)
+    if robot is None or human is None:
+        return None
+    efforts, tasks = result.paper.efforts, result.paper.tasks
+    strain = efforts.robot * np.square(robot) + efforts.human * np.square(human)
+    cost = tasks.weights.torque * strain.sum() / TORQUE_UNIT**2
+    cost += tasks.of_design(result.space, result.values, result.robot, result.tree)
+    if tasks.weights.center_of_pressure:
+        feet = [posture.foot_wrenches for height in result.heights for posture in height.postures.values()]
+        cost += tasks.weights.center_of_pressure * sum(pressure_task(wrenches) for wrenches in feet)
+    return float(cost)
 
 
 OBJECTIVES: Mapping[str, ObjectiveKind] = {
@@ -105,4 +131,11 @@ OBJECTIVES: Mapping[str, ObjectiveKind] = {
     "reach_height": ObjectiveKind("m", reach_height),
     "mass": ObjectiveKind("kg", mass),
     "com_height": ObjectiveKind("m", com_height),
+    "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
 }
+
+
+def objective_values(objectives: Sequence[Objective], result: DesignResult) -> dict[str, float]:
+    """Natural values of a problem's objectives, by name, without those that do not exist."""
+    found = {objective.name: OBJECTIVES[objective.name].value(result) for objective in objectives}
+    return {name: value for name, value in found.items() if value is not None}

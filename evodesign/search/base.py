@@ -12,7 +12,10 @@ from typing import Protocol
 
 from evodesign.records import Genome
 
-__all__ = ["Outcome", "Search"]
+__all__ = ["JOINT_STARTS", "Outcome", "Search"]
+
+JOINT_STARTS = "joint-starts"
+"""Name of the search whose genomes are starts of another solver, and not designs to assess."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings
-from evodesign.search.base import Search
+from evodesign.search.base import JOINT_STARTS, Search
 from evodesign.search.branched import Branched
 from evodesign.search.cma_es import CmaEs
 from evodesign.search.nsga2 import Nsga2
@@ -20,6 +20,7 @@ __all__ = ["SEARCHES", "STEADY_SEARCHES", "make_search", "make_steady_search"]
 
 SEARCHES: dict[str, Callable[[SearchSettings], Search]] = {
     "cma-es": CmaEs,
+    JOINT_STARTS: QuasiRandom,
     "nsga2": Nsga2,
     "random": QuasiRandom,
 }

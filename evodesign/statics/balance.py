@@ -131,11 +131,13 @@ def center_of_mass(tree: Tree, poses: Mapping[str, Pose]) -> tuple[Expression, E
     return mass, first / mass
 
 
-def standing_height_of_mass(tree: Tree, soles: tuple[str, ...]) -> float:
+def standing_height_of_mass(tree: Tree, soles: tuple[str, ...]) -> Expression:
     """Height [m] of a tree's centre of mass above its lowest sole frame, all joints at zero.
+
+    The tree holds numbers or expressions, and so does the result.
 
     Source: Sartore et al. 2022, task t4 (centre-of-mass height at the null configuration).
     """
     poses = forward(tree, Pose(ca.DM.eye(3), ca.DM.zeros(3)), {})
     _, center = center_of_mass(tree, poses)
-    return float(center[2]) - min(float(poses[sole].position[2]) for sole in soles)
+    return center[2] - ca.mmin(ca.vertcat(*[poses[sole].position[2] for sole in soles]))

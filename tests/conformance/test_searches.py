@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from evodesign.records import SearchSettings
-from evodesign.search.base import Outcome
+from evodesign.search.base import JOINT_STARTS, Outcome
 from evodesign.search.registry import SEARCHES, make_search
 
 ALGORITHMS = sorted(SEARCHES)
-LEARNING = sorted(set(SEARCHES) - {"random"})
+LEARNING = sorted(set(SEARCHES) - {"random", JOINT_STARTS})
 FAILED = Outcome(None, None)
 
 
@@ -111,7 +111,7 @@ class TestEverySearch:
         script = (
             "import json\n"
             "from evodesign.records import SearchSettings\n"
-            "from evodesign.search.base import Outcome\n"
+            "from evodesign.search.base import JOINT_STARTS, Outcome\n"
             "from evodesign.search.registry import make_search\n"
             f"search = make_search(SearchSettings(algorithm={algorithm!r}, dimension=5, objectives=1,\n"
             "    population=12, seed=1))\n"

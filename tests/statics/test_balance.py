@@ -75,4 +75,4 @@ def test_standing_height_counts_from_the_lowest_sole() -> None:
         for name, y in (("left", 0.1), ("right", -0.1))
     ]
     tree = Tree("stand", (body, Link("left"), Link("right")), tuple(soles))
-    assert standing_height_of_mass(tree, ("left", "right")) == pytest.approx(1.0)
+    assert float(standing_height_of_mass(tree, ("left", "right"))) == pytest.approx(1.0)

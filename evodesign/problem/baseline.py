@@ -1,0 +1,117 @@
+"""The multi-start gradient baseline: from a start to what the joint problem makes of it.
+
+A start is a genome, as any other evaluation's is, and the assessment is that of the design in which its solve
+ended. So a baseline is a run like any other, whose genomes are starts and whose designs are optima. A start
+that fails leaves an assessment without objectives, with its status and reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+from evodesign.pool.base import Limits
+from evodesign.posture.check import TOLERANCE
+from evodesign.posture.joint import JointProblem, JointSolution
+from evodesign.posture.reach import Reach
+from evodesign.posture.solution import HeightSolution
+from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
+from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
+
+__all__ = ["Baseline", "BaselineFactory"]
+
+
+class Baseline:
+    """The joint problem of a problem, built once and solved from any number of starts.
+
+    Args:
+        problem: with its `[baseline]`.
+        fixed: a genome that the design is held at; None to optimise it.
+    """
+
+    def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
+        self._problem = problem
+        self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
+
+    def solve(self, start: Genome) -> JointSolution:
+        """Where a start leads; named designs begin with standard postures, others with drawn ones."""
+        return self._joint.solve(start, drawn=start not in self._problem.joint_start)
+
+    def polish(self, result: DesignResult) -> JointSolution:
+        """The local optimum next to a design whose postures are known at every height.
+
+        Args:
+            result: of an evaluation; all its heights are solved.
+        """
+        genome = self._problem.space.genome(result.values)
+        return self._joint.polish(genome, [height.postures for height in result.heights])
+
+    def assess(self, start: Genome) -> Assessed:
+        """What the design in which a start ended is worth, with its postures."""
+        solution = self.solve(start)
+        result = self.result(solution)
+        heights = tuple(detail_of(height) for height in result.heights if height.solved)
+        assessment = Assessment(
+            design=dict(self._problem.space.named(solution.design)),
+            objectives=objective_values(self._problem.objectives, result) if solution.solved else {},
+            violation=0.0 if solution.solved else None,
+            status=solution.attempt.status,
+            reason="solved" if solution.solved else solution.heights[0].reason,
+            reach=reach_of(result.reach),
+            heights=tuple(
+                outcome_of(replace(height, reason=_reason(height, violations)))
+                for height, violations in zip(result.heights, solution.violations, strict=True)
+            ),
+        )
+        return Assessed(assessment=assessment, heights=heights)
+
+    def result(self, solution: JointSolution) -> DesignResult:
+        """A solution as the result of its design."""
+        problem = self._problem
+        return DesignResult(
+            robot=problem.scene.robot,
+            space=problem.space,
+            values=solution.design,
+            tree=problem.space.resized(problem.scene.robot.tree, solution.design),
+            reach=_reach(solution),
+            heights=solution.heights,
+            paper=problem.joint,
+        )
+
+
+def _reach(solution: JointSolution) -> Reach:
+    """The heights that a solution holds; beyond them nothing was tried."""
+    heights = [height.height for height in solution.heights]
+    if not solution.solved:
+        return Reach(None, None, solution.attempt.status, solution.attempt.reason)
+    reason = f"holds loads at {', '.join(f'{height:g}' for height in heights)} m; no others were tried"
+    return Reach(min(heights), max(heights), Status.SOLVED, reason)
+
+
+def _reason(height: HeightSolution, violations: Mapping[str, float]) -> str:
+    """A solved height's reason, with every limit that is not enforced and does not hold."""
+    beyond = [f"{name} by {size:.3g}" for name, size in violations.items() if size > TOLERANCE]
+    return (
+        f"{height.reason}; limits not enforced and exceeded: {', '.join(beyond)}" if beyond else height.reason
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BaselineFactory:
+    """Builds the baseline of a problem in whichever process it is called.
+
+    Args:
+        digest: of the source; two factories of equal digest build the same baseline.
+        source: the problem's text and files.
+        limits: of one start; they follow from the source.
+    """
+
+    digest: str
+    source: ProblemSource = field(compare=False)
+    limits: Limits = field(default=Limits(), compare=False)
+
+    def __call__(self) -> Callable[[Genome], Assessed]:
+        """Build the joint problem and return the function from start to what it leads to."""
+        return Baseline(build_problem(self.source)).assess

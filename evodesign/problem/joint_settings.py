@@ -1,0 +1,76 @@
+"""The `[baseline]` table of a problem file as the joint problem takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.errors import InputError, nearest_name
+from evodesign.posture.enforced import Enforced
+from evodesign.posture.joint import JointSettings
+from evodesign.posture.posture import EffortWeights, Symmetry
+from evodesign.posture.program import IpoptOptions
+from evodesign.posture.tasks import Tasks, TaskWeights
+from evodesign.problem.file import ProblemFile
+from evodesign.records import Genome, ProblemSource
+
+__all__ = ["joint_settings", "joint_start"]
+
+
+def joint_settings(
+    tables: ProblemFile, source: ProblemSource, space: DesignSpace, efforts: EffortWeights
+) -> JointSettings:
+    """Costs and limits of the joint problem.
+
+    Args:
+        tables: the problem file.
+        source: the problem, for messages.
+        space: design parameters.
+        efforts: weights of the agents' torques.
+    Raises:
+        InputError: preferred densities are asked for and missing, or there is no density to prefer.
+    """
+    table, weights = tables.baseline, tables.baseline.weights
+    preferred = table.preferred_densities_kg_per_m3
+    if weights.density:
+        if not preferred:
+            key = "baseline.preferred_densities_kg_per_m3"
+            raise InputError(source.path, key, "densities, as baseline.weights.density asks for", "none")
+        if all(parameter.kind is not ParameterKind.DENSITY for parameter in space.parameters):
+            key = "baseline.weights.density"
+            raise InputError(source.path, key, "0.0 without a [[design.density]]", f"{weights.density:g}")
+    return JointSettings(
+        efforts=efforts,
+        tasks=Tasks(
+            TaskWeights(weights.torque, weights.density, weights.center_of_pressure, weights.mass_height),
+            preferred,
+        ),
+        enforced=Enforced(table.joint_limits, table.contact_limits, table.stance_limits, table.length_bounds),
+        options=IpoptOptions(iterations=table.iterations, seconds=table.seconds, compiled=table.compile),
+        symmetric=tables.solver.symmetry is not Symmetry.OFF,
+    )
+
+
+def joint_start(
+    tables: ProblemFile, source: ProblemSource, known: Mapping[str, Genome]
+) -> tuple[Genome, ...]:
+    """The genomes with which the starts begin.
+
+    Args:
+        tables: the problem file.
+        source: the problem, for messages.
+        known: genomes of the designs of `search.start`, by name.
+    Raises:
+        InputError: a name that is not among them.
+    """
+    names = tables.baseline.start
+    if names is None:
+        return tuple(known.values())
+    if tables.search.start is None:
+        raise InputError(source.path, "baseline.start", "search.start, the file that holds designs", "none")
+    for position, name in enumerate(names):
+        if name not in known:
+            wanted = f"the name of a design of '{tables.search.start}'"
+            hint = nearest_name(name, known)
+            raise InputError(source.path, f"baseline.start[{position}]", wanted, f"'{name}'{hint}")
+    return tuple(known[name] for name in names)

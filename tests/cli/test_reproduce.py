@@ -1,0 +1,78 @@
+"""`reproduce` and `baseline` from the command line, on problems small enough for a test."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from evodesign.cli.baseline import start_baseline
+from evodesign.cli.reproducing import reproduce_paper
+from evodesign.cli.reproduction import Effort
+from evodesign.errors import InputError
+from evodesign.runlog.run import read_run
+
+QUICK = "\n[solver]\nsymmetry = 'off'\nseeds = false\ncompile = false\n"
+"""Nothing is worked out beforehand; solves take longer, of which there are few."""
+
+
+@pytest.fixture(scope="module")
+def folder(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The paper's two problems at one height, quick to make ready, with the files that they name."""
+    base = tmp_path_factory.mktemp("paper")
+    for place in ("populations", "problems/robots"):
+        (base / place).parent.mkdir(parents=True, exist_ok=True)
+        (base / place).symlink_to(repository / place)
+    for name, change in (("sartore2022.toml", QUICK), ("sartore2022_as_published.toml", "")):
+        text = (repository / "problems" / name).read_text().replace("[0.8, 1.0, 1.2, 1.5]", "[1.0]")
+        text = text.replace("length_bounds = false", "length_bounds = true")
+        (base / "problems" / name).write_text(text + change)
+    return base
+
+
+def test_the_paper_is_reproduced_with_verdicts_and_figures(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    to, effort = tmp_path / "out", Effort(1, 2, 1, 10.0, 1, "serial")
+    problems = folder / "problems"
+    reproduce_paper(
+        problems / "sartore2022.toml", problems / "sartore2022_as_published.toml", to, effort, json=True
+    )
+    shown = json.loads(capsys.readouterr().out)
+    verdicts = {(claim["subject"], claim["by"]): claim["reproduced"] for claim in shown["claims"]}
+    assert len(verdicts) == 7
+    assert verdicts["Table II", "published setting"] is False
+    assert shown["published"]["torque_difference"] < 1e-5
+    assert "joint limits" in shown["published"]["broken_limits"]
+    assert [row["height_m"] for row in shown["torque_norms"]["original"]["with limits"]] == [1.0]
+    assert shown["torque_norms"]["optimised"]["paper"][0]["human"] == 192.4057
+    assert shown["found"]["gradient"]["statuses"] == {"infeasible": 1} or shown["found"]["gradient"]["cost"]
+    assert len(read_run(to / "evolution").evaluations) == 2
+    assert sorted(path.name for path in to.iterdir() if path.suffix == ".png") == [
+        "human_torques.png",
+        "postures_evolution.png",
+        "postures_gradient.png",
+        "postures_original.png",
+        "postures_published_optimised.png",
+        "postures_published_original.png",
+        "robot_torques.png",
+    ]
+    robot = ET.parse(to / "original.urdf").getroot()
+    assert robot.tag == "robot"
+    with pytest.raises(InputError, match="a new or empty folder"):
+        reproduce_paper(problems / "sartore2022.toml", problems / "sartore2022.toml", to, effort, json=True)
+
+
+def test_a_baseline_counts_how_its_starts_ended(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (folder / "problems" / "sartore2022.toml").read_text()
+    text = text.replace("[baseline]\n", "[baseline]\niterations = 3\n").replace("'off'", "'on'")
+    small = folder / "problems" / "small.toml"
+    small.write_text(text)
+    start_baseline(small, tmp_path / "run", 2, 1, 1, "serial", json=False)
+    assert "how the 2 starts ended: iteration limit 2" in capsys.readouterr().out
+    start_baseline(small, tmp_path / "again", 2, 1, 1, "serial", json=True)
+    assert json.loads(capsys.readouterr().out)["statuses"] == {"iteration limit": 2}
