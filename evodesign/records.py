@@ -196,7 +196,7 @@ class Turn(Record, frozen=True):
     told: int
 
 
-class Evaluation(Record, frozen=True):
+class Evaluation(Record, frozen=True, omit_defaults=True):
     """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs.
 
     An asynchronous run has a `turn`, and counts its evaluations in the order in which they came.
