@@ -17,7 +17,9 @@ __all__ = ["write_report"]
 DEFAULT = "report.html"
 
 
-def write_report(directory: Path, output: Path | None, designs: str, sensitivities: bool, jobs: int) -> None:
+def write_report(
+    directory: Path, output: Path | None, designs: str, sensitivities: bool = False, jobs: int = 1
+) -> None:
     """Write the page of a run and say where it lies, with a note on anything that it lacks."""
     asked = _numbers(designs)
     run = read_run(directory)
