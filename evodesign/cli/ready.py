@@ -21,7 +21,7 @@ from evodesign.posture.preparation import Preparation
 from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.problem.prepare import prepared
+from evodesign.problem.prepare import Watcher, prepared
 from evodesign.records import ProblemSource, RunHeader
 from evodesign.search.base import JOINT_STARTS
 
@@ -38,18 +38,18 @@ def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
         header: of a run.
         pool: where what is missing is worked out.
     """
-    problem = build_problem(header.problem)
+    problem, digest = build_problem(header.problem), _digest(header.problem)
     factory: Evaluations
-    if header.search.algorithm == JOINT_STARTS:
-        factory = BaselineFactory(f"{_digest(header.problem)}-{JOINT_STARTS}", header.problem, problem.limits)
-        compiled = problem.joint.options.compiled
-    else:
-        factory = AssessmentFactory(
-            _digest(header.problem), header.problem, known_of(problem, pool), problem.limits
-        )
-        compiled = problem.options.compiled
-    if compiled:
-        _compile(factory)
+    with making() as watcher:
+        if header.search.algorithm == JOINT_STARTS:
+            factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem, problem.limits)
+            compiled = problem.joint.options.compiled
+        else:
+            known = prepared(problem, _cache("prepared"), pool, watcher)
+            factory = AssessmentFactory(digest, header.problem, known, problem.limits)
+            compiled = problem.options.compiled
+        if compiled:
+            _compile(factory, watcher)
     return factory
 
 
@@ -70,7 +70,7 @@ def _digest(source: ProblemSource) -> str:
     return digest_of(msgspec.json.encode(source, order="deterministic"))
 
 
-def _compile(factory: Evaluations) -> None:
+def _compile(factory: Evaluations, watcher: Watcher) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
@@ -79,10 +79,9 @@ def _compile(factory: Evaluations) -> None:
     cache, key = _cache("ready"), _mark(factory, compiler)
     if cache is not None and cache.read(key):
         return
-    with making() as watcher:
-        watcher.missing(1)
-        factory()
-        watcher.done("compiled inner problems")
+    watcher.missing(1)
+    factory()
+    watcher.done("compiled inner problems")
     if cache is not None:
         cache.store(key, b"ready")
 

@@ -16,7 +16,6 @@ from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from evodesign.posture.program import RawSolution, Solver
 from evodesign.posture.start import Start
@@ -166,6 +165,8 @@ def spread_designs(
         keep: which designs to give.
         most: how many to look at.
     """
+    from scipy.stats import qmc  # takes half a second to load, which workers need not wait for
+
     points = qmc.Halton(dimension, scramble=True, rng=np.random.default_rng(0)).random(most)
     return (design for design in (values(tuple(point)) for point in points.tolist()) if keep(design))
 

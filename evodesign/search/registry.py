@@ -1,34 +1,34 @@
-"""The searches by name; a new one is a file and a line here, and enters the conformance tests by itself."""
+"""The searches by name; a new one is a file and a line here, and enters the conformance tests by itself.
+
+A line says in which module the class stands: a library is loaded when its search is asked for (pycma alone
+takes a second).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+import pkgutil
+from collections.abc import Collection, Mapping
+from typing import Any, Final
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings
 from evodesign.search.base import JOINT_STARTS, Search
 from evodesign.search.branched import Branched
-from evodesign.search.cma_es import CmaEs
-from evodesign.search.nsga2 import Nsga2
-from evodesign.search.quasi_random import QuasiRandom
 from evodesign.search.steady import SteadySearch
-from evodesign.search.steady_cma_es import SteadyCmaEs
-from evodesign.search.steady_nsga2 import SteadyNsga2
-from evodesign.search.steady_random import SteadyRandom
 
 __all__ = ["SEARCHES", "STEADY_SEARCHES", "make_search", "make_steady_search"]
 
-SEARCHES: dict[str, Callable[[SearchSettings], Search]] = {
-    "cma-es": CmaEs,
-    JOINT_STARTS: QuasiRandom,
-    "nsga2": Nsga2,
-    "random": QuasiRandom,
+SEARCHES: Final[Mapping[str, str]] = {
+    "cma-es": "evodesign.search.cma_es:CmaEs",
+    JOINT_STARTS: "evodesign.search.quasi_random:QuasiRandom",
+    "nsga2": "evodesign.search.nsga2:Nsga2",
+    "random": "evodesign.search.quasi_random:QuasiRandom",
 }
 
-STEADY_SEARCHES: dict[str, Callable[[SearchSettings], SteadySearch]] = {
-    "cma-es": SteadyCmaEs,
-    "nsga2": SteadyNsga2,
-    "random": SteadyRandom,
+STEADY_SEARCHES: Final[Mapping[str, str]] = {
+    "cma-es": "evodesign.search.steady_cma_es:SteadyCmaEs",
+    "nsga2": "evodesign.search.steady_nsga2:SteadyNsga2",
+    "random": "evodesign.search.steady_random:SteadyRandom",
 }
 """The same without generations."""
 
@@ -42,7 +42,8 @@ def make_search(settings: SearchSettings) -> Search:
     _check(settings, SEARCHES)
     if settings.past:
         return Branched(settings, make_search)
-    return SEARCHES[settings.algorithm](settings)
+    made: Search = _class(SEARCHES[settings.algorithm])(settings)
+    return made
 
 
 def make_steady_search(settings: SearchSettings) -> SteadySearch:
@@ -52,7 +53,13 @@ def make_steady_search(settings: SearchSettings) -> SteadySearch:
         InputError: as in `make_search`.
     """
     _check(settings, STEADY_SEARCHES)
-    return STEADY_SEARCHES[settings.algorithm](settings)
+    made: SteadySearch = _class(STEADY_SEARCHES[settings.algorithm])(settings)
+    return made
+
+
+def _class(place: str) -> Any:
+    """The class at a place such as `package.module:Class`."""
+    return pkgutil.resolve_name(place)
 
 
 def _check(settings: SearchSettings, searches: Collection[str]) -> None:
