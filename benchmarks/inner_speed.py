@@ -144,7 +144,7 @@ def _workers(problem: Problem, known: Preparation, designs: Sequence[Design]) ->
     genomes = [problem.space.genome(design) for design in designs]
     rates, busy = {}, {}
     for jobs in (1, 2):
-        factory = AssessmentFactory(f"benchmark {jobs}", problem.source, known)
+        factory = AssessmentFactory(f"benchmark {jobs}", problem, known)
         with JoblibPool(jobs) as pool:
             list(pool.run(factory, genomes[: 2 * jobs]))  # workers start and build
             began = time.perf_counter()

@@ -46,7 +46,7 @@ def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
             compiled = problem.joint.options.compiled
         else:
             known = prepared(problem, _cache("prepared"), pool, watcher)
-            factory = AssessmentFactory(digest, header.problem, known, problem.limits)
+            factory = AssessmentFactory(digest, problem, known)
             compiled = problem.options.compiled
         if compiled:
             _compile(factory, watcher)

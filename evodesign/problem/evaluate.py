@@ -14,7 +14,7 @@ from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem
 from evodesign.posture.solution import HeightSolution
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import Problem
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import (
     AgentDetail,
@@ -23,7 +23,6 @@ from evodesign.records import (
     Genome,
     HeightDetail,
     HeightOutcome,
-    ProblemSource,
     ReachOutcome,
     Status,
     worst_status,
@@ -154,18 +153,23 @@ def detail_of(height: HeightSolution) -> HeightDetail:
 class AssessmentFactory:
     """Builds the evaluation of a problem in whichever process it is called.
 
+    The problem travels as numbers: a worker need not read URDFs, whose reader takes a second to load.
+
     Args:
-        digest: of the source; two factories of equal digest build the same evaluation.
-        source: the problem's text and files.
-        known: what was worked out beforehand; it follows from the source.
-        limits: of one evaluation; they follow from the source.
+        digest: of the problem's source; two factories of equal digest build the same evaluation.
+        problem: as built from its source.
+        known: what was worked out beforehand; it follows from the problem.
     """
 
     digest: str
-    source: ProblemSource = field(compare=False)
+    problem: Problem = field(compare=False)
     known: Preparation = field(compare=False)
-    limits: Limits = field(default=Limits(), compare=False)
+
+    @property
+    def limits(self) -> Limits:
+        """What one evaluation may cost."""
+        return self.problem.limits
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to what it is worth."""
-        return Evaluator(build_problem(self.source), self.known).assess
+        return Evaluator(self.problem, self.known).assess
