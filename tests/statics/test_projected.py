@@ -263,7 +263,7 @@ def wrenches_of(postures: Mapping[str, AgentPosture], system: CoupledSystem) -> 
 
 
 def test_the_solvers_torques_and_wrenches_are_the_papers(problem: Problem) -> None:
-    """Acceptance of issue 3: 20 random designs, equal weights, no limits on forces."""
+    """20 random designs, equal weights, no limits on forces."""
     solver, scene = boundless(problem)
     start = solver.start
     for variable in solver.program.variables:
