@@ -23,6 +23,7 @@ from evodesign.records import (
     Genome,
     HeightDetail,
     HeightOutcome,
+    ProblemSource,
     ReachOutcome,
     Status,
     worst_status,
@@ -164,6 +165,11 @@ class AssessmentFactory:
     digest: str
     problem: Problem = field(compare=False)
     known: Preparation = field(compare=False)
+
+    @property
+    def source(self) -> ProblemSource:
+        """What the problem was built from."""
+        return self.problem.source
 
     @property
     def limits(self) -> Limits:

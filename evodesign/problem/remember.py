@@ -58,7 +58,7 @@ class Remembering:
 
     def __call__(self) -> Task:
         """The function from genome to what it is worth."""
-        shelf = f"evaluations/{problem_digest(self.factory.problem.source)}"
+        shelf = f"evaluations/{problem_digest(self.factory.source)}"
         return functools.partial(_remembered, functools.cache(self.factory), shelf)
 
 
