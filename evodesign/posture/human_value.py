@@ -25,9 +25,10 @@ from numpy.polynomial import Chebyshev
 from evodesign.posture.agent import TORQUE_UNIT, agent_block
 from evodesign.posture.constraints import equal
 from evodesign.posture.form import Form
-from evodesign.posture.load import load_constraints, push_of
+from evodesign.posture.load import any_load, load_constraints, push_of
 from evodesign.posture.partner import free_hands
-from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.posture.program import IpoptOptions, Program, RawSolution
+from evodesign.posture.shelf import Shelf, likeness
 from evodesign.records import Status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
@@ -86,15 +87,20 @@ def chebyshev_sum(coefficients: Sequence[Any], x: Any) -> Any:
 
 
 class HumanProblem:
-    """The person's posture program, for any height and push."""
+    """The person's posture program, for the scene's load at any height and under any push."""
 
-    def __init__(self, form: Form, scene: Scene, weight: float, options: IpoptOptions) -> None:
+    def __init__(
+        self, form: Form, scene: Scene, weight: float, options: IpoptOptions, shelf: Shelf | None = None
+    ) -> None:
         self._push = scene.stance.push
-        self._solver = Solver(human_program(form, scene, weight), options)
+        self._mass = scene.payload.mass
+        key = ("person", likeness(scene, form.agent))
+        program = (shelf or Shelf()).solver(key, lambda: human_program(form, scene, weight), options)
+        self._solver = program
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
-        return self._solver.solve([height, push], start)
+        return self._solver.solve([height, self._mass, push], start)
 
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
         """The person's posture at a height [m] under a push [N], about as good as V promises.
@@ -145,7 +151,8 @@ class HumanProblem:
 
 
 def human_program(form: Form, scene: Scene, weight: float) -> Program:
-    """The person's program; its parameters are the height and the push."""
+    """The person's program; its parameters are the load's height and mass, and the push."""
+    scene, mass = any_load(scene)
     height, push = ca.SX.sym("height"), ca.SX.sym("push")
     human = agent_block(form, form.agent.tree, scene, height)
     robot = free_hands(form, scene)
@@ -157,5 +164,5 @@ def human_program(form: Form, scene: Scene, weight: float) -> Program:
         variables=(*human.variables, *robot.variables),
         constraints=(*human.constraints, *load, pushed),
         cost=weight * human.effort / TORQUE_UNIT**2 + human.comfort,
-        parameters=ca.vertcat(height, push),
+        parameters=ca.vertcat(height, mass, push),
     )

@@ -11,6 +11,7 @@ Source: Sartore et al. 2022, Eq. 8, third row at rest.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -20,11 +21,17 @@ from evodesign.statics.balance import GRAVITY
 from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.kinematics import vector
 
-__all__ = ["load_constraints", "push_of"]
+__all__ = ["any_load", "load_constraints", "push_of"]
 
 Expression = Any
 
 LOAD_UNIT = 10.0  # [N] and [N m] per unit of the load's balance rows
+
+
+def any_load(scene: Scene) -> tuple[Scene, Expression]:
+    """A scene whose load has any mass, and that mass [kg] as a symbol: a parameter of its programs."""
+    mass = ca.SX.sym("mass")
+    return replace(scene, payload=replace(scene.payload, mass=mass)), mass
 
 
 def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:

@@ -29,10 +29,11 @@ from evodesign.posture.agent import TORQUE_UNIT, agent_block
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked, height_solution
 from evodesign.posture.check import Checker
 from evodesign.posture.form import Form, symmetric_forms, whole
-from evodesign.posture.load import load_constraints
+from evodesign.posture.load import any_load, load_constraints
 from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.posture.program import IpoptOptions, Program, RawSolution
+from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import SplitPostures
 from evodesign.posture.start import Start, fixed_starts, named_starts
@@ -70,6 +71,7 @@ class PostureProblem:
         options: of the solver.
         symmetry: which postures are looked for.
         known: seeds, and the person's part at the heights where it is known.
+        shelf: of solvers, if other scenes have programs in common with this one.
     Raises:
         ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
     """
@@ -82,7 +84,9 @@ class PostureProblem:
         options: IpoptOptions,
         symmetry: Symmetry,
         known: Preparation = NOTHING_KNOWN,
+        shelf: Shelf | None = None,
     ) -> None:
+        self._shelf = shelf or Shelf()
         self._symmetry = symmetry
         self._ingredients = (scene, space, weights, options)
         self._known = known
@@ -92,7 +96,9 @@ class PostureProblem:
             self._forms = symmetric_forms(scene)
             if known.values:
                 both = (weights.robot, weights.human)
-                self._split = SplitPostures(self._forms, scene, space, both, options, known.values)
+                self._split = SplitPostures(
+                    self._forms, scene, space, both, options, known.values, self._shelf
+                )
 
     def solve(self, values: Sequence[float], height: float, checker: Checker) -> HeightSolution:
         """The best checked posture of a design at one height.
@@ -142,10 +148,13 @@ class PostureProblem:
         ingredients = self._ingredients_of(refuge=self._symmetry is Symmetry.ON)
         return _Postures("whole", (whole(scene.robot), whole(scene.human)), *ingredients)
 
-    def _ingredients_of(self, *, refuge: bool) -> tuple[Scene, DesignSpace, EffortWeights, IpoptOptions]:
+    def _ingredients_of(
+        self, *, refuge: bool
+    ) -> tuple[Scene, DesignSpace, EffortWeights, IpoptOptions, Shelf]:
         """What a program is made of; one that is seldom solved is not worth compiling."""
         scene, space, weights, options = self._ingredients
-        return scene, space, weights, replace(options, compiled=options.compiled and not refuge)
+        options = replace(options, compiled=options.compiled and not refuge)
+        return scene, space, weights, options, self._shelf
 
 
 class _Postures:
@@ -159,22 +168,25 @@ class _Postures:
         space: DesignSpace,
         weights: EffortWeights,
         options: IpoptOptions,
+        shelf: Shelf,
     ) -> None:
         self._name = name
         self._forms = forms
-        self._solver = Solver(posture_program(forms, scene, space, weights), options)
+        self._mass = scene.payload.mass
+        key = (name, likeness(scene, *(form.agent for form in forms)))
+        self._solver = shelf.solver(key, lambda: posture_program(forms, scene, space, weights), options)
         self._fixed = fixed_starts(self._solver)
 
     def landscape(self, height: float) -> Landscape:
         """The program's cost at a height [m]."""
-        return Landscape(self._solver, (height,), self._fixed, *NEAR)
+        return Landscape(self._solver, (height, self._mass), self._fixed, *NEAR)
 
     def trial(
         self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the seeds lead to, or the fixed starts if there are none."""
         starts = named_starts(self._name, seeds, self._fixed)
-        ends = [(name, self._solver.solve([*values, height], start)) for name, start in starts]
+        ends = [(name, self._solver.solve([*values, height, self._mass], start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 
     def polish(
@@ -187,7 +199,7 @@ class _Postures:
             for form in self._forms
             for name, value in form.start(postures[form.agent.name], rows).items()
         }
-        end = self._solver.solve([*values, height], start)
+        end = self._solver.solve([*values, height, self._mass], start)
         return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
 
     def _candidate(self, height: float, checker: Checker, start: str, raw: RawSolution) -> Candidate:
@@ -199,7 +211,8 @@ class _Postures:
 def posture_program(
     forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights
 ) -> Program:
-    """The program over both agents; its parameters are the design's, then the height."""
+    """The program over both agents; its parameters are the design's, then the load's height and mass."""
+    scene, mass = any_load(scene)
     design = ca.SX.sym("design", len(space.parameters))
     height = ca.SX.sym("height")
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
@@ -213,5 +226,5 @@ def posture_program(
         variables=(*robot.variables, *human.variables),
         constraints=(*robot.constraints, *human.constraints, *load),
         cost=effort / TORQUE_UNIT**2 + robot.comfort + human.comfort,
-        parameters=ca.vertcat(design, height),
+        parameters=ca.vertcat(design, height, mass),
     )

@@ -19,11 +19,12 @@ import casadi as ca
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import agent_block
 from evodesign.posture.form import Form, symmetric_forms, whole
-from evodesign.posture.load import load_constraints
+from evodesign.posture.load import any_load, load_constraints
 from evodesign.posture.partner import free_hands
 from evodesign.posture.portfolio import Landscape
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.posture.program import IpoptOptions, Program, RawSolution, Variable
+from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
@@ -70,6 +71,7 @@ class ReachProblem:
 
     Attributes:
         form: of the robot.
+        mass: of the load [kg].
     """
 
     def __init__(
@@ -80,19 +82,22 @@ class ReachProblem:
         *,
         symmetric: bool,
         known: Preparation = NOTHING_KNOWN,
+        shelf: Shelf | None = None,
     ) -> None:
+        self.mass = scene.payload.mass
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
-        self._solver = Solver(_program(self.form, scene, space), options)
+        key = ("reach", likeness(scene))
+        self._solver = (shelf or Shelf()).solver(key, lambda: _program(self.form, scene, space), options)
         self._seeds = {HIGHEST: known.highest.seeds, LOWEST: known.lowest.seeds}
 
     @property
     def program(self) -> Program:
-        """What is solved; its parameters are the design's, then the sense."""
+        """What is solved; its parameters are the design's, then the load's mass and the sense."""
         return self._solver.program
 
     def landscape(self, sense: float) -> Landscape:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m], of which seeds are made."""
-        return Landscape(self._solver, (sense,), FIXED, 0.0, NEAR_HEIGHT)
+        return Landscape(self._solver, (self.mass, sense), FIXED, 0.0, NEAR_HEIGHT)
 
     def solve(self, values: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
@@ -107,7 +112,9 @@ class ReachProblem:
 
     def solves(self, values: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense."""
-        return [self._solver.solve([*values, sense], start) for start in self._seeds[sense] or FIXED]
+        return [
+            self._solver.solve([*values, self.mass, sense], start) for start in self._seeds[sense] or FIXED
+        ]
 
     def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
@@ -120,6 +127,7 @@ class ReachProblem:
 
 
 def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
+    scene, mass = any_load(scene)
     design = ca.SX.sym("design", len(space.parameters))
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
@@ -134,5 +142,5 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
         variables=(height, *robot.variables, *partner.variables),
         constraints=(*robot.constraints, *load),
         cost=sense * height.value + COMFORT * robot.comfort,
-        parameters=ca.vertcat(design, sense),
+        parameters=ca.vertcat(design, mass, sense),
     )

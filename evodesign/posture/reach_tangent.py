@@ -66,7 +66,7 @@ class ReachTangents:
         start = min(heights, key=lambda number: sense * heights[number])
         if self._at_end(heights[start]):
             return HeightTangent(heights[start], np.zeros(len(design)), start, len(solves), None, ())
-        found = self._sensitivity.at([*design, sense], solves[start].values)
+        found = self._sensitivity.at([*design, self._reach.mass, sense], solves[start].values)
         if isinstance(found, Kink):
             return found
         slope = found.slopes["height"][0, : len(design)]

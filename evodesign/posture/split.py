@@ -25,10 +25,11 @@ from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.form import Form
 from evodesign.posture.human_value import TERMS, HumanProblem, HumanValue, chebyshev_sum
-from evodesign.posture.load import load_constraints, push_of
+from evodesign.posture.load import any_load, load_constraints, push_of
 from evodesign.posture.partner import free_hands
 from evodesign.posture.portfolio import NEAR, Landscape
-from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.posture.program import IpoptOptions, Program, RawSolution
+from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
@@ -50,26 +51,33 @@ class SplitPostures:
         weights: tuple[float, float],
         options: IpoptOptions,
         values: Sequence[HumanValue],
+        shelf: Shelf,
     ) -> None:
         self._forms = forms
         self._scene = scene
         self._values = {value.height: value for value in values}
-        self._robot = Solver(robot_program(forms[0], scene, space, weights[0]), options)
-        self._human = HumanProblem(forms[1], scene, weights[1], options)
+        self._robot = shelf.solver(
+            (SPLIT, likeness(scene)), lambda: robot_program(forms[0], scene, space, weights[0]), options
+        )
+        self._human = HumanProblem(forms[1], scene, weights[1], options, shelf)
         self._fixed = fixed_starts(self._robot)
 
     def landscape(self, height: float) -> Landscape:
         """The robot's cost at a height [m], with V(X)."""
-        return Landscape(self._robot, (height, *self._values[height].coefficients), self._fixed, *NEAR)
+        return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
 
     def trial(
         self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
-        parameters = [*values, height, *self._values[height].coefficients]
+        parameters = [*values, *self._beside(height)]
         starts = named_starts(SPLIT, seeds, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
+
+    def _beside(self, height: float) -> tuple[float, ...]:
+        """The robot's parameters beside the design's."""
+        return (height, self._scene.payload.mass, *self._values[height].coefficients)
 
     def _candidate(self, height: float, checker: Checker, start: str, robot: RawSolution) -> Candidate:
         """The robot's posture with the person's at the push that was found."""
@@ -105,7 +113,8 @@ def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolut
 
 
 def robot_program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
-    """The robot's program; its parameters are the design's, the height and V's coefficients."""
+    """The robot's program; its parameters are the design's, the load's height and mass, V's coefficients."""
+    scene, mass = any_load(scene)
     design = ca.SX.sym("design", len(space.parameters))
     height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", TERMS)
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
@@ -119,5 +128,5 @@ def robot_program(form: Form, scene: Scene, space: DesignSpace, weight: float) -
         variables=(*robot.variables, *human.variables),
         constraints=(*robot.constraints, *load_constraints(scene, hands, symmetric=True)),
         cost=weight * robot.effort / TORQUE_UNIT**2 + robot.comfort + value,
-        parameters=ca.vertcat(design, height, coefficients),
+        parameters=ca.vertcat(design, height, mass, coefficients),
     )

@@ -131,14 +131,14 @@ class _Joint:
     def __init__(
         self, forms: Forms, scene: Scene, space: DesignSpace, weights: EffortWeights, options: IpoptOptions
     ) -> None:
-        self._forms = forms
+        self._forms, self._mass = forms, scene.payload.mass
         program = posture_program(forms, scene, space, weights)
         self._both = Sensitivity(program, options, labels_of(forms))
 
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this program might have found."""
         start = _start(self._forms, self._both.program, solution.postures)
-        found = self._both.at([*design, solution.height], start)
+        found = self._both.at([*design, solution.height, self._mass], start)
         if isinstance(found, Kink):
             return found
         own = slice(len(design))
@@ -174,7 +174,8 @@ class _Split:
         """The tangent of a posture that this pair of programs might have found."""
         value = self._values[solution.height]
         start = _start(self._forms, self._robot.program, solution.postures)
-        robot = self._robot.at([*design, solution.height, *value.coefficients], start)
+        beside = (solution.height, self._scene.payload.mass, *value.coefficients)
+        robot = self._robot.at([*design, *beside], start)
         if isinstance(robot, Kink):
             return robot
         own = np.eye(len(robot.cost_slope))[:, : len(design)]
@@ -183,9 +184,11 @@ class _Split:
         human = self._person(solution, float(push), held=held)
         if isinstance(human, Kink):
             return human
-        follow = np.vstack([np.zeros(len(design)), push_slope @ own])  # d (height, push) / d design
+        follow = np.vstack(
+            [np.zeros((2, len(design))), push_slope @ own]
+        )  # d (height, mass, push) / d design
         expected = Chebyshev(value.coefficients, domain=[-value.push, value.push])
-        surprise = human.cost_slope[1] - float(expected.deriv()(push))
+        surprise = human.cost_slope[2] - float(expected.deriv()(push))
         return PostureTangent(
             forms=self._forms,
             values={**robot.values, **human.values},
@@ -194,7 +197,7 @@ class _Split:
                 **{name: slope @ follow for name, slope in human.slopes.items()},
             },
             cost=robot.cost - float(expected(push)) + human.cost,
-            cost_slope=robot.cost_slope @ own + surprise * follow[1],
+            cost_slope=robot.cost_slope @ own + surprise * follow[2],
             compared=robot.cost,
             limits=(
                 *(_in(limit, own) for limit in robot.limits),
@@ -204,7 +207,7 @@ class _Split:
 
     def _person(self, solution: HeightSolution, push: float, *, held: bool) -> Optimum | Kink:
         """The person under a push [N]; one that is held at its limit does not move the person."""
-        parameters = [solution.height, push]
+        parameters = [solution.height, self._scene.payload.mass, push]
         start = _start(self._forms, self._human.program, solution.postures)
         raw = self._human.solve(parameters, start)
         if not held:
