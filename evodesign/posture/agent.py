@@ -31,6 +31,7 @@ Expression = Any
 TORQUE_UNIT = 10.0  # [N m] per unit of a lifted torque
 FORCE_UNIT = 100.0  # [N] per unit of a foot wrench
 HAND_UNIT = 10.0  # [N] per unit of a hand force, [N m] per unit of a hand moment
+LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit
 COMFORT = 1e-2
 
 GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}
@@ -127,7 +128,7 @@ def _variables(form: Form, scene: Scene) -> list[Variable]:
             1.0,
         ),
     ]
-    hand, foot, torque = [300.0] * GRASP_ROWS[scene.payload.grasp], [5000.0] * 6, [1000.0] * len(joints)
+    hand, foot, torque = [300.0] * GRASP_ROWS[scene.payload.grasp], [5000.0] * 6, _torque_bounds(form)
     rest = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
     bounded = [
         *((f"{side}_hand", hand, [0.0] * len(hand), HAND_UNIT) for side in form.sides),
@@ -139,6 +140,16 @@ def _variables(form: Form, scene: Scene) -> list[Variable]:
         for part, limit, begin, unit in bounded
     ]
     return blocks
+
+
+def _torque_bounds(form: Form) -> list[float]:
+    """Largest torque of each of the form's joints [N m]; a pair bears what its weaker joint does."""
+    limits = form.agent.torque_limits if form.agent.limits_torques else {}
+    pairs = {name: name for name in form.joints} if form.mirror is None else form.mirror.joints
+    return [
+        min(LARGEST_TORQUE, *(limits.get(joint, LARGEST_TORQUE) for joint in (name, pairs[name])))
+        for name in form.joints
+    ]
 
 
 def _standing(agent: Agent, scene: Scene) -> list[float]:

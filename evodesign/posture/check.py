@@ -125,7 +125,16 @@ def _limits(agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene)
         "feet_yaw": max(0.0, max(yaws) - stance.foot_yaw),
         "trunk_clear": max(0.0, *trunk),
         "base_tilt": max(0.0, float(np.abs(posture.base_angles).max()) - stance.base_tilt),
+        **_torque_limits(agent, posture),
     }
+
+
+def _torque_limits(agent: Agent, posture: AgentPosture) -> dict[str, float]:
+    """How far torques lie beyond their limits, where limits hold."""
+    if not agent.limits_torques:
+        return {}
+    beyond = [abs(posture.torques[name]) - limit for name, limit in agent.torque_limits.items()]
+    return {"torque_limits": max(0.0, *beyond)}
 
 
 def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float]:

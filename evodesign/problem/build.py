@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import msgspec
+
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Limits
@@ -16,6 +18,7 @@ from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
+from evodesign.problem.materials import density_parameters
 from evodesign.problem.objectives import OBJECTIVES
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
@@ -78,6 +81,7 @@ class Problem:
             seed=seed,
             start=self.joint_start if algorithm == JOINT_STARTS else self.start,
             asynchronous=asynchronous,
+            choices=self.space.counts if any(self.space.counts) else msgspec.UNSET,
         )
 
 
@@ -195,10 +199,7 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
     parameters = [
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
-    parameters += [
-        DesignParameter(ParameterKind.DENSITY, t.name, t.links, t.lower_kg_per_m3, t.upper_kg_per_m3)
-        for t in tables.design.density
-    ]
+    parameters += density_parameters(tables, source)
     if not parameters:
         raise InputError(source.path, "design", "a length or density parameter", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}

@@ -10,6 +10,7 @@ from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.file import DesignEntry, PopulationFile
+from evodesign.problem.materials import refuse_no_choice
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
@@ -23,7 +24,8 @@ def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict
     """Parameter values of every design of a population file, by name; what it leaves out stays unscaled.
 
     Raises:
-        InputError: the file does not decode, names a design twice, or names an unknown parameter.
+        InputError: the file does not decode, names a design twice or an unknown parameter, or has a density
+            of no material.
     """
     file = decode_toml(text, source, PopulationFile)
     unscaled = space.named(space.unscaled(tree))
@@ -32,12 +34,13 @@ def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict
         key = f"design[{position}]"
         if entry.name in designs:
             raise InputError(source, f"{key}.name", "a unique name", f"'{entry.name}' twice")
-        given = _given(entry, source, key, unscaled)
+        given = _given(entry, source, key, space)
         designs[entry.name] = tuple({**unscaled, **given}.values())
     return designs
 
 
-def _given(entry: DesignEntry, source: str, key: str, known: Mapping[str, float]) -> dict[str, float]:
+def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dict[str, float]:
+    known = {parameter.name: parameter for parameter in space.parameters}
     given: dict[str, float] = {}
     for kind, table in TABLES.items():
         values: dict[str, float] = getattr(entry, table)
@@ -47,6 +50,7 @@ def _given(entry: DesignEntry, source: str, key: str, known: Mapping[str, float]
                 groups = [other.split(".", 1)[1] for other in known if other.startswith(f"{kind}.")]
                 found = f"'{group}'{nearest_name(group, groups)}"
                 raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
+            refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value
     return given
 
@@ -85,7 +89,7 @@ def start_genomes(
     """Genomes of designs that a search begins with.
 
     Raises:
-        InputError: a design lies outside the bounds of the problem.
+        InputError: a design lies outside the bounds of the problem, or has a density of no material.
     """
     genomes = []
     for name, values in designs.items():
@@ -93,5 +97,6 @@ def start_genomes(
             if not parameter.lower <= value <= parameter.upper:
                 wanted = f"{parameter.name} within [{parameter.lower:g}, {parameter.upper:g}]"
                 raise InputError(source, f"design '{name}'", wanted, f"{value:g}")
+            refuse_no_choice(parameter, value, source, f"design '{name}'")
         genomes.append(space.genome(values))
     return tuple(genomes)

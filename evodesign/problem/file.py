@@ -6,6 +6,7 @@ that name file, key, what was wanted and what was found.
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
 import msgspec
@@ -15,7 +16,7 @@ from evodesign.posture.posture import Symmetry
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 
-__all__ = ["BaselineTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
+__all__ = ["BaselineTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable", "TorqueLimits"]
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
@@ -51,6 +52,13 @@ class FrameTable(Table, frozen=True):
     rpy_rad: Point = (0.0, 0.0, 0.0)
 
 
+class TorqueLimits(StrEnum):
+    """Whether the limits of the robot's joint torques hold in every posture."""
+
+    NONE = "none"
+    HARD = "hard"
+
+
 class RobotTable(Table, frozen=True):
     """`[robot]`: a URDF with primitive shapes, and the parts of it that matter."""
 
@@ -60,6 +68,8 @@ class RobotTable(Table, frozen=True):
     soles: SolesTable = SolesTable()
     trunk: tuple[Name, ...] = ("root_link", "chest")
     joints: tuple[Name, ...] = ()
+    torque_limits: TorqueLimits = TorqueLimits.NONE
+    torque_limits_n_m: dict[str, Positive] = {}
 
 
 class HumanTable(Table, frozen=True):
@@ -132,12 +142,21 @@ class LengthTable(Table, frozen=True):
 
 
 class DensityTable(Table, frozen=True):
-    """`[[design.density]]`: a density shared by links."""
+    """`[[design.density]]`: a density shared by links: within bounds, or that of one of some materials."""
 
     name: Name
     links: Annotated[tuple[Name, ...], Meta(min_length=1)]
-    lower_kg_per_m3: Positive
-    upper_kg_per_m3: Positive
+    lower_kg_per_m3: Positive | None = None
+    upper_kg_per_m3: Positive | None = None
+    materials: tuple[Name, ...] | None = None
+
+
+class MaterialTable(Table, frozen=True):
+    """`[[material]]`: a material beside those of the catalogue, and where its density comes from."""
+
+    name: Name
+    density_kg_per_m3: Positive
+    source: Name
 
 
 class DesignTable(Table, frozen=True):
@@ -222,6 +241,7 @@ class ProblemFile(Table, frozen=True):
     task: TaskTable
     design: DesignTable
     objectives: ObjectivesTable
+    material: tuple[MaterialTable, ...] = ()
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()

@@ -98,6 +98,8 @@ class Agent:
         soles: frame under the foot, by side.
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
+        torque_limits: largest torque [N m] of each joint that moves and has a limit.
+        limits_torques: whether these limits hold in every posture.
     """
 
     name: str
@@ -107,6 +109,8 @@ class Agent:
     soles: Mapping[str, str]
     sole_size: SoleSize
     trunk: tuple[str, ...]
+    torque_limits: Mapping[str, float] = field(default_factory=dict)
+    limits_torques: bool = False
 
     @property
     def facing(self) -> float:
