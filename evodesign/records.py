@@ -7,6 +7,7 @@ height that was not reached) is absent or None, never a large number.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 
 import msgspec
@@ -35,6 +36,7 @@ __all__ = [
     "Turn",
     "choice_at",
     "design_of",
+    "materials_of",
     "middle_of",
     "worst_status",
 ]
@@ -132,6 +134,12 @@ def design_of(parameters: tuple[Parameter, ...], genome: Genome) -> dict[str, fl
 def _between(lower: float, upper: float, share: float) -> float:
     """The number at a share of the way from lower to upper, never past them by rounding."""
     return min(max(lower * (1.0 - share) + upper * share, lower), upper)
+
+
+def materials_of(parameters: tuple[Parameter, ...], design: Mapping[str, float]) -> dict[str, str]:
+    """The material's name of each parameter that has one in a design."""
+    found = {parameter.name: parameter.material_of(design[parameter.name]) for parameter in parameters}
+    return {name: material for name, material in found.items() if material is not None}
 
 
 class ReachOutcome(Record, frozen=True):

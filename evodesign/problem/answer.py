@@ -5,6 +5,8 @@ Positions and hand wrenches are in the agent's own frame, which looks along +x a
 wrench is force, then moment, acting on the agent: at a hand about the grasp point, at a foot about the sole's
 origin and in the sole frame.
 
+`materials` names the material of each density that is one's; a problem without materials has no such key.
+
 `sensitivities` holds, for each objective that exists, how it moves with the design:
 
     {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
@@ -24,7 +26,7 @@ from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
-from evodesign.records import Assessment
+from evodesign.records import Assessment, materials_of
 from evodesign.statics.scene import SIDES
 
 __all__ = ["answer"]
@@ -38,9 +40,12 @@ def answer(
     sensitivities: Mapping[str, Sensitivity],
 ) -> dict[str, Any]:
     """The JSON object of one design."""
+    design = dict(problem.space.named(values))
+    materials = materials_of(problem.space.records, design)
     return {
         "problem": problem.name,
-        "design": dict(problem.space.named(values)),
+        "design": design,
+        **({"materials": materials} if materials else {}),
         "status": str(assessment.status),
         "objectives": assessment.objectives,
         "units": {objective.name: objective.unit for objective in problem.objectives},

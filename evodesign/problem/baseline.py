@@ -17,6 +17,7 @@ from evodesign.posture.reach import Reach
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
+from evodesign.problem.materials import refuse_choices
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
@@ -29,9 +30,12 @@ class Baseline:
     Args:
         problem: with its `[baseline]`.
         fixed: a genome that the design is held at; None to optimise it.
+    Raises:
+        InputError: a density of materials, between which nothing moves smoothly.
     """
 
     def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
+        refuse_choices(problem.space, problem.source)
         self._problem = problem
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 

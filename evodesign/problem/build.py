@@ -18,7 +18,7 @@ from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
-from evodesign.problem.materials import density_parameters
+from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import OBJECTIVES
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
@@ -72,7 +72,13 @@ class Problem:
     def settings(
         self, algorithm: str, population: int, seed: int, asynchronous: bool = False
     ) -> SearchSettings:
-        """Settings of a search over this problem."""
+        """Settings of a search over this problem.
+
+        Raises:
+            InputError: starts of the joint problem, and a density of materials.
+        """
+        if algorithm == JOINT_STARTS:
+            refuse_choices(self.space, self.source)
         return SearchSettings(
             algorithm=algorithm,
             dimension=len(self.space.parameters),

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.file import DesignEntry, PopulationFile
@@ -52,7 +52,25 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
                 raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
             refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value
+    for group, material in entry.material.items():
+        name = f"{ParameterKind.DENSITY}.{group}"
+        given[name] = _density_of(material, known.get(name), source, f"{key}.material.{group}", given)
     return given
+
+
+def _density_of(
+    material: str, parameter: DesignParameter | None, source: str, key: str, given: Mapping[str, float]
+) -> float:
+    """The density [kg/m^3] of a material that a design names for a parameter."""
+    if parameter is None or not parameter.choices:
+        raise InputError(source, key, "a density parameter that has materials", f"'{material}' for another")
+    if parameter.name in given:
+        raise InputError(source, key, "either a material or a density", "both")
+    densities = {each.name: each.density for each in parameter.materials}
+    if material not in densities:
+        wanted = f"one of {', '.join(densities)}"
+        raise InputError(source, key, wanted, f"'{material}'{nearest_name(material, densities)}")
+    return densities[material]
 
 
 def designs_text(name: str, designs: Mapping[str, Sequence[float]], space: DesignSpace, remark: str) -> str:

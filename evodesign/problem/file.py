@@ -249,11 +249,15 @@ class ProblemFile(Table, frozen=True):
 
 
 class DesignEntry(Table, frozen=True):
-    """`[[design]]` of a population file: values by group; what is left out stays unscaled."""
+    """`[[design]]` of a population file: values by group; what is left out stays unscaled.
+
+    `material` names the material of a density that has materials, in place of `density_kg_per_m3`.
+    """
 
     name: Name
     length: dict[str, Positive] = {}
     density_kg_per_m3: dict[str, Positive] = {}
+    material: dict[str, Name] = {}
 
 
 class PopulationFile(Table, frozen=True):

@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from evodesign.body.material import CATALOGUE, Material
-from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import DensityTable, ProblemFile
 from evodesign.records import ProblemSource
 
-__all__ = ["density_parameters", "known_materials", "refuse_no_choice"]
+__all__ = ["density_parameters", "known_materials", "refuse_choices", "refuse_no_choice"]
 
 BOUNDS = ("lower_kg_per_m3", "upper_kg_per_m3")
 
@@ -83,6 +83,20 @@ def _chosen(
             found = f"'{one.name}' and '{other.name}', both of {one.density:g} kg/m^3"
             raise InputError(source.path, key, "materials of different densities", found)
     return tuple(chosen)
+
+
+def refuse_choices(space: DesignSpace, source: ProblemSource) -> None:
+    """Refuse materials for the paper's joint problem, in which densities are variables.
+
+    Raises:
+        InputError: naming a parameter.
+    """
+    for parameter in space.parameters:
+        if parameter.choices:
+            wanted = (
+                f"bounds of {parameter.name} instead of materials for the baseline, which moves it smoothly"
+            )
+            raise InputError(source.path, "design.density", wanted, f"{len(parameter.choices)} materials")
 
 
 def refuse_no_choice(parameter: DesignParameter, value: float, source: str, key: str) -> None:
