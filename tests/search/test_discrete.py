@@ -108,7 +108,7 @@ OPTIMUM = 0.2 + 0.6 * ((np.arange(6) * 0.618034) % 1.0)
 def assess(genome):
     """Two objectives, traded by the first coordinate; every other number adds to both until it is right.
 
-    A wrong choice costs the more the farther it is off, and the continuous optimum moves with the first choice,
+    A wrong choice costs the more the farther it is off, and the continuous optimum moves with the first one,
     so that who has converged with a wrong choice is stuck unless choices go on being varied.
     """
     choices = [choice_at(each, PARTS) for each in genome[6:]]
