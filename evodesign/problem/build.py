@@ -22,6 +22,7 @@ from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
 from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import OBJECTIVES, objective_kind
+from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
@@ -111,6 +112,7 @@ def build_problem(source: ProblemSource) -> Problem:
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
     robot, ground, stance = robot_agent(tables, source), _ground(tables), _stance(tables, source)
+    refuse_unlimited(tables, source, robot)
     loads = payloads(tables, source)
     scenes = tuple(
         Scene(robot, human, load, ground, stance) for human in human_agents(tables, source) for load in loads

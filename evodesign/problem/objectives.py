@@ -34,6 +34,12 @@ def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return postures[HUMAN].torque_norm
 
 
+def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The robot's largest |tau| over its limit, over the joints: 1 for a joint that bears all that it can."""
+    torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
+    return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
+
+
 def reach_height(result: DesignResult) -> float | None:
     """Highest load that the robot can hold [m]."""
     return result.reach.highest
@@ -67,6 +73,7 @@ def paper_cost(result: DesignResult) -> float | None:
 QUANTITIES: Mapping[str, CaseQuantity] = {
     "robot_torque": CaseQuantity("N m", robot_torque),
     "human_torque": CaseQuantity("N m", human_torque),
+    "peak_torque": CaseQuantity("1", peak_torque),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 

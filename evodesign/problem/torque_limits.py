@@ -8,56 +8,58 @@ from fnmatch import fnmatchcase
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import ProblemFile, TorqueLimits
-from evodesign.records import ProblemSource
+from evodesign.records import ProblemSource, Sense
 from evodesign.statics.scene import Agent
 
 __all__ = ["refuse_unlimited", "torque_limits"]
 
 KEY = "robot.torque_limits_n_m"
 
+PEAK_TORQUE = "peak_torque"
+"""How the names of objectives end that need a limit of every joint."""
+
 
 def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> Mapping[str, float]:
-    """The largest torque [N m] of each of the robot's moving joints that has a finite one.
+    """The largest torque [N m] of each of the robot's moving joints that has a positive, finite one.
 
     A key of `[robot.torque_limits_n_m]` is a joint's name, or a pattern such as `*_knee` for all joints that
     it fits; a name counts more than a pattern.
 
     Raises:
-        InputError: a key that no joint answers to, or a joint that answers to two patterns; a limit that
-            is not positive; or limits that shall hold where there are none.
+        InputError: a key that no joint answers to, or a joint that answers to two patterns; limits that shall
+            hold and are not positive, or are not there.
     """
-    given = tables.robot.torque_limits_n_m
+    given, hard = tables.robot.torque_limits_n_m, tables.robot.torque_limits is TorqueLimits.HARD
     asked = {name: _asked(name, given, source) for name in robot.joints}
     _refuse_unanswered(given, source, robot)
     limits: dict[str, float] = {}
     for name, limit in asked.items():
         effort = robot.tree.joint_by_name[name].effort if limit is None else limit
-        if not effort > 0.0:
+        if hard and not effort > 0.0:
             wanted = f"a positive effort limit of the joint '{name}', or one in {KEY}"
             raise InputError(source.path, "robot.urdf", wanted, f"{effort:g}")
-        if math.isfinite(effort):
+        if 0.0 < effort < math.inf:
             limits[name] = effort
-    if tables.robot.torque_limits is TorqueLimits.HARD and not limits:
+    if hard and not limits:
         wanted = f"'none', or a joint with an effort limit in '{tables.robot.urdf}' or in {KEY}"
         raise InputError(source.path, "robot.torque_limits", wanted, "'hard' and no limits")
     return limits
 
 
-def refuse_unlimited(robot: Agent, source: ProblemSource, key: str, name: str) -> None:
-    """Refuse an objective that needs a torque limit of every joint of the robot.
+def refuse_unlimited(tables: ProblemFile, source: ProblemSource, robot: Agent) -> None:
+    """Refuse to take torques relative to their limits where a joint of the robot has none.
 
-    Args:
-        robot: whose limits are known.
-        source: the problem, for messages.
-        key: where in it the objective is named.
-        name: of the objective.
     Raises:
-        InputError: naming a joint without a limit.
+        InputError: naming objective and joint.
     """
-    for joint in robot.joints:
-        if joint not in robot.torque_limits:
-            wanted = f"a torque limit of every joint of the robot for '{name}', in its URDF or in {KEY}"
-            raise InputError(source.path, key, wanted, f"none of '{joint}'")
+    unlimited = [joint for joint in robot.joints if joint not in robot.torque_limits]
+    asked = tables.objectives
+    for sense, names in ((Sense.MINIMISE, asked.minimise), (Sense.MAXIMISE, asked.maximise)):
+        for position, name in enumerate(names):
+            if unlimited and name.endswith(PEAK_TORQUE):
+                wanted = f"a torque limit of every joint of the robot for '{name}', in its URDF or in {KEY}"
+                key = f"objectives.{sense}[{position}]"
+                raise InputError(source.path, key, wanted, f"none of '{unlimited[0]}'")
 
 
 def _asked(joint: str, given: Mapping[str, float], source: ProblemSource) -> float | None:
