@@ -112,9 +112,9 @@ def start_genomes(
     genomes = []
     for name, values in designs.items():
         for parameter, value in zip(space.parameters, values, strict=True):
+            refuse_no_choice(parameter, value, source, f"design '{name}'")
             if not parameter.lower <= value <= parameter.upper:
                 wanted = f"{parameter.name} within [{parameter.lower:g}, {parameter.upper:g}]"
                 raise InputError(source, f"design '{name}'", wanted, f"{value:g}")
-            refuse_no_choice(parameter, value, source, f"design '{name}'")
         genomes.append(space.genome(values))
     return tuple(genomes)
