@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
@@ -13,6 +14,7 @@ from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Agent
 from evodesign.tree.anthropometry import Person
 from evodesign.tree.human import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
 from evodesign.tree.model import Joint, JointKind, Link, Tree
+from evodesign.tree.strength import joint_strengths
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
 __all__ = ["human_agent", "refuse_unknown", "robot_agent"]
@@ -55,7 +57,8 @@ def _generated(table: HumanTable, source: ProblemSource) -> Agent:
     hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
     soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
     joints = table.joints or DEFAULT_JOINTS
-    return _agent(HUMAN, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    agent = _agent(HUMAN, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    return replace(agent, strengths=joint_strengths(someone))
 
 
 def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], agent: str, source: ProblemSource) -> Tree:

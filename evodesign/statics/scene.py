@@ -17,6 +17,7 @@ from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.statics.contact import Ground, SoleSize
 from evodesign.tree.model import Tree
+from evodesign.tree.strength import JointStrength
 
 __all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
 
@@ -98,6 +99,7 @@ class Agent:
         soles: frame under the foot, by side.
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
+        strengths: of its joints, by name; none for a robot, or a person read from a file.
     """
 
     name: str
@@ -107,6 +109,7 @@ class Agent:
     soles: Mapping[str, str]
     sole_size: SoleSize
     trunk: tuple[str, ...]
+    strengths: Mapping[str, JointStrength] = field(default_factory=dict)
 
     @property
     def facing(self) -> float:
