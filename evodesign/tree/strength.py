@@ -19,7 +19,15 @@ from evodesign.tree.anthropometry import Person
 from evodesign.tree.mirror import right_name
 from evodesign.tree.strength_tables import Direction, Scale, strength_tables
 
-__all__ = ["JointStrength", "Strain", "Strength", "joint_strengths", "largest_strain", "strains"]
+__all__ = [
+    "JointStrength",
+    "Strain",
+    "Strength",
+    "joint_strengths",
+    "largest_strain",
+    "strains",
+    "with_given",
+]
 
 NEWTONS_PER_KILOGRAM = 9.81
 """Body weight over body mass, where a source divides a moment by body weight."""
@@ -80,6 +88,25 @@ def _strength(way: Direction | None, person: Person) -> Strength | None:
         Scale.PER_WEIGHT_AND_STATURE: person.mass * NEWTONS_PER_KILOGRAM * person.stature,
     }[strength_tables().sources[way.source].scale]
     return Strength(way.movement, factor * way.of(person.sex))
+
+
+def with_given(
+    published: Mapping[str, JointStrength], given: Mapping[str, tuple[float, float]]
+) -> Mapping[str, JointStrength]:
+    """Published strengths, with those that are given in their place.
+
+    Args:
+        published: by joint name.
+        given: moments [N m] in the negative and the positive direction, by joint name.
+    """
+    replaced = dict(published)
+    for joint, (backward, forward) in given.items():
+        known = published.get(joint, JointStrength(None, None))
+        replaced[joint] = JointStrength(
+            Strength(known.negative.movement if known.negative else "turning backward", backward),
+            Strength(known.positive.movement if known.positive else "turning forward", forward),
+        )
+    return replaced
 
 
 def strains(torques: Mapping[str, float], strengths: Mapping[str, JointStrength]) -> Iterator[Strain]:
