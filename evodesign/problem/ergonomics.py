@@ -14,7 +14,8 @@ Source: see `posture.lifting` and `tree.strength`; docs/people.md says what the 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from evodesign.body.placement import Placement, Vector, add, scale
 from evodesign.posture.lifting import LiftingTask, Multipliers, multipliers
@@ -25,7 +26,7 @@ from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.strength import Strain, largest_strain
 
-__all__ = ["Ergonomics", "ergonomics"]
+__all__ = ["Ergonomics", "ergonomics", "ergonomics_json"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +80,23 @@ def ergonomics(person: Agent, posture: AgentDetail) -> Ergonomics:
         multipliers=multipliers(task),
         load=held,
     )
+
+
+def ergonomics_json(asked: Ergonomics) -> dict[str, Any]:
+    """The same as a JSON object; its shape is a promise. Nulls: no strengths, or nothing recommended."""
+    strain, task = asked.strain, asked.task
+    return {
+        "effort": strain.share if strain else None,
+        "hardest_joint": strain.joint if strain else None,
+        "movement": strain.movement if strain else None,
+        "hands_ahead_m": task.horizontal,
+        "hands_height_m": task.vertical,
+        "asymmetry_deg": task.asymmetry,
+        "multipliers": asdict(asked.multipliers),
+        "held_kg": asked.load,
+        "recommended_weight_kg": asked.recommended_weight,
+        "lifting_index": asked.lifting_index,
+    }
 
 
 def _ankle(tree: Tree, sole: str) -> str:

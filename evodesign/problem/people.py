@@ -68,4 +68,5 @@ def refuse_unrated(key: str, name: str, source: ProblemSource, people: Sequence[
     for person in people:
         if not any(joint in person.strengths for joint in person.joints):
             wanted = "people of known strength (stature_m, mass_kg and sex, or strengths_n_m)"
-            raise InputError(source.path, key, wanted, f"'{name}' with '{person.tree.name}', of whom none is")
+            found = f"'{name}' with a person '{person.tree.name}' of unknown strength"
+            raise InputError(source.path, key, wanted, found)
