@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import shown
@@ -18,9 +19,9 @@ __all__ = ["TITLE", "case_name", "person_table"]
 TITLE = "what each posture asks of the person"
 
 CAPTION = (
-    "hardest joint: its torque as a share of a person's strength there, in that direction\n"
-    "hands: ahead of the ankles and above the ground; holds: the person's part of the load\n"
-    "limit and index: recommended weight limit and lifting index of the NIOSH equation (docs/people.md)"
+    "effort: the hardest joint's torque as a share of a person's strength there\n"
+    "hands: ahead of the ankles and up from the ground; holds: part of the load\n"
+    "limit, index: recommended weight and lifting index (NIOSH; docs/people.md)"
 )
 
 
@@ -35,18 +36,18 @@ def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) ->
     table = Table(title=title or None, title_justify="left", caption=CAPTION, caption_justify="left")
     for column in ("case", "hardest joint"):
         table.add_column(column, overflow="fold")
-    for column in ("of strength", "hands ahead", "hands up", "holds", "limit", "index"):
-        table.add_column(column, justify="right")
+    for column in ("effort", "ahead [m]", "up [m]", "holds [kg]", "limit [kg]", "index"):
+        table.add_column(escape(column), justify="right")
     for case, asked in cases:
         strain, task = asked.strain, asked.task
         table.add_row(
             shown(case),
             "-" if strain is None else shown(f"{strain.joint}, {strain.movement}"),
             "-" if strain is None else f"{strain.share:.1%}",
-            f"{task.horizontal:.2f} m",
-            f"{task.vertical:.2f} m",
-            f"{asked.load:.1f} kg",
-            f"{asked.recommended_weight:.1f} kg",
+            f"{task.horizontal:.2f}",
+            f"{task.vertical:.2f}",
+            f"{asked.load:.1f}",
+            f"{asked.recommended_weight:.1f}",
             "-" if asked.lifting_index is None else f"{asked.lifting_index:.2f}",
         )
     return table
