@@ -13,7 +13,7 @@ from rich.text import Text
 
 from evodesign.cli.height_table import heights_table
 from evodesign.cli.opening import OpenedDesign
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, visible
 from evodesign.cli.person_table import TITLE, case_name, person_table
 from evodesign.cli.tables import heading
 from evodesign.errors import on_one_line
@@ -152,7 +152,7 @@ def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, 
 def _height_table(columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
     table = _table(*columns)
     for detail in heights:
-        table.add_column(f"{detail.height_m:g} m", justify="right")
+        table.add_column(escape(visible(case_name(detail))), justify="right")
     return table
 
 
