@@ -20,8 +20,9 @@ from evodesign.problem.result import DesignResult
 from evodesign.records import Objective
 from evodesign.statics.balance import standing_height_of_mass
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
+from evodesign.tree.strength import largest_strain
 
-__all__ = ["OBJECTIVES", "QUANTITIES", "objective_kind", "objective_values", "value_of"]
+__all__ = ["HUMAN_EFFORT", "OBJECTIVES", "QUANTITIES", "objective_kind", "objective_values", "value_of"]
 
 
 def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
@@ -38,6 +39,12 @@ def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """The robot's largest |tau| over its limit, over the joints: 1 for a joint that bears all that it can."""
     torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
     return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
+
+
+def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
+    strain = largest_strain(postures[HUMAN].torques, scene.human.strengths)
+    return 0.0 if strain is None else strain.share
 
 
 def reach_height(result: DesignResult) -> float | None:
@@ -70,10 +77,14 @@ def paper_cost(result: DesignResult) -> float | None:
     return float(cost)
 
 
+HUMAN_EFFORT = "human_effort"
+"""The quantity that needs people of known strength."""
+
 QUANTITIES: Mapping[str, CaseQuantity] = {
     "robot_torque": CaseQuantity("N m", robot_torque),
     "human_torque": CaseQuantity("N m", human_torque),
     "peak_torque": CaseQuantity("1", peak_torque),
+    HUMAN_EFFORT: CaseQuantity("1", human_effort),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 

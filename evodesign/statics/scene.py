@@ -17,6 +17,7 @@ from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.statics.contact import Ground, SoleSize
 from evodesign.tree.model import Tree
+from evodesign.tree.strength import JointStrength
 
 __all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
 
@@ -101,6 +102,7 @@ class Agent:
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
         label: who it is where a problem has several people.
+        strengths: of its joints, by name; none for a robot.
         torque_limits: largest torque [N m] of each joint that moves and has a limit.
         limits_torques: whether these limits hold in every posture.
     """
@@ -113,6 +115,7 @@ class Agent:
     sole_size: SoleSize
     trunk: tuple[str, ...]
     label: str = ""
+    strengths: Mapping[str, JointStrength] = field(default_factory=dict)
     torque_limits: Mapping[str, float] = field(default_factory=dict)
     limits_torques: bool = False
 
