@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, hand_wrench
+from evodesign.posture.bearing import GRASP_ROWS, HAND_UNIT, hand_wrench
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Variable
 from evodesign.statics.scene import Scene

@@ -25,7 +25,8 @@ from functools import cached_property, partial
 import casadi as ca
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked, height_solution
 from evodesign.posture.check import Checker
 from evodesign.posture.form import Form, symmetric_forms, whole

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.agent import TORQUE_UNIT
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.joint import JointSettings
 from evodesign.posture.reach import Reach
 from evodesign.posture.solution import HeightSolution
