@@ -93,7 +93,8 @@ def stages(setting: Setting, heights: Sequence[float], *, seeds: bool) -> list[l
         heights: of the load's centre [m].
         seeds: whether solves begin at seeds.
     """
-    pushed = setting.scene.payload.grasp is Grasp.POINT and setting.scene.stance.push > 0.0
+    scene = setting.scene
+    pushed = scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0 and not scene.disturbances
     people = [Piece(Subject.PERSON, height) for height in heights if setting.symmetric and pushed]
     if not seeds:
         return [people]
@@ -108,6 +109,8 @@ def key_of(setting: Setting, piece: Piece) -> str:
     scene, options = setting.scene, replace(setting.options, compiled=False)
     numbers = (piece, scene.payload, scene.ground, scene.stance, setting.weights, options)
     ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
+    if scene.disturbances:
+        ingredients.append(repr(scene.disturbances).encode())
     if piece.subject is not Subject.PERSON:
         ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]
     return digest_of(*ingredients)
