@@ -26,7 +26,7 @@ from evodesign.posture.bearing import Bearing, bear
 from evodesign.posture.form import Form
 from evodesign.posture.load import disturbed_load_constraints, turned_to_world
 from evodesign.posture.partner import free_hands
-from evodesign.posture.program import Constraint, Program, RawSolution, Variable
+from evodesign.posture.program import Constraint, Program, Variable, values_under
 from evodesign.posture.solution import AgentPosture
 from evodesign.posture.stand import Stand
 from evodesign.posture.start import Start
@@ -161,15 +161,20 @@ def filled(start: Start, program: Program) -> Start:
 
 
 def postures_in_cases(
-    scene: Scene, forms: Sequence[Form], raw: RawSolution
+    scene: Scene, forms: Sequence[Form], values: Mapping[str, Array]
 ) -> dict[str, dict[str, AgentPosture]]:
-    """What each agent bears under each disturbance, by the disturbance's name and the agent's."""
-    return {
-        disturbance.name: {
-            form.agent.name: form.expand(
-                {**raw.of(form.agent.name), **raw.of(f"{prefix_of(number)}{form.agent.name}")}
-            )
-            for form in forms
+    """What each agent bears under each disturbance, by the disturbance's name and the agent's.
+
+    Args:
+        scene: whose disturbances they are.
+        forms: of both agents.
+        values: of a solution, by variable name, SI units.
+    """
+    found: dict[str, dict[str, AgentPosture]] = {}
+    for number, disturbance in enumerate(scene.disturbances.cases):
+        agents = {form.agent.name: form for form in forms}
+        own = {name: values_under(f"{prefix_of(number)}{name}", values) for name in agents}
+        found[disturbance.name] = {
+            name: form.expand({**values_under(name, values), **own[name]}) for name, form in agents.items()
         }
-        for number, disturbance in enumerate(scene.disturbances.cases)
-    }
+    return found

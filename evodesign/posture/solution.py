@@ -77,6 +77,7 @@ class HeightSolution:
         start: name of the start that led to the postures; empty unless solved.
         disturbed: by disturbance and agent name, the same base and joints with what is borne then; empty
             without disturbances.
+        scene: which of the problem's scenes it is in, from zero.
     """
 
     height: float
@@ -86,6 +87,7 @@ class HeightSolution:
     residuals: Mapping[str, float]
     attempts: tuple[Attempt, ...]
     start: str
+    scene: int = 0
     disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
 
     @property

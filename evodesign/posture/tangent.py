@@ -16,17 +16,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.design.space import DesignSpace
+from evodesign.posture.disturbed import postures_in_cases
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
 from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.posture import SYMMETRIC, EffortWeights, posture_program
-from evodesign.posture.program import IpoptOptions, Program
+from evodesign.posture.program import IpoptOptions, values_under
+from evodesign.posture.retold import start_from
 from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import SPLIT, robot_program
@@ -65,7 +67,12 @@ class PostureTangent:
     def postures(self, step: Array) -> dict[str, AgentPosture]:
         """To first order, the postures of a design that differs by a step, one number per parameter."""
         moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
-        return {form.agent.name: form.expand(_of(form, moved)) for form in self.forms}
+        return {form.agent.name: form.expand(values_under(form.agent.name, moved)) for form in self.forms}
+
+    def disturbed(self, scene: Scene, step: Array) -> dict[str, dict[str, AgentPosture]]:
+        """Likewise, what is borne under each of the scene's disturbances."""
+        moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
+        return postures_in_cases(scene, self.forms, moved)
 
 
 class _Way(Protocol):
@@ -137,7 +144,7 @@ class _Joint:
 
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this program might have found."""
-        start = _start(self._forms, self._both.program, solution.postures)
+        start = start_from(self._forms, self._both.program, solution.postures, solution.disturbed)
         found = self._both.at([*design, solution.height, self._mass], start)
         if isinstance(found, Kink):
             return found
@@ -173,7 +180,7 @@ class _Split:
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this pair of programs might have found."""
         value = self._values[solution.height]
-        start = _start(self._forms, self._robot.program, solution.postures)
+        start = start_from(self._forms, self._robot.program, solution.postures)
         beside = (solution.height, self._scene.payload.mass, *value.coefficients)
         robot = self._robot.at([*design, *beside], start)
         if isinstance(robot, Kink):
@@ -208,7 +215,7 @@ class _Split:
     def _person(self, solution: HeightSolution, push: float, *, held: bool) -> Optimum | Kink:
         """The person under a push [N]; one that is held at its limit does not move the person."""
         parameters = [solution.height, self._scene.payload.mass, push]
-        start = _start(self._forms, self._human.program, solution.postures)
+        start = start_from(self._forms, self._human.program, solution.postures)
         raw = self._human.solve(parameters, start)
         if not held:
             return self._human.of(parameters, raw)
@@ -237,8 +244,11 @@ def _same(tangent: PostureTangent, solution: HeightSolution) -> bool:
 
 def _determined(tangent: PostureTangent) -> bool:
     """Whether everything of the agents has a derivative."""
+    agents = {form.agent.name for form in tangent.forms}
     return not any(
-        np.isnan(slope).any() for form in tangent.forms for slope in _of(form, tangent.slopes).values()
+        np.isnan(slope).any()
+        for name, slope in tangent.slopes.items()
+        if agents.intersection(name.split("."))  # in every case
     )
 
 
@@ -246,30 +256,3 @@ def labels_of(forms: Sequence[Form]) -> dict[str, tuple[str, ...]]:
     """Names of joints and trunk frames for the rows of variables and constraints about them."""
     joints = {f"{form.agent.name}.{part}": form.joints for form in forms for part in ("joints", "torques")}
     return joints | {f"{form.agent.name}.trunk_clear": form.trunk for form in forms}
-
-
-def _of(form: Form, values: Mapping[str, Array]) -> dict[str, Array]:
-    """The values of a form's agent, by their name without the agent's."""
-    prefix = f"{form.agent.name}."
-    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
-
-
-def _start(forms: Forms, program: Program, postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
-    """Whole postures as values of a program's variables; hands of an absent agent are the partner's."""
-    counts = {variable.name: variable.symbol.numel() for variable in program.variables}
-    known: dict[str, Any] = {}
-    for form in forms:
-        posture, agent = postures[form.agent.name], form.agent.name
-        present = f"{agent}.joints" in counts
-        hands = {
-            f"{agent if present else 'partner'}.{side}_hand": posture.hand_wrenches[side]
-            for side in form.sides
-        }
-        known |= {name: wrench[: counts[name]] for name, wrench in hands.items()}
-        if present:
-            known |= {f"{agent}.{side}_foot": posture.foot_wrenches[side] for side in form.sides}
-            known[f"{agent}.base_position"] = posture.base_position
-            known[f"{agent}.base_angles"] = posture.base_angles
-            known[f"{agent}.joints"] = [posture.joints[name] for name in form.joints]
-            known[f"{agent}.torques"] = [posture.torques[name] for name in form.joints]
-    return known

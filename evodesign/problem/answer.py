@@ -5,6 +5,12 @@ Positions and hand wrenches are in the agent's own frame, which looks along +x a
 wrench is force, then moment, acting on the agent: at a hand about the grasp point, at a foot about the sole's
 origin and in the sole frame.
 
+Where a problem has several people or loads, `heights` has an entry for each case, with its `human_name` and
+`payload_name`.
+
+Where the problem has disturbances, a solved height's `disturbed` holds, by their names, torques and wrenches
+of the same posture under each. Residuals of such a case carry its name.
+
 `sensitivities` holds, for each objective that exists, how it moves with the design:
 
     {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
@@ -22,10 +28,10 @@ from typing import Any
 
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
-from evodesign.problem.objectives import DesignResult
+from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
-from evodesign.statics.scene import SIDES
+from evodesign.statics.scene import SIDES, Scene
 
 __all__ = ["answer"]
 
@@ -51,7 +57,7 @@ def answer(
             "status": str(result.reach.status),
             "reason": result.reach.reason,
         },
-        "heights": [_height(height) for height in result.heights],
+        "heights": [_height(height, result.scenes[height.scene]) for height in result.heights],
         "sensitivities": {
             name: {"gradient": found.gradient, "kinks": list(found.kinks)}
             for name, found in sensitivities.items()
@@ -59,9 +65,11 @@ def answer(
     }
 
 
-def _height(height: HeightSolution) -> dict[str, Any]:
+def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
+    labels = {"human_name": scene.human.label, "payload_name": scene.payload.label}
     shown: dict[str, Any] = {
         "height_m": height.height,
+        **{name: label for name, label in labels.items() if label},
         "status": str(height.status),
         "reason": height.reason,
         "start": height.start,
@@ -69,13 +77,28 @@ def _height(height: HeightSolution) -> dict[str, Any]:
     }
     if height.solved:
         shown.update({name: _agent(posture) for name, posture in height.postures.items()})
-        shown["wrenches"] = {
-            f"{name}.{contact}": wrench
-            for name, posture in height.postures.items()
-            for contact, wrench in _wrenches(posture).items()
-        }
+        shown["wrenches"] = _contacts(height.postures)
+        if height.disturbed:
+            shown["disturbed"] = {name: _borne(postures) for name, postures in height.disturbed.items()}
         shown["residuals"] = dict(height.residuals)
     return shown
+
+
+def _borne(postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
+    """What agents bear in a posture that is shown elsewhere."""
+    strained = {
+        name: {"torque_norm": posture.torque_norm, "torques": dict(posture.torques)}
+        for name, posture in postures.items()
+    }
+    return {**strained, "wrenches": _contacts(postures)}
+
+
+def _contacts(postures: Mapping[str, AgentPosture]) -> dict[str, list[float]]:
+    return {
+        f"{name}.{contact}": wrench
+        for name, posture in postures.items()
+        for contact, wrench in _wrenches(posture).items()
+    }
 
 
 def _agent(posture: AgentPosture) -> dict[str, Any]:

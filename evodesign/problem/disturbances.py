@@ -24,7 +24,7 @@ def scene_disturbances(
         agents: robot and people.
         payloads: all loads.
     Raises:
-        InputError: a name that is there twice, a centre of mass outside a box, a push on a trunk without frames.
+        InputError: a name that is there twice, a centre of mass outside a box, a push on no trunk.
     """
     cases: list[Disturbance] = []
     for position, table in enumerate(tables.disturbance):

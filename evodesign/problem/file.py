@@ -6,7 +6,7 @@ that name file, key, what was wanted and what was found.
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import msgspec
 from msgspec import Meta
@@ -16,12 +16,13 @@ from evodesign.statics.disturbance import OverCases, PushedAt
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 
-__all__ = ["DisturbanceTable", "BaselineTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
+__all__ = ["BaselineTable", "DisturbanceTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
 Point = tuple[float, float, float]
 Name = Annotated[str, Meta(min_length=1)]
+T = TypeVar("T")
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -64,8 +65,9 @@ class RobotTable(Table, frozen=True):
 
 
 class HumanTable(Table, frozen=True):
-    """`[human]`: a person by stature, mass and sex, or a URDF with the names of its parts."""
+    """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts."""
 
+    name: Name | None = None
     stature_m: Positive | None = None
     mass_kg: Positive | None = None
     sex: Sex | None = None
@@ -85,10 +87,11 @@ class GraspsTable(Table, frozen=True):
 
 
 class PayloadTable(Table, frozen=True):
-    """`[payload]`: a box; size is depth (robot to person), width, height."""
+    """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height."""
 
     size_m: tuple[Positive, Positive, Positive]
     mass_kg: Positive
+    name: Name | None = None
     center_of_mass_m: Point = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
     robot_grasps_m: GraspsTable | None = None
@@ -113,9 +116,9 @@ class TaskTable(Table, frozen=True):
 class DisturbanceTable(Table, frozen=True):
     """`[[disturbance]]`: what a posture must bear besides, with wrenches and torques of its own.
 
-    `load_mass_share` adds to the load's mass, `center_of_mass_m` to its centre of mass; `push_n` is a force in
-    the world's axes (x from the robot to the person, z up) on the load's centre or on the last frame of an
-    agent's trunk.
+    `load_mass_share` adds to the load's mass, `center_of_mass_m` to its centre of mass; `push_n` is a force
+    in the world's axes (x from the robot to the person, z up) on the load's centre or on the last frame of
+    an agent's trunk.
     """
 
     name: Name | None = None
@@ -234,8 +237,8 @@ class ProblemFile(Table, frozen=True):
 
     name: Name
     robot: RobotTable
-    human: HumanTable
-    payload: PayloadTable
+    human: HumanTable | Annotated[tuple[HumanTable, ...], Meta(min_length=1)]
+    payload: PayloadTable | Annotated[tuple[PayloadTable, ...], Meta(min_length=1)]
     task: TaskTable
     design: DesignTable
     objectives: ObjectivesTable
@@ -244,6 +247,23 @@ class ProblemFile(Table, frozen=True):
     solver: SolverTable = SolverTable()
     baseline: BaselineTable = BaselineTable()
     disturbance: tuple[DisturbanceTable, ...] = ()
+
+    @property
+    def people(self) -> dict[str, HumanTable]:
+        """The tables of people by their keys, for messages."""
+        return _listed("human", self.human)
+
+    @property
+    def loads(self) -> dict[str, PayloadTable]:
+        """The tables of loads by their keys, for messages."""
+        return _listed("payload", self.payload)
+
+
+def _listed(key: str, tables: T | tuple[T, ...]) -> dict[str, T]:
+    """One table or a list of tables, each with its key."""
+    if isinstance(tables, tuple):
+        return {f"{key}[{position}]": table for position, table in enumerate(tables)}
+    return {key: tables}
 
 
 class DesignEntry(Table, frozen=True):

@@ -43,6 +43,7 @@ class Payload:
         grasp: what every hand can pass to the load.
         grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
             it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
+        label: what it is called where a problem has several loads.
     """
 
     size: Vector
@@ -50,6 +51,7 @@ class Payload:
     center_of_mass: Vector = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
     grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
+    label: str = ""
 
     @property
     def inertia(self) -> Inertia:
@@ -105,6 +107,7 @@ class Agent:
         soles: frame under the foot, by side.
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
+        label: who it is where a problem has several people.
     """
 
     name: str
@@ -114,6 +117,7 @@ class Agent:
     soles: Mapping[str, str]
     sole_size: SoleSize
     trunk: tuple[str, ...]
+    label: str = ""
 
     @property
     def facing(self) -> float:
@@ -136,3 +140,8 @@ class Scene:
     ground: Ground = field(default_factory=Ground)
     stance: StanceLimits = field(default_factory=StanceLimits)
     disturbances: Disturbances = field(default_factory=Disturbances)
+
+    @property
+    def label(self) -> str:
+        """Who holds what, where there are several people or loads."""
+        return ", ".join(label for label in (self.human.label, self.payload.label) if label)
