@@ -44,6 +44,7 @@ __all__ = [
     "prefix_of",
     "pushed_frame",
     "with_cases",
+    "with_worst",
 ]
 
 Array = Any
@@ -51,6 +52,9 @@ Expression = Any
 
 SHARE_OF_MEAN = 0.01
 """e: what the mean counts beside the worst case."""
+
+WORST = "worst.cost"
+"""Name of s, and of the rows K_c - s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,14 +144,24 @@ def over_cases(program: Program, effort: OverCases, costs: Sequence[Expression])
     mean = sum(costs) / len(costs)
     if effort is OverCases.MEAN:
         return replace(program, cost=program.cost + mean)
-    worst = Variable.column("worst.cost", [0.0], [np.inf], [0.0], 1.0)
-    below = Constraint("worst.of_cases", ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
+    worst = Variable.column(WORST, [0.0], [np.inf], [0.0], 1.0)
+    below = Constraint(WORST, ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
     return replace(
         program,
         variables=(*program.variables, worst),
         constraints=(*program.constraints, below),
         cost=program.cost + (1.0 - SHARE_OF_MEAN) * worst.value + SHARE_OF_MEAN * mean,
     )
+
+
+def with_worst(start: Start, program: Program, parameters: Sequence[float]) -> Start:
+    """A solution of a program as its start, with s as its cases ask for it."""
+    for row in program.constraints:
+        if row.name == WORST:
+            costs = ca.Function("costs", [program.symbols, program.parameters], [row.expression])
+            found = costs(program.packed({**start, WORST: [0.0]}), parameters)
+            return {**start, WORST: [float(ca.mmax(found))]}
+    return start
 
 
 def filled(start: Start, program: Program) -> Start:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.disturbed import postures_in_cases
+from evodesign.posture.disturbed import postures_in_cases, with_worst
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
 from evodesign.posture.kkt import Array, Kink
@@ -145,7 +145,8 @@ class _Joint:
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this program might have found."""
         start = start_from(self._forms, self._both.program, solution.postures, solution.disturbed)
-        found = self._both.at([*design, solution.height, self._mass], start)
+        parameters = [*design, solution.height, self._mass]
+        found = self._both.at(parameters, with_worst(start, self._both.program, parameters))
         if isinstance(found, Kink):
             return found
         own = slice(len(design))
