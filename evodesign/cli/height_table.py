@@ -8,6 +8,7 @@ from rich.table import Table
 from evodesign.cli.output import figure
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment
+from evodesign.statics.scene import HUMAN, ROBOT
 
 __all__ = ["heights_table"]
 
@@ -28,4 +29,7 @@ def heights_table(assessment: Assessment, title: str) -> Table:
             "-" if outcome.residual is None else f"{outcome.residual:.1e}",
             escape(on_one_line(status)),
         )
+        for name, norms in outcome.disturbed.items():
+            shown = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
+            table.add_row("", *shown, "", "", escape(on_one_line(name)))
     return table

@@ -39,6 +39,9 @@ class Baseline:
             found = f"{len(problem.scenes)} pairs of a person and a load"
             wanted = "one person and one load in the joint problem"
             raise InputError(problem.source.path, "human", wanted, found)
+        if problem.scene.disturbances:
+            found = f"{len(problem.scene.disturbances.cases)}"
+            raise InputError(problem.source.path, "disturbance", "none in the joint problem", found)
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
