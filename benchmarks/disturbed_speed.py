@@ -1,8 +1,8 @@
-"""What do disturbances cost? Time of one compiled symmetric posture solve and of one reach, by number of cases.
+"""What do disturbances cost? Time of a compiled symmetric posture solve and of a reach solve, by cases.
 
-A case is the undisturbed load or one of the disturbances; random designs of the default problem, three heights,
-the program's own starts. Times are processor time, so that other work on the machine counts little. Results go
-to benchmarks/results/disturbed_speed.json and are printed as a table.
+A case is the undisturbed load or one of the disturbances; random designs of the default problem, three
+heights, the program's own starts. Times are processor time, so that other work on the machine counts little.
+Results go to benchmarks/results/disturbed_speed.json and are printed as a table.
 
     python -m benchmarks.disturbed_speed [--designs 8]
 """

@@ -31,5 +31,5 @@ def heights_table(assessment: Assessment, title: str) -> Table:
         )
         for name, norms in outcome.disturbed.items():
             shown = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
-            table.add_row("", *shown, "", "", escape(on_one_line(name)))
+            table.add_row("", *shown, "", "", escape(on_one_line(f"under '{name}'")))
     return table
