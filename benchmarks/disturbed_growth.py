@@ -18,7 +18,12 @@ from itertools import pairwise
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.form import symmetric_forms
+from evodesign.posture.portfolio import Coverage, Portfolio
 from evodesign.posture.posture import PostureProblem
+from evodesign.posture.preparation import Preparation
+from evodesign.posture.retold import start_from
+from evodesign.posture.shelf import Shelf
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.records import Status
@@ -48,17 +53,22 @@ class Bench:
     """A scene's posture problem with its check."""
 
     def __init__(self, problem: Problem, scene: Scene) -> None:
-        self._problem, self._scene = problem, scene
+        self._problem, self._scene, self._shelf = problem, scene, Shelf()
         options = replace(problem.options, compiled=False)
-        self._postures = PostureProblem(scene, problem.space, problem.weights, options, problem.symmetry)
+        self._ingredients = (scene, problem.space, problem.weights, options, problem.symmetry)
+        self._landscape = PostureProblem(*self._ingredients, shelf=self._shelf).landscape(HEIGHT)
         self._human = AgentModel.of(scene.human, scene.human.tree)
 
     def best(self, design: Design, like: Postures | None) -> HeightSolution:
         """The cheapest checked posture from the program's own starts and from a known posture."""
         tree = self._problem.space.resized(self._scene.robot.tree, design)
-        checker = Checker(self._scene, tree, self._human)
-        starts = (None,) if like is None else (None, like)
-        return min((self._postures.solve(design, HEIGHT, checker, start) for start in starts), key=cost_of)
+        starts = self._landscape.starts
+        if like is not None:
+            known = start_from(symmetric_forms(self._scene), self._landscape.solver.program, like)
+            starts = (known, *starts)
+        seeds = Preparation(postures={HEIGHT: Portfolio(starts, Coverage(0, 0, 0.0))})
+        postures = PostureProblem(*self._ingredients, seeds, self._shelf)
+        return postures.solve(design, HEIGHT, Checker(self._scene, tree, self._human))
 
 
 def cost_of(solution: HeightSolution) -> float:
