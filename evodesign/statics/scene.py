@@ -18,6 +18,7 @@ from evodesign.body.shape import Box
 from evodesign.statics.contact import Ground, SoleSize
 from evodesign.statics.disturbance import Disturbance, Disturbances
 from evodesign.tree.model import Tree
+from evodesign.tree.strength import JointStrength
 
 __all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
 
@@ -108,6 +109,7 @@ class Agent:
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
         label: who it is where a problem has several people.
+        strengths: of its joints, by name; none for a robot.
     """
 
     name: str
@@ -118,6 +120,7 @@ class Agent:
     sole_size: SoleSize
     trunk: tuple[str, ...]
     label: str = ""
+    strengths: Mapping[str, JointStrength] = field(default_factory=dict)
 
     @property
     def facing(self) -> float:
