@@ -13,6 +13,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
+from evodesign.statics.disturbance import Disturbance, Disturbances
 from evodesign.statics.scene import HUMAN, ROBOT
 
 HEIGHT = 1.2
@@ -109,3 +110,16 @@ def test_gradients_know_a_limit_that_is_met(problem: Problem) -> None:
             for sign in (1.0, -1.0)
         )
         assert gradient.gradient[name] == pytest.approx((ahead - behind) / (2.0 * step), rel=2e-3)
+
+
+def test_limits_hold_under_a_heavier_load_too(problem: Problem) -> None:
+    heavier = Disturbances((Disturbance("heavier", mass_share=0.2),))
+    chosen = limited(problem, SHOULDERS)
+    scenes = tuple(replace(scene, disturbances=heavier) for scene in chosen.scenes)
+    result = Evaluator(replace(chosen, scenes=scenes)).solve(unscaled(problem)).heights[0]
+    assert result.solved
+    borne = [postures[ROBOT] for postures in (result.postures, *result.disturbed.values())]
+    assert len(borne) == 2
+    for posture in borne:
+        assert abs(posture.torques["l_shoulder_pitch"]) <= 1.5 + 1e-5
+    assert result.residuals["heavier: robot.torque_limits"] < 1e-6
