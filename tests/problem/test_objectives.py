@@ -74,4 +74,4 @@ def test_peak_torque_is_the_largest_share_of_a_joints_limit(result: DesignResult
 def test_every_objective_has_a_unit_and_a_value(result: DesignResult) -> None:
     for kind in OBJECTIVES.values():
         assert kind.unit
-        assert kind.value(limited(result)) is not None
+        assert kind.value(replace(limited(result), people_highest=1.9)) is not None

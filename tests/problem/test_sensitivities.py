@@ -52,7 +52,8 @@ def wide(problem: Problem) -> Problem:
 def tangent(wide: Problem, known: Preparation, evaluator: Evaluator) -> DesignTangent:
     """Of a design whose agents do not lean on each other as far as they may, so that the person moves too."""
     values = wide.space.unscaled(wide.scene.robot.tree)
-    result = replace(evaluator.solve(values), scenes=wide.scenes)
+    found = replace(evaluator.solve(values), scenes=wide.scenes)
+    result = replace(found, people_highest=9.0)  # higher than the robot reaches
     return Sensitivities(wide, known).at(values, result)
 
 
