@@ -20,11 +20,11 @@ from evodesign.posture.constraints import equal, feet_constraints, hand_constrai
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Constraint, Variable
 from evodesign.statics.balance import AppliedWrench, cut
-from evodesign.statics.scene import Agent, Grasp, Scene
+from evodesign.statics.scene import Agent, Grasp, Payload, Scene
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
-__all__ = ["GRASP_ROWS", "AgentBlock", "agent_block", "hand_wrench"]
+__all__ = ["GRASP_ROWS", "AgentBlock", "agent_block", "hand_limits", "hand_wrench"]
 
 Expression = Any
 
@@ -32,6 +32,7 @@ TORQUE_UNIT = 10.0  # [N m] per unit of a lifted torque
 FORCE_UNIT = 100.0  # [N] per unit of a foot wrench
 HAND_UNIT = 10.0  # [N] per unit of a hand force, [N m] per unit of a hand moment
 COMFORT = 1e-2
+STRONGEST = 300.0  # [N] and [N m] of a hand, beyond any holding posture
 
 GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}
 """Numbers of a hand's wrench that are free: a force, or a force and a moment."""
@@ -127,7 +128,7 @@ def _variables(form: Form, scene: Scene) -> list[Variable]:
             1.0,
         ),
     ]
-    hand, foot, torque = [300.0] * GRASP_ROWS[scene.payload.grasp], [5000.0] * 6, [1000.0] * len(joints)
+    hand, foot, torque = hand_limits(scene.payload), [5000.0] * 6, [1000.0] * len(joints)
     rest = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
     bounded = [
         *((f"{side}_hand", hand, [0.0] * len(hand), HAND_UNIT) for side in form.sides),
@@ -147,6 +148,12 @@ def _standing(agent: Agent, scene: Scene) -> list[float]:
     lowest = min(float(poses[frame].position[2]) for frame in agent.soles.values())
     back = scene.payload.size[0] / 2.0 + scene.stance.trunk_clearance + 0.1
     return [-back, 0.0, -lowest]
+
+
+def hand_limits(payload: Payload) -> list[float]:
+    """Largest size of each free number of a hand's wrench [N, N m]."""
+    moment = min(STRONGEST, payload.hand_moment)
+    return ([STRONGEST] * 3 + [moment] * 3)[: GRASP_ROWS[payload.grasp]]
 
 
 def hand_wrench(free: Expression) -> Expression:

@@ -131,7 +131,7 @@ def _limits(agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene)
 def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float]:
     weight = np.array([0.0, 0.0, -GRAVITY * scene.payload.mass])
     force, moment = weight, np.cross(scene.payload.center_of_mass, weight)
-    push, passed = 0.0, 0.0
+    push, passed, carried = 0.0, 0.0, 0.0
     for agent in (scene.robot, scene.human):
         world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
         for side in SIDES:
@@ -140,11 +140,18 @@ def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float
             point = world_from_agent @ np.array(scene.payload.grasp_point(agent, side))
             force = force + on_load
             moment = moment + np.cross(point, on_load) - world_from_agent @ wrench[3:]
-            push += float(on_load[0]) if agent is scene.robot else 0.0
+            if agent is scene.robot:
+                push += float(on_load[0])
+                carried += float(on_load[2])
             passed = max(passed, float(np.abs(wrench[3:]).max()))
-    return {
+    found = {
         "load.force_balance": float(np.abs(force).max()),
         "load.moment_balance": float(np.abs(moment).max()),
         "load.push": max(0.0, abs(push) - scene.stance.push),
         "load.grasp": passed if scene.payload.grasp is Grasp.POINT else 0.0,
     }
+    if scene.payload.hand_moment < np.inf:
+        found["load.hand_moment"] = max(0.0, passed - scene.payload.hand_moment)
+    if scene.robot_share is not None:
+        found["load.share"] = abs(carried + scene.robot_share * float(weight[2]))
+    return found

@@ -23,7 +23,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from evodesign.design.policy import EFFORT_RATIO
 from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.errors import InputError
 from evodesign.posture.agent import TORQUE_UNIT, AgentBlock, agent_block
 from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker
@@ -31,8 +33,8 @@ from evodesign.posture.enforced import Enforced
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.joint_start import drawn_postures, standard_postures
 from evodesign.posture.load import load_constraints
-from evodesign.posture.posture import EffortWeights
 from evodesign.posture.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.posture.sharing import EffortWeights, shared_scene
 from evodesign.posture.solution import AgentPosture, Attempt, HeightSolution
 from evodesign.posture.tasks import Tasks, pressure_task
 from evodesign.records import Genome, Status
@@ -101,7 +103,8 @@ class JointProblem:
         settings: costs and limits.
         fixed: a genome that the design is held at; None to optimise it.
     Raises:
-        ModelError: symmetric postures of a scene that is not its own mirror image.
+        ModelError: symmetric postures of a scene that is not its own mirror image, or a design that chooses
+            the weights of what is minimised.
     """
 
     def __init__(
@@ -116,6 +119,9 @@ class JointProblem:
         self._space = space
         self._heights = tuple(heights)
         self._enforced = settings.enforced
+        if EFFORT_RATIO in space.policy_names:
+            found = "a cost whose weights are themselves to be chosen"
+            raise InputError("the joint problem", f"policy.{EFFORT_RATIO}", "one cost to be minimised", found)
         both = (whole(scene.robot), whole(scene.human))
         self._forms = symmetric_forms(scene) if settings.symmetric else both
         self._human = AgentModel.of(scene.human, scene.human.tree)
@@ -167,7 +173,7 @@ class JointProblem:
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
-        checker = Checker(self._scene, tree, self._human)
+        checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
         postures = [self._postures(raw, index) for index in range(len(self._heights))]
         found = [checker.residuals(p, h) for p, h in zip(postures, self._heights, strict=True)]
         kept = [self._enforced.kept(residuals) for residuals in found]
@@ -227,6 +233,7 @@ def _program(
     settings: JointSettings,
 ) -> Program:
     values = _values(space, ca.vertsplit(design.value))
+    scene = shared_scene(scene, space, values)
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
     variables, constraints = [design], list[Constraint]()

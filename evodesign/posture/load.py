@@ -3,7 +3,8 @@
     sum_i f_i + (0, 0, -m g) = 0        sum_i (r_i x f_i + n_i) + c x (0, 0, -m g) = 0
 
 with f_i and n_i the force and moment of hand i on the load (no moment with `point` grasps, as in the paper),
-r_i its grasp point and c the centre of mass, both from the box's centre.
+r_i its grasp point and c the centre of mass, both from the box's centre. Where the robot's share s is given,
+its hands carry s m g.
 
 Source: Sartore et al. 2022, Eq. 8, third row at rest.
 """
@@ -52,7 +53,7 @@ def push_of(robot: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression
 def load_constraints(
     scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]], *, symmetric: bool
 ) -> tuple[Constraint, ...]:
-    """Balance of the load and the bound on the push between the agents.
+    """Balance of the load, the bound on the push between the agents, and the robot's share where it is given.
 
     Args:
         scene: agents and load.
@@ -72,7 +73,12 @@ def load_constraints(
     rows = ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
     push = push_of(scene.robot, hand_wrenches[scene.robot.name])
     limit = scene.stance.push / LOAD_UNIT
-    return (
+    constraints = [
         Constraint("load.balance", rows / LOAD_UNIT, 0.0, 0.0),
         Constraint("load.push", push / LOAD_UNIT, -limit, limit),
-    )
+    ]
+    if scene.robot_share is not None:
+        carried = -sum(wrench[2] for wrench in hand_wrenches[scene.robot.name].values())
+        given = scene.robot_share * GRAVITY * scene.payload.mass
+        constraints.append(Constraint("load.share", (carried - given) / LOAD_UNIT, 0.0, 0.0))
+    return tuple(constraints)

@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, hand_wrench
+from evodesign.posture.agent import HAND_UNIT, hand_limits, hand_wrench
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Variable
 from evodesign.statics.scene import Scene
@@ -20,8 +20,6 @@ from evodesign.statics.scene import Scene
 __all__ = ["Hands", "free_hands"]
 
 Expression = Any
-
-STRONGEST = 300.0  # [N] and [N m], beyond any holding posture
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +37,7 @@ class Hands:
 
 def free_hands(form: Form, scene: Scene) -> Hands:
     """Hands that stand in for another agent of the same form (whole or half)."""
-    limit = [STRONGEST] * GRASP_ROWS[scene.payload.grasp]
+    limit = hand_limits(scene.payload)
     variables = {
         side: Variable.column(
             f"partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT

@@ -18,10 +18,11 @@ from evodesign.posture.cache import digest_of
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.human_value import HumanProblem, HumanValue
 from evodesign.posture.portfolio import Portfolio, Training, portfolio, spread_designs
-from evodesign.posture.posture import EffortWeights, PostureProblem, Symmetry
+from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import Preparation
 from evodesign.posture.program import IpoptOptions
 from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.sharing import EffortWeights
 from evodesign.posture.stored import (
     StoredPortfolio,
     StoredValue,
@@ -93,8 +94,8 @@ def stages(setting: Setting, heights: Sequence[float], *, seeds: bool) -> list[l
         heights: of the load's centre [m].
         seeds: whether solves begin at seeds.
     """
-    pushed = setting.scene.payload.grasp is Grasp.POINT and setting.scene.stance.push > 0.0
-    people = [Piece(Subject.PERSON, height) for height in heights if setting.symmetric and pushed]
+    alone = setting.symmetric and _push_alone(setting)
+    people = [Piece(Subject.PERSON, height) for height in heights if alone]
     if not seeds:
         return [people]
     return [
@@ -103,10 +104,18 @@ def stages(setting: Setting, heights: Sequence[float], *, seeds: bool) -> list[l
     ]
 
 
+def _push_alone(setting: Setting) -> bool:
+    """Whether the push is all that the load passes on, and no design weighs the person's effort anew."""
+    scene, chosen = setting.scene, setting.space.policy_names
+    shared = scene.robot_share is not None or chosen
+    return scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0 and not shared
+
+
 def key_of(setting: Setting, piece: Piece) -> str:
     """The digest under which a piece is kept."""
     scene, options = setting.scene, replace(setting.options, compiled=False)
-    numbers = (piece, scene.payload, scene.ground, scene.stance, setting.weights, options)
+    limits = (scene.ground, scene.stance, scene.robot_share)
+    numbers = (piece, scene.payload, *limits, setting.weights, options)
     ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
     if piece.subject is not Subject.PERSON:
         ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]

@@ -2,9 +2,10 @@
 
     maximise (minimise) h subject to the robot's constraints and the load's balance,
 
-with the person's hands free to push as they must: the robot's side alone decides. It is cheaper than a
-posture, so it is solved first and spares the heights that are out of reach. It has several optima (arms
-forward, arms raised sideways over the head), so it begins at seeds as a posture does.
+with the person's hands free to push as they must: the robot's side alone decides. A share of the load that is
+given binds here too; where it is free, a robot with rigid grasps may leave the load to the person. A reach
+problem is cheaper than a posture, so it is solved first and spares the heights that are out of reach. It has
+several optima (arms forward, arms raised sideways over the head), so it begins at seeds as a posture does.
 
 Source: DESIGN 3 (reach); feasibility constraints of Sartore et al. 2022, Eq. 14.
 """
@@ -24,6 +25,7 @@ from evodesign.posture.partner import free_hands
 from evodesign.posture.portfolio import Landscape
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Variable
+from evodesign.posture.sharing import shared_scene
 from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
@@ -132,6 +134,7 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
     height = Variable.column("height", [floor], [5.0], [1.0], 1.0)
+    scene = shared_scene(scene, space, ca.vertsplit(design))
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = agent_block(form, tree, scene, height.value)
     partner = free_hands(form, scene)

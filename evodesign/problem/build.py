@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Limits
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.joint import JointSettings
-from evodesign.posture.posture import EffortWeights, Symmetry
+from evodesign.posture.posture import Symmetry
 from evodesign.posture.program import IpoptOptions
+from evodesign.posture.sharing import EffortWeights
 from evodesign.problem.agents import human_agent, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
-from evodesign.problem.file import ProblemFile, SearchTable
+from evodesign.problem.file import PayloadTable, ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.sharing import check_policies, effort_weights, robot_share
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Payload, Scene, StanceLimits
+from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload, Scene, StanceLimits
 from evodesign.tree.model import Tree
 
 __all__ = ["Problem", "build_problem"]
@@ -95,6 +98,8 @@ def build_problem(source: ProblemSource) -> Problem:
         ground=_ground(tables),
         stance=_stance(tables, source),
     )
+    check_policies(tables, source)
+    scene = replace(scene, robot_share=robot_share(tables, source, scene))
     space = _space(tables, source, scene.robot.tree)
     symmetry = _symmetry(tables, source, scene, space)
     start: dict[str, Genome] = {}
@@ -102,7 +107,7 @@ def build_problem(source: ProblemSource) -> Problem:
         name = tables.search.start
         designs = read_designs(source.files[name], name, space, scene.robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
-    weights = EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human)
+    weights = effort_weights(tables)
     return Problem(
         name=tables.name,
         source=source,
@@ -153,7 +158,19 @@ def _payload(tables: ProblemFile, source: ProblemSource) -> Payload:
         if grasps is not None
         for side in SIDES
     }
-    return Payload(table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, points)
+    return Payload(
+        table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, _hand_moment(table, source), points
+    )
+
+
+def _hand_moment(table: PayloadTable, source: ProblemSource) -> float:
+    """What a rigid hand can bear [N m]; without a bound, infinite."""
+    if table.hand_moment_n_m is None:
+        return math.inf
+    if table.grasp is Grasp.POINT:
+        found = f"{table.hand_moment_n_m:g} for point grasps, which pass no moment"
+        raise InputError(source.path, "payload.hand_moment_n_m", "grasp = 'rigid' with it", found)
+    return table.hand_moment_n_m
 
 
 def _ground(tables: ProblemFile) -> Ground:
@@ -199,8 +216,11 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
         DesignParameter(ParameterKind.DENSITY, t.name, t.links, t.lower_kg_per_m3, t.upper_kg_per_m3)
         for t in tables.design.density
     ]
+    parameters += [
+        DesignParameter(ParameterKind.POLICY, t.name, (), t.lower, t.upper) for t in tables.design.policy
+    ]
     if not parameters:
-        raise InputError(source.path, "design", "a length or density parameter", "none")
+        raise InputError(source.path, "design", "a length, density or policy parameter", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
     for parameter in parameters:

@@ -13,6 +13,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem
+from evodesign.posture.sharing import shared_scene
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import DesignResult, objective_values
@@ -54,7 +55,7 @@ class Evaluator:
         """Reach and postures of a design given as one number per parameter."""
         scene = self.problem.scene
         tree = self.problem.space.resized(scene.robot.tree, values)
-        checker = Checker(scene, tree, self._human)
+        checker = Checker(shared_scene(scene, self.problem.space, values), tree, self._human)
         reach = self._reach.solve(values)
         heights = tuple(self._at_height(values, height, reach, checker) for height in self.problem.heights)
         return DesignResult(

@@ -40,6 +40,7 @@ class Payload:
         mass: [kg].
         center_of_mass: from the box's centre, in its frame [m].
         grasp: what every hand can pass to the load.
+        hand_moment: largest size of each component of the moment that a rigid hand passes [N m].
         grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
             it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
     """
@@ -48,6 +49,7 @@ class Payload:
     mass: float
     center_of_mass: Vector = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
+    hand_moment: float = math.inf
     grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
 
     @property
@@ -121,10 +123,20 @@ class Agent:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Robot, person and load, and the limits under which they stand."""
+    """Robot, person and load, and the limits under which they stand.
+
+    Args:
+        robot, human: the agents.
+        payload: the load.
+        ground: under all feet.
+        stance: limits of postures.
+        robot_share: part of the load's weight that the robot carries; None where statics or the posture
+            problem decides.
+    """
 
     robot: Agent
     human: Agent
     payload: Payload
     ground: Ground = field(default_factory=Ground)
     stance: StanceLimits = field(default_factory=StanceLimits)
+    robot_share: float | None = None
