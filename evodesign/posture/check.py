@@ -154,4 +154,6 @@ def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float
         found["load.hand_moment"] = max(0.0, passed - scene.payload.hand_moment)
     if scene.robot_share is not None:
         found["load.share"] = abs(carried + scene.robot_share * float(weight[2]))
+    elif scene.payload.grasp is Grasp.RIGID:
+        found["load.share"] = max(0.0, -carried, carried + float(weight[2]))
     return found

@@ -4,7 +4,8 @@
 
 with f_i and n_i the force and moment of hand i on the load (no moment with `point` grasps, as in the paper),
 r_i its grasp point and c the centre of mass, both from the box's centre. Where the robot's share s is given,
-its hands carry s m g.
+its hands carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best
+posture lifts the partner by the load with hundreds of newtons.
 
 Source: Sartore et al. 2022, Eq. 8, third row at rest.
 """
@@ -16,10 +17,11 @@ from dataclasses import replace
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from evodesign.posture.program import Constraint
 from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import SIDES, Agent, Scene
+from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.kinematics import vector
 
 __all__ = ["any_load", "load_constraints", "push_of"]
@@ -77,8 +79,12 @@ def load_constraints(
         Constraint("load.balance", rows / LOAD_UNIT, 0.0, 0.0),
         Constraint("load.push", push / LOAD_UNIT, -limit, limit),
     ]
+    carried = -sum(wrench[2] for wrench in hand_wrenches[scene.robot.name].values())
+    whole = GRAVITY * scene.payload.mass
     if scene.robot_share is not None:
-        carried = -sum(wrench[2] for wrench in hand_wrenches[scene.robot.name].values())
-        given = scene.robot_share * GRAVITY * scene.payload.mass
-        constraints.append(Constraint("load.share", (carried - given) / LOAD_UNIT, 0.0, 0.0))
+        missing = (carried - scene.robot_share * whole) / LOAD_UNIT
+        constraints.append(Constraint("load.share", missing, 0.0, 0.0))
+    elif scene.payload.grasp is Grasp.RIGID:
+        parts = ca.vertcat(carried, whole - carried) / LOAD_UNIT
+        constraints.append(Constraint("load.share", parts, 0.0, np.inf))
     return tuple(constraints)
