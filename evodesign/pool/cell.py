@@ -7,6 +7,7 @@ Executors with several workers would not do: when one of those dies, loky ends t
 
 from __future__ import annotations
 
+import os
 import re
 import time
 from concurrent.futures import Future
@@ -100,7 +101,7 @@ class Cell(Generic[A, R]):
             self._executor = ProcessPoolExecutor(
                 max_workers=1,
                 initializer=start_worker,
-                initargs=(self.factory, self._place, self._limits.memory),
+                initargs=(self.factory, self._place, self._limits.memory, os.getpid()),
                 env=ONE_THREAD,
             )
             self._executor.submit(build_here).add_done_callback(self._built)

@@ -10,7 +10,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import Future
 from typing import Generic, TypeVar
 
 from evodesign.pool.base import Finished
@@ -38,6 +38,8 @@ class Crew(Generic[A, R]):
         self._capacity = len(self._free) + door
         self._busy: dict[Future[Finished[R]], tuple[int, Cell[A, R]]] = {}
         self._waiting: deque[tuple[int, A]] = deque()
+        self._done: deque[Future[Finished[R]]] = deque()
+        self._news = threading.Lock()  # taken until there is news
         self._passed_on: set[Future[Finished[R]]] = set()
         self._lock = threading.RLock()
         self._ended = False
@@ -57,20 +59,21 @@ class Crew(Generic[A, R]):
     def more(self) -> bool:
         """Whether another cell is done."""
         with self._lock:
-            return any(future.done() for future in self._busy)
+            return any(future in self._busy for future in self._done)
 
     def next_end(self) -> Finished[R]:
-        """The first end to come, or the first that is too late."""
+        """The first end to come, or the first that is too late.
+
+        It waits for news, not for the futures: those are waited for with their locks taken, and an interrupt
+        at that moment would leave a lock behind that nobody gives back.
+        """
         while True:
-            with self._lock:
-                busy = dict(self._busy)
-            earliest = min(cell.due for _, cell in busy.values())
-            patience = min(LOOK_EVERY, max(0.0, earliest - time.perf_counter()))
-            done, _ = wait(busy, patience, FIRST_COMPLETED)
-            late = (future for future, (_, cell) in busy.items() if cell.due <= time.perf_counter())
-            future = next(iter(done), None) or next(late, None)
+            future = self._over()
             if future is not None:
                 return self._end(future)
+            with self._lock:
+                earliest = min(cell.due for _, cell in self._busy.values())
+            self._news.acquire(timeout=min(LOOK_EVERY, max(0.0, earliest - time.perf_counter())))
 
     def end_work(self) -> None:
         """End what is still at work."""
@@ -81,6 +84,16 @@ class Crew(Generic[A, R]):
         for cell in cells:
             cell.close()
 
+    def _over(self) -> Future[Finished[R]] | None:
+        """A future that is done, or else one that is too late; None while there is neither."""
+        with self._lock:
+            while self._done:
+                future = self._done.popleft()
+                if future in self._busy:
+                    return future
+            now = time.perf_counter()
+            return next((future for future, (_, cell) in self._busy.items() if cell.due <= now), None)
+
     def _start(self, cell: Cell[A, R]) -> None:
         """Give a cell what has waited longest. The lock is held."""
         index, argument = self._waiting.popleft()
@@ -89,16 +102,18 @@ class Crew(Generic[A, R]):
         future.add_done_callback(self._pass_on)
 
     def _pass_on(self, future: Future[Finished[R]]) -> None:
-        """Give the cell of a future that is done its next argument, in the executor's thread.
+        """Give the cell of a future that is done its next argument and tell of it, in the executor's thread.
 
         A cell that has lost its process, or whose end was taken already, is left to the caller's thread.
         """
-        if future.exception() is not None:
-            return
+        well = future.exception() is None
         with self._lock:
-            if self._waiting and not self._ended and future in self._busy:
+            if well and self._waiting and not self._ended and future in self._busy:
                 self._passed_on.add(future)
                 self._start(self._busy[future][1])
+            self._done.append(future)
+            if self._news.locked():
+                self._news.release()
 
     def _end(self, future: Future[Finished[R]]) -> Finished[R]:
         with self._lock:

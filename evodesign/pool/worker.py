@@ -109,7 +109,7 @@ class _Process:
     bench: Workbench[Any, Any]
 
 
-def start_worker(factory: Factory[A, R], place: str, memory: int | None) -> None:
+def start_worker(factory: Factory[A, R], place: str, memory: int | None, parent: int) -> None:
     """Make this process a worker: first thing that runs in it.
 
     Ctrl-C reaches every process of a terminal; the parent alone decides what it means. A worker whose
@@ -119,9 +119,10 @@ def start_worker(factory: Factory[A, R], place: str, memory: int | None) -> None
         factory: builds the task.
         place: first part of the worker's name.
         memory: that this process may have [byte]; None for what the machine has.
+        parent: its process number; a parent that is gone by now is seen to be.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with, args=(os.getppid(),), name="orphan-watch", daemon=True).start()
+    threading.Thread(target=_end_with, args=(parent,), name="orphan-watch", daemon=True).start()
     with suppress(OSError):  # not Linux, or not allowed
         Path("/proc/self/oom_score_adj").write_text(FIRST_TO_GO, encoding="ascii")
     if memory is not None:
