@@ -23,7 +23,8 @@ from evodesign.cli.ready import evaluator_of
 from evodesign.posture.preparation import Preparation
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import OBJECTIVES, DesignResult
+from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import DesignTangent, Sensitivities
 from evodesign.problem.source import read_source
 

@@ -114,8 +114,8 @@ class ReachOutcome(Record, frozen=True):
     reason: str
 
 
-class HeightOutcome(Record, frozen=True):
-    """One posture problem of one design, in short."""
+class HeightOutcome(Record, frozen=True, omit_defaults=True):
+    """One posture problem of one design, in short; person and load are named where there are several."""
 
     height_m: float
     status: Status
@@ -124,6 +124,8 @@ class HeightOutcome(Record, frozen=True):
     human_torque_norm: float | None
     iterations: int
     residual: float | None
+    human_name: str = ""
+    payload_name: str = ""
 
 
 class Assessment(Record, frozen=True):
@@ -163,11 +165,13 @@ class AgentDetail(Record, frozen=True):
     foot_wrenches: dict[str, tuple[float, ...]]
 
 
-class HeightDetail(Record, frozen=True):
-    """The postures at one height of the load, by the agents' names."""
+class HeightDetail(Record, frozen=True, omit_defaults=True):
+    """The postures at one height of the load, by the agents' names; who and what as in `HeightOutcome`."""
 
     height_m: float
     agents: dict[str, AgentDetail]
+    human_name: str = ""
+    payload_name: str = ""
 
 
 class Assessed(Record, frozen=True):

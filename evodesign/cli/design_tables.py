@@ -11,7 +11,7 @@ from evodesign.cli.height_table import heights_table
 from evodesign.cli.output import figure
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
-from evodesign.problem.objectives import DesignResult
+from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
 

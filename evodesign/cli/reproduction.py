@@ -200,14 +200,14 @@ def _published(problem: Problem) -> Published:
 
 def _robot(problem: Problem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
     tree = problem.space.resized(problem.scene.robot.tree, solution.design)
-    heights = tuple(detail_of(height) for height in solution.heights if height.solved)
+    heights = tuple(detail_of(height, problem.scene) for height in solution.heights if height.solved)
     return ReproducedRobot(name, title, Cast.of(problem.scene, tree), heights)
 
 
 def _original(problem: Problem, jobs: int) -> tuple[ReproducedRobot, float | None]:
     """The unscaled robot at its own best postures, and its reach [m]."""
     result = evaluator_of(problem, jobs).solve(problem.space.unscaled(problem.scene.robot.tree))
-    heights = tuple(detail_of(height) for height in result.heights if height.solved)
+    heights = tuple(detail_of(height, problem.scene) for height in result.heights if height.solved)
     robot = ReproducedRobot(ORIGINAL, "the robot as it is", Cast.of(problem.scene, result.tree), heights)
     return robot, result.reach.highest
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import console, figure, print_json
@@ -57,18 +58,27 @@ def _seeds_table(problem: Problem, known: Preparation) -> Table:
 
 def _people_table(problem: Problem, known: Preparation) -> Table:
     table = Table(title="the person's part V(X), X the push between the agents", title_justify="left")
+    several = len(problem.scenes) > 1
+    if several:
+        table.add_column("person and load")
     for column in ("height", "known", "largest error"):
         table.add_column(column, justify="right")
-    errors = {value.height: value.error for value in known.values}
-    for height in problem.heights:
-        error = errors.get(height)
-        shown = "-" if error is None else f"{figure(error * COST_UNIT)} N^2 m^2"
-        table.add_row(f"{height:g} m", "no: solved jointly" if error is None else "yes", shown)
+    for label, height, error in _errors(problem, known):
+        shown = "-" if error is None else f"{figure(error)} N^2 m^2"
+        row = (f"{height:g} m", "no: solved jointly" if error is None else "yes", shown)
+        table.add_row(*([escape(label)] if several else []), *row)
     return table
 
 
+def _errors(problem: Problem, known: Preparation) -> Iterator[tuple[str, float, float | None]]:
+    """Each scene's label and height [m] with the error of its value function [N^2 m^2], if it has one."""
+    errors = {(value.scene, value.height): value.error * COST_UNIT for value in known.values}
+    for number, scene in enumerate(problem.scenes):
+        for height in problem.heights:
+            yield scene.label, height, errors.get((number, height))
+
+
 def _json(problem: Problem, known: Preparation) -> dict[str, Any]:
-    errors = {value.height: value.error * COST_UNIT for value in known.values}
     return {
         "problem": problem.name,
         "seeds": [
@@ -83,7 +93,12 @@ def _json(problem: Problem, known: Preparation) -> dict[str, Any]:
             for name, found, unit in _landscapes(problem, known)
         ],
         "human_values": [
-            {"height_m": height, "known": height in errors, "error_n2_m2": errors.get(height)}
-            for height in problem.heights
+            {
+                **({"scene": label} if label else {}),
+                "height_m": height,
+                "known": error is not None,
+                "error_n2_m2": error,
+            }
+            for label, height, error in _errors(problem, known)
         ],
     }

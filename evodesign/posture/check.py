@@ -11,6 +11,7 @@ Source: Sartore et al. 2022, Eq. 5 at rest; pinocchio `nonLinearEffects` at rest
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,12 @@ class Checker:
     def __init__(self, scene: Scene, robot_tree: Tree, human: AgentModel) -> None:
         self._scene = scene
         self._models = (AgentModel.of(scene.robot, robot_tree), human)
+
+    def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
+        """The check of the same robot in another scene."""
+        other = copy(self)
+        other._scene, other._models = scene, (self._models[0], human)
+        return other
 
     def residuals(self, postures: Mapping[str, AgentPosture], height: float) -> dict[str, float]:
         """Largest violation of each kind, SI units; zero or rounding for a posture that holds.

@@ -60,6 +60,7 @@ class HumanValue:
         coefficients: of V in Chebyshev polynomials of X / push.
         starts: the person's optimum at each node, as starting values, with its X [N].
         error: largest difference from the envelope half-way between nodes, in the cost's unit.
+        scene: which of the problem's scenes it is of, from zero.
     """
 
     height: float
@@ -67,6 +68,7 @@ class HumanValue:
     coefficients: tuple[float, ...]
     starts: tuple[tuple[float, Mapping[str, Array]], ...]
     error: float
+    scene: int = 0
 
     def cost(self, push: Any) -> Any:
         """V at a push X [N], a number or an expression."""

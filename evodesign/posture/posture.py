@@ -33,6 +33,7 @@ from evodesign.posture.load import any_load, load_constraints
 from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.program import IpoptOptions, Program, RawSolution
+from evodesign.posture.retold import start_from
 from evodesign.posture.sharing import EffortWeights, shared_scene, shared_weights
 from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.solution import AgentPosture, HeightSolution
@@ -93,17 +94,26 @@ class PostureProblem:
                     self._forms, scene, space, both, options, known.values, self._shelf
                 )
 
-    def solve(self, values: Sequence[float], height: float, checker: Checker) -> HeightSolution:
+    def solve(
+        self,
+        values: Sequence[float],
+        height: float,
+        checker: Checker,
+        alike: Mapping[str, AgentPosture] | None = None,
+    ) -> HeightSolution:
         """The best checked posture of a design at one height.
 
         Args:
             values: one number per design parameter.
             height: of the load's centre [m].
             checker: the independent check, made for this design.
+            alike: postures of the same design with the same load beside another person, which then take the
+                place of the seeds.
         """
         trials: list[Trial] = []
         for program, seeds in self._programs(height):
-            trials.append(program.trial(values, height, seeds, checker))
+            starts = program.starts(seeds, alike)
+            trials.append(program.trial(values, height, starts, checker))
             if trials[-1].best is not None:
                 break
         best = trials[-1].best
@@ -174,11 +184,21 @@ class _Postures:
         """The program's cost at a height [m]."""
         return Landscape(self._solver, (height, self._mass), self._fixed, *NEAR)
 
+    def starts(
+        self, seeds: Sequence[Start], alike: Mapping[str, AgentPosture] | None
+    ) -> list[tuple[str, Start]]:
+        """Known postures, or the seeds, or the fixed starts if there are none."""
+        known = start_from(self._forms, self._solver.program, alike) if alike else None
+        return named_starts(self._name, self._solver, seeds, self._fixed, known)
+
     def trial(
-        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
+        self,
+        values: Sequence[float],
+        height: float,
+        starts: Sequence[tuple[str, Start]],
+        checker: Checker,
     ) -> Trial:
-        """What the seeds lead to, or the fixed starts if there are none."""
-        starts = named_starts(self._name, seeds, self._fixed)
+        """What named starts lead to."""
         ends = [(name, self._solver.solve([*values, height, self._mass], start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 
@@ -186,12 +206,7 @@ class _Postures:
         self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
     ) -> Trial:
         """What known whole postures lead to."""
-        rows = {v.name: v.symbol.numel() for v in self._solver.program.variables}
-        start = {
-            name: value
-            for form in self._forms
-            for name, value in form.start(postures[form.agent.name], rows).items()
-        }
+        start = start_from(self._forms, self._solver.program, postures)
         end = self._solver.solve([*values, height, self._mass], start)
         return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
 

@@ -6,7 +6,7 @@ It follows from the problem alone and consists of plain numbers, so it travels t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from evodesign.posture.human_value import HumanValue
 from evodesign.posture.portfolio import Coverage, Portfolio
@@ -22,8 +22,10 @@ NO_SEEDS = Portfolio((), Coverage(0, 0, 0.0))
 class Preparation:
     """What is known; left out, everything is solved jointly and from fixed starts.
 
+    Seeds serve every scene: they are starting values, and hardly depend on who holds what.
+
     Args:
-        values: the person's value functions, for the heights that have one.
+        values: the people's value functions, for the scenes and heights that have one.
         highest, lowest: seeds of the reach problem.
         postures: seeds of the posture problem, by height [m].
     """
@@ -32,6 +34,10 @@ class Preparation:
     highest: Portfolio = NO_SEEDS
     lowest: Portfolio = NO_SEEDS
     postures: Mapping[float, Portfolio] = field(default_factory=dict)
+
+    def of_scene(self, scene: int) -> Preparation:
+        """What is known of one of the problem's scenes."""
+        return replace(self, values=tuple(value for value in self.values if value.scene == scene))
 
     def seeds(self, height: float) -> tuple[Start, ...]:
         """The posture problem's seeds at a height [m]; none where none are known."""

@@ -61,20 +61,36 @@ class Subject(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of a preparation, at a height [m]; one that belongs to none has the height 0."""
+    """A part of a preparation.
+
+    Args:
+        subject: what it is about.
+        height: of the load [m]; 0 if it belongs to none.
+        scene: which of the problem's scenes it is of, or is worked out in, from zero.
+        label: who and what that is where there are several.
+    """
 
     subject: Subject
     height: float = 0.0
+    scene: int = 0
+    label: str = ""
 
     def __str__(self) -> str:
-        return f"{self.subject} at {self.height:g} m" if self.height else self.subject
+        name = f"{self.subject} at {self.height:g} m" if self.height else str(self.subject)
+        return f"{name}, {self.label}" if self.label else name
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What the pieces of a problem follow from; as for `PostureProblem`."""
+    """What the pieces of a problem follow from; as for `PostureProblem`.
 
-    scene: Scene
+    Args:
+        scenes: every person with every load.
+        middle: the scene that seeds are made in.
+    """
+
+    scenes: tuple[Scene, ...]
+    middle: int
     space: DesignSpace
     weights: EffortWeights
     options: IpoptOptions
@@ -94,28 +110,33 @@ def stages(setting: Setting, heights: Sequence[float], *, seeds: bool) -> list[l
         heights: of the load's centre [m].
         seeds: whether solves begin at seeds.
     """
-    alone = setting.symmetric and _push_alone(setting)
-    people = [Piece(Subject.PERSON, height) for height in heights if alone]
+    people = [
+        Piece(Subject.PERSON, height, number, scene.label)
+        for number, scene in enumerate(setting.scenes)
+        for height in heights
+        if setting.symmetric and _push_alone(scene, setting.space)
+    ]
     if not seeds:
         return [people]
+    middle = setting.middle
     return [
-        [Piece(Subject.HIGHEST), Piece(Subject.LOWEST), *people],
-        [Piece(Subject.POSTURE, height) for height in heights],
+        [Piece(Subject.HIGHEST, scene=middle), Piece(Subject.LOWEST, scene=middle), *people],
+        [Piece(Subject.POSTURE, height, middle) for height in heights],
     ]
 
 
-def _push_alone(setting: Setting) -> bool:
+def _push_alone(scene: Scene, space: DesignSpace) -> bool:
     """Whether the push is all that the load passes on, and no design weighs the person's effort anew."""
-    scene, chosen = setting.scene, setting.space.policy_names
-    shared = scene.robot_share is not None or chosen
+    shared = scene.robot_share is not None or space.policy_names
     return scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0 and not shared
 
 
 def key_of(setting: Setting, piece: Piece) -> str:
     """The digest under which a piece is kept."""
-    scene, options = setting.scene, replace(setting.options, compiled=False)
+    scene, options = setting.scenes[piece.scene], replace(setting.options, compiled=False)
+    load = replace(scene.payload, label="")
     limits = (scene.ground, scene.stance, scene.robot_share)
-    numbers = (piece, scene.payload, *limits, setting.weights, options)
+    numbers = (piece.subject, piece.height, load, *limits, setting.weights, options)
     ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
     if piece.subject is not Subject.PERSON:
         ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]
@@ -140,8 +161,8 @@ def with_piece(known: Preparation, piece: Piece, content: bytes) -> Preparation 
     try:
         if piece.subject is Subject.PERSON:
             value = value_of(msgspec.json.decode(content, type=StoredValue))
-            others = (*known.values, *([value] if value else []))
-            return replace(known, values=tuple(sorted(others, key=lambda value: value.height)))
+            others = (*known.values, *([replace(value, scene=piece.scene)] if value else []))
+            return replace(known, values=tuple(sorted(others, key=lambda value: (value.scene, value.height))))
         found = portfolio_of(msgspec.json.decode(content, type=StoredPortfolio))
     except msgspec.DecodeError:
         return None
@@ -153,12 +174,13 @@ def with_piece(known: Preparation, piece: Piece, content: bytes) -> Preparation 
 
 
 def _person(setting: Setting, piece: Piece) -> HumanValue | None:
-    form = symmetric_forms(setting.scene)[1]
-    return HumanProblem(form, setting.scene, setting.weights.human, setting.options).value(piece.height)
+    scene = setting.scenes[piece.scene]
+    form = symmetric_forms(scene)[1]
+    return HumanProblem(form, scene, setting.weights.human, setting.options).value(piece.height)
 
 
 def _seeds(setting: Setting, piece: Piece, known: Preparation) -> Portfolio:
-    scene, space = setting.scene, setting.space
+    scene, space, known = setting.scenes[piece.scene], setting.space, known.of_scene(piece.scene)
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
     reach = ReachProblem(scene, space, options, symmetric=setting.symmetric, known=known)
     if piece.subject is not Subject.POSTURE:

@@ -31,7 +31,7 @@ from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem"]
+__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem", "common_reach"]
 
 COMFORT = 1e-4
 """Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
@@ -66,6 +66,17 @@ class Reach:
         if self.lowest is None or self.highest is None:
             return None
         return max(height - self.highest, self.lowest - height, 0.0)
+
+
+def common_reach(reaches: Sequence[Reach]) -> Reach:
+    """The interval that several loads have in common; the first that failed, if one did."""
+    failed = [reach for reach in reaches if reach.lowest is None or reach.highest is None]
+    if failed or len(reaches) == 1:
+        return (failed or reaches)[0]
+    lowest = max(reach.lowest for reach in reaches if reach.lowest is not None)
+    highest = min(reach.highest for reach in reaches if reach.highest is not None)
+    reason = f"holds every load from {lowest:.3f} to {highest:.3f} m"
+    return Reach(lowest, highest, Status.SOLVED, reason)
 
 
 class ReachProblem:

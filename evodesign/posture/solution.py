@@ -75,6 +75,7 @@ class HeightSolution:
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         start: name of the start that led to the postures; empty unless solved.
+        scene: which of the problem's scenes it is in, from zero.
     """
 
     height: float
@@ -84,6 +85,7 @@ class HeightSolution:
     residuals: Mapping[str, float]
     attempts: tuple[Attempt, ...]
     start: str
+    scene: int = 0
 
     @property
     def solved(self) -> bool:

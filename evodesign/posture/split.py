@@ -12,7 +12,7 @@ Source: DESIGN 3.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -29,7 +29,9 @@ from evodesign.posture.load import any_load, load_constraints, push_of
 from evodesign.posture.partner import free_hands
 from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.program import IpoptOptions, Program, RawSolution
+from evodesign.posture.retold import start_from
 from evodesign.posture.shelf import Shelf, likeness
+from evodesign.posture.solution import AgentPosture
 from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
@@ -66,12 +68,22 @@ class SplitPostures:
         """The robot's cost at a height [m], with V(X)."""
         return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
 
+    def starts(
+        self, seeds: Sequence[Start], alike: Mapping[str, AgentPosture] | None
+    ) -> list[tuple[str, Start]]:
+        """The robot's known posture, or the seeds, or the fixed starts if there are none."""
+        known = start_from(self._forms, self._robot.program, alike) if alike else None
+        return named_starts(SPLIT, self._robot, seeds, self._fixed, known)
+
     def trial(
-        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
+        self,
+        values: Sequence[float],
+        height: float,
+        starts: Sequence[tuple[str, Start]],
+        checker: Checker,
     ) -> Trial:
-        """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
+        """What named starts lead the robot to, with the person beside it."""
         parameters = [*values, *self._beside(height)]
-        starts = named_starts(SPLIT, seeds, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 

@@ -28,9 +28,23 @@ def fixed_starts(solver: Solver) -> tuple[Start, ...]:
     return tuple(_start(solver, shares) for shares in SHARES)
 
 
-def named_starts(program: str, seeds: Sequence[Start], fixed: Sequence[Start]) -> list[tuple[str, Start]]:
-    """A program's seeds, or its fixed starts if there are none, each with its name in results."""
-    kind, starts = ("seed", seeds) if seeds else ("start", fixed)
+def named_starts(
+    program: str, solver: Solver, seeds: Sequence[Start], fixed: Sequence[Start], known: Start | None
+) -> list[tuple[str, Start]]:
+    """Where a program begins, each start with its name in results.
+
+    Args:
+        program: its name.
+        solver: of it; seeds that do not fit its variables, made for other agents, are left out.
+        seeds: of the problem.
+        fixed: starts where no seed fits.
+        known: a posture that takes the place of all others.
+    """
+    if known is not None:
+        return [(f"{program}: alike", known)]
+    rows = {variable.name: variable.symbol.numel() for variable in solver.program.variables}
+    fitting = [seed for seed in seeds if all(len(v) == rows[n] for n, v in seed.items() if n in rows)]
+    kind, starts = ("seed", fitting) if fitting else ("start", fixed)
     return [(f"{program}: {kind} {number}", start) for number, start in enumerate(starts, 1)]
 
 

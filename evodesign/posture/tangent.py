@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -26,7 +26,8 @@ from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
 from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.posture import SYMMETRIC, posture_program
-from evodesign.posture.program import IpoptOptions, Program
+from evodesign.posture.program import IpoptOptions
+from evodesign.posture.retold import start_from
 from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
 from evodesign.posture.sharing import EffortWeights
 from evodesign.posture.solution import AgentPosture, HeightSolution
@@ -138,7 +139,7 @@ class _Joint:
 
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this program might have found."""
-        start = _start(self._forms, self._both.program, solution.postures)
+        start = start_from(self._forms, self._both.program, solution.postures)
         found = self._both.at([*design, solution.height, self._mass], start)
         if isinstance(found, Kink):
             return found
@@ -174,7 +175,7 @@ class _Split:
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this pair of programs might have found."""
         value = self._values[solution.height]
-        start = _start(self._forms, self._robot.program, solution.postures)
+        start = start_from(self._forms, self._robot.program, solution.postures)
         beside = (solution.height, self._scene.payload.mass, *value.coefficients)
         robot = self._robot.at([*design, *beside], start)
         if isinstance(robot, Kink):
@@ -209,7 +210,7 @@ class _Split:
     def _person(self, solution: HeightSolution, push: float, *, held: bool) -> Optimum | Kink:
         """The person under a push [N]; one that is held at its limit does not move the person."""
         parameters = [solution.height, self._scene.payload.mass, push]
-        start = _start(self._forms, self._human.program, solution.postures)
+        start = start_from(self._forms, self._human.program, solution.postures)
         raw = self._human.solve(parameters, start)
         if not held:
             return self._human.of(parameters, raw)
@@ -253,24 +254,3 @@ def _of(form: Form, values: Mapping[str, Array]) -> dict[str, Array]:
     """The values of a form's agent, by their name without the agent's."""
     prefix = f"{form.agent.name}."
     return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
-
-
-def _start(forms: Forms, program: Program, postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
-    """Whole postures as values of a program's variables; hands of an absent agent are the partner's."""
-    counts = {variable.name: variable.symbol.numel() for variable in program.variables}
-    known: dict[str, Any] = {}
-    for form in forms:
-        posture, agent = postures[form.agent.name], form.agent.name
-        present = f"{agent}.joints" in counts
-        hands = {
-            f"{agent if present else 'partner'}.{side}_hand": posture.hand_wrenches[side]
-            for side in form.sides
-        }
-        known |= {name: wrench[: counts[name]] for name, wrench in hands.items()}
-        if present:
-            known |= {f"{agent}.{side}_foot": posture.foot_wrenches[side] for side in form.sides}
-            known[f"{agent}.base_position"] = posture.base_position
-            known[f"{agent}.base_angles"] = posture.base_angles
-            known[f"{agent}.joints"] = [posture.joints[name] for name in form.joints]
-            known[f"{agent}.torques"] = [posture.torques[name] for name in form.joints]
-    return known

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
@@ -15,7 +16,7 @@ from evodesign.tree.human import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
-__all__ = ["human_agent", "refuse_unknown", "robot_agent"]
+__all__ = ["human_agents", "refuse_unknown", "robot_agent"]
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
@@ -23,45 +24,65 @@ def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     table = tables.robot
     bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.SHAPES)
     tree = _with_frames(bare, table.frames, ROBOT, source)
-    return _agent(ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    return _agent(ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
 
 
-def human_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
-    """The person of the `[human]` table: generated, or read from a URDF."""
-    table = tables.human
+def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...]:
+    """The people of the `human` tables; where there are several, each has a label of its own."""
+    people = [_human(key, table, source) for key, table in tables.people.items()]
+    if len(people) == 1:
+        return tuple(people)
+    labels: list[str] = []
+    for (key, table), person in zip(tables.people.items(), people, strict=True):
+        label = table.name or _told(table, person)
+        if label in labels:
+            raise InputError(source.path, f"{key}.name", "a name of its own", f"'{label}' twice")
+        labels.append(label)
+    return tuple(replace(person, label=label) for person, label in zip(people, labels, strict=True))
+
+
+def _told(table: HumanTable, person: Agent) -> str:
+    """What a person without a name is called."""
+    if table.urdf is not None:
+        return person.tree.name
+    return f"{table.sex} {table.stature_m:g} m {table.mass_kg:g} kg"
+
+
+def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
+    """A person: generated, or read from a URDF."""
     if table.urdf is None:
-        return _generated(table, source)
-    for key in ("stature_m", "mass_kg", "sex"):
-        if getattr(table, key) is not None:
-            raise InputError(source.path, f"human.{key}", "either urdf or stature, mass and sex", "both")
+        return _generated(key, table, source)
+    for figure in ("stature_m", "mass_kg", "sex"):
+        if getattr(table, figure) is not None:
+            raise InputError(source.path, f"{key}.{figure}", "either urdf or stature, mass and sex", "both")
     if table.hands is None or table.soles is None:
-        key = "human.hands" if table.hands is None else "human.soles"
-        raise InputError(source.path, key, "the frames of this URDF", "nothing")
+        lacking = "hands" if table.hands is None else "soles"
+        raise InputError(source.path, f"{key}.{lacking}", "the frames of this URDF", "nothing")
     bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.FILE)
-    tree = _with_frames(bare, table.frames, HUMAN, source)
-    return _agent(HUMAN, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    tree = _with_frames(bare, table.frames, key, source)
+    return _agent(HUMAN, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
 
 
-def _generated(table: HumanTable, source: ProblemSource) -> Agent:
+def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     figures = {"stature_m": table.stature_m, "mass_kg": table.mass_kg, "sex": table.sex}
     if table.stature_m is None or table.mass_kg is None or table.sex is None:
-        missing = next(key for key, value in figures.items() if value is None)
-        raise InputError(source.path, f"human.{missing}", "this key, or urdf", "nothing")
+        missing = next(figure for figure, value in figures.items() if value is None)
+        raise InputError(source.path, f"{key}.{missing}", "this key, or urdf", "nothing")
     try:
         someone = Person(table.stature_m, table.mass_kg, table.sex)
     except InputError as error:
-        raise InputError(source.path, f"human.{error.key}", error.wanted, error.found) from error
-    tree = _with_frames(human_tree(someone), table.frames, HUMAN, source)
+        raise InputError(source.path, f"{key}.{error.key}", error.wanted, error.found) from error
+    tree = _with_frames(human_tree(someone), table.frames, key, source)
     hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
     soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
     joints = table.joints or DEFAULT_JOINTS
-    return _agent(HUMAN, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    return _agent(HUMAN, key, tree, hands, soles, table.trunk or TRUNK, joints, source)
 
 
-def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], agent: str, source: ProblemSource) -> Tree:
+def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], table: str, source: ProblemSource) -> Tree:
     """The tree with the frames that the problem file adds, each fixed to a link."""
     for position, frame in enumerate(frames):
-        key = f"{agent}.frames[{position}]"
+        key = f"{table}.frames[{position}]"
         refuse_unknown(source, f"{key}.link", "link", frame.link, tree.link_by_name, tree.name)
         if frame.name in tree.link_by_name:
             raise InputError(source.path, f"{key}.name", "a new name", f"'{frame.name}' of '{tree.name}'")
@@ -73,6 +94,7 @@ def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], agent: str, source:
 
 def _agent(
     name: str,
+    table: str,
     tree: Tree,
     hands: HandsTable,
     soles: SolesTable,
@@ -86,11 +108,11 @@ def _agent(
         **{f"trunk[{i}]": frame for i, frame in enumerate(trunk)},
     }
     for key, frame in frames.items():
-        refuse_unknown(source, f"{name}.{key}", "link", frame, tree.link_by_name, tree.name)
+        refuse_unknown(source, f"{table}.{key}", "link", frame, tree.link_by_name, tree.name)
     for position, joint in enumerate(joints):
-        refuse_unknown(source, f"{name}.joints[{position}]", "moving joint", joint, tree.actuated, tree.name)
+        refuse_unknown(source, f"{table}.joints[{position}]", "moving joint", joint, tree.actuated, tree.name)
     if not (joints or tree.actuated):
-        raise InputError(source.path, f"{name}.urdf", "a joint that can move", "none")
+        raise InputError(source.path, f"{table}.urdf", "a joint that can move", "none")
     return Agent(
         name=name,
         tree=tree,

@@ -5,6 +5,9 @@ Positions and hand wrenches are in the agent's own frame, which looks along +x a
 wrench is force, then moment, acting on the agent: at a hand about the grasp point, at a foot about the sole's
 origin and in the sole frame.
 
+Where a problem has several people or loads, `heights` has an entry for each case, with its `human_name` and
+`payload_name`.
+
 `sensitivities` holds, for each objective that exists, how it moves with the design:
 
     {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
@@ -22,10 +25,10 @@ from typing import Any
 
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
-from evodesign.problem.objectives import DesignResult
+from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
-from evodesign.statics.scene import SIDES
+from evodesign.statics.scene import SIDES, Scene
 
 __all__ = ["answer"]
 
@@ -51,7 +54,7 @@ def answer(
             "status": str(result.reach.status),
             "reason": result.reach.reason,
         },
-        "heights": [_height(height) for height in result.heights],
+        "heights": [_height(height, result.scenes[height.scene]) for height in result.heights],
         "sensitivities": {
             name: {"gradient": found.gradient, "kinks": list(found.kinks)}
             for name, found in sensitivities.items()
@@ -59,9 +62,11 @@ def answer(
     }
 
 
-def _height(height: HeightSolution) -> dict[str, Any]:
+def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
+    labels = {"human_name": scene.human.label, "payload_name": scene.payload.label}
     shown: dict[str, Any] = {
         "height_m": height.height,
+        **{name: label for name, label in labels.items() if label},
         "status": str(height.status),
         "reason": height.reason,
         "start": height.start,

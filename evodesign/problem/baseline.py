@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from evodesign.errors import InputError
 from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
 from evodesign.posture.joint import JointProblem, JointSolution
@@ -17,7 +18,8 @@ from evodesign.posture.reach import Reach
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
-from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.problem.objectives import objective_values
+from evodesign.problem.result import DesignResult
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
 __all__ = ["Baseline", "BaselineFactory"]
@@ -33,6 +35,10 @@ class Baseline:
 
     def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
         self._problem = problem
+        if len(problem.scenes) > 1:
+            found = f"{len(problem.scenes)} pairs of a person and a load"
+            wanted = "one person and one load in the joint problem"
+            raise InputError(problem.source.path, "human", wanted, found)
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
@@ -52,7 +58,7 @@ class Baseline:
         """What the design in which a start ended is worth, with its postures."""
         solution = self.solve(start)
         result = self.result(solution)
-        heights = tuple(detail_of(height) for height in result.heights if height.solved)
+        heights = tuple(detail_of(height, self._problem.scene) for height in result.heights if height.solved)
         assessment = Assessment(
             design=dict(self._problem.space.named(solution.design)),
             objectives=objective_values(self._problem.objectives, result) if solution.solved else {},
@@ -61,7 +67,7 @@ class Baseline:
             reason="solved" if solution.solved else solution.heights[0].reason,
             reach=reach_of(result.reach),
             heights=tuple(
-                outcome_of(replace(height, reason=_reason(height, violations)))
+                outcome_of(replace(height, reason=_reason(height, violations)), self._problem.scene)
                 for height, violations in zip(result.heights, solution.violations, strict=True)
             ),
         )
@@ -71,7 +77,7 @@ class Baseline:
         """A solution as the result of its design."""
         problem = self._problem
         return DesignResult(
-            robot=problem.scene.robot,
+            scenes=problem.scenes,
             space=problem.space,
             values=solution.design,
             tree=problem.space.resized(problem.scene.robot.tree, solution.design),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
@@ -13,17 +13,18 @@ from evodesign.posture.joint import JointSettings
 from evodesign.posture.posture import Symmetry
 from evodesign.posture.program import IpoptOptions
 from evodesign.posture.sharing import EffortWeights
-from evodesign.problem.agents import human_agent, refuse_unknown, robot_agent
+from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
-from evodesign.problem.file import PayloadTable, ProblemFile, SearchTable
+from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
-from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.loads import payloads
+from evodesign.problem.objectives import OBJECTIVES, objective_kind
 from evodesign.problem.sharing import check_policies, effort_weights, robot_share
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload, Scene, StanceLimits
+from evodesign.statics.scene import Scene, StanceLimits
 from evodesign.tree.model import Tree
 
 __all__ = ["Problem", "build_problem"]
@@ -38,7 +39,7 @@ class Problem:
     Args:
         name: of the problem.
         source: its files, from which any worker builds it again.
-        scene: agents, load, ground and stance.
+        scenes: every person with every load, the robot, ground and stance; all loads of a person in a row.
         space: design parameters.
         heights: required load heights [m].
         weights: of the agents' efforts in the posture problem.
@@ -55,7 +56,7 @@ class Problem:
 
     name: str
     source: ProblemSource
-    scene: Scene
+    scenes: tuple[Scene, ...]
     space: DesignSpace
     heights: tuple[float, ...]
     weights: EffortWeights
@@ -68,6 +69,16 @@ class Problem:
     start: tuple[Genome, ...]
     joint: JointSettings
     joint_start: tuple[Genome, ...]
+
+    @property
+    def scene(self) -> Scene:
+        """The first scene: all of them have its robot, ground and stance."""
+        return self.scenes[0]
+
+    @property
+    def middle(self) -> int:
+        """The scene in the middle of the list, which stands for all where one must do."""
+        return len(self.scenes) // 2
 
     def settings(
         self, algorithm: str, population: int, seed: int, asynchronous: bool = False
@@ -91,27 +102,25 @@ def build_problem(source: ProblemSource) -> Problem:
         InputError: naming file, key, what was wanted and what was found.
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
-    scene = Scene(
-        robot=robot_agent(tables, source),
-        human=human_agent(tables, source),
-        payload=_payload(tables, source),
-        ground=_ground(tables),
-        stance=_stance(tables, source),
+    robot, ground, stance = robot_agent(tables, source), _ground(tables), _stance(tables, source)
+    loads = payloads(tables, source)
+    scenes = tuple(
+        Scene(robot, human, load, ground, stance) for human in human_agents(tables, source) for load in loads
     )
     check_policies(tables, source)
-    scene = replace(scene, robot_share=robot_share(tables, source, scene))
-    space = _space(tables, source, scene.robot.tree)
-    symmetry = _symmetry(tables, source, scene, space)
+    scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
+    space = _space(tables, source, robot.tree)
+    symmetry = _symmetry(tables, source, scenes, space)
     start: dict[str, Genome] = {}
     if tables.search.start is not None:
         name = tables.search.start
-        designs = read_designs(source.files[name], name, space, scene.robot.tree)
+        designs = read_designs(source.files[name], name, space, robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
     weights = effort_weights(tables)
     return Problem(
         name=tables.name,
         source=source,
-        scene=scene,
+        scenes=scenes,
         space=space,
         heights=_heights(tables, source),
         weights=weights,
@@ -129,7 +138,9 @@ def build_problem(source: ProblemSource) -> Problem:
     )
 
 
-def _symmetry(tables: ProblemFile, source: ProblemSource, scene: Scene, space: DesignSpace) -> Symmetry:
+def _symmetry(
+    tables: ProblemFile, source: ProblemSource, scenes: Sequence[Scene], space: DesignSpace
+) -> Symmetry:
     """The kind of postures that is asked for; a scene that is not its own mirror image is refused by name."""
     asked = tables.solver.symmetry if source.symmetry is None else source.symmetry
     place, key = (source.path, "solver.symmetry") if source.symmetry is None else ("--symmetry", "")
@@ -138,39 +149,13 @@ def _symmetry(tables: ProblemFile, source: ProblemSource, scene: Scene, space: D
         raise InputError(place, key, wanted, f"'{asked}'{nearest_name(asked, Symmetry)}")
     if asked != Symmetry.OFF:
         try:
-            space.check_mirror(scene.robot.tree)
-            symmetric_forms(scene)
+            space.check_mirror(scenes[0].robot.tree)
+            for scene in scenes:
+                symmetric_forms(scene)
         except InputError as error:
             wanted = "'off', or a scene that is its own mirror image"
             raise InputError(place, key, wanted, f"'{asked}' ({error})") from error
     return Symmetry(asked)
-
-
-def _payload(tables: ProblemFile, source: ProblemSource) -> Payload:
-    table = tables.payload
-    for axis, (offset, size) in enumerate(zip(table.center_of_mass_m, table.size_m, strict=True)):
-        if abs(offset) > size / 2.0:
-            key = f"payload.center_of_mass_m[{axis}]"
-            raise InputError(source.path, key, f"a point in the box, at most {size / 2.0:g}", f"{offset:g}")
-    points = {
-        (agent, side): getattr(grasps, side)
-        for agent, grasps in ((ROBOT, table.robot_grasps_m), (HUMAN, table.human_grasps_m))
-        if grasps is not None
-        for side in SIDES
-    }
-    return Payload(
-        table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, _hand_moment(table, source), points
-    )
-
-
-def _hand_moment(table: PayloadTable, source: ProblemSource) -> float:
-    """What a rigid hand can bear [N m]; without a bound, infinite."""
-    if table.hand_moment_n_m is None:
-        return math.inf
-    if table.grasp is Grasp.POINT:
-        found = f"{table.hand_moment_n_m:g} for point grasps, which pass no moment"
-        raise InputError(source.path, "payload.hand_moment_n_m", "grasp = 'rigid' with it", found)
-    return table.hand_moment_n_m
 
 
 def _ground(tables: ProblemFile) -> Ground:
@@ -268,10 +253,11 @@ def _objectives(tables: ProblemFile, source: ProblemSource) -> tuple[Objective, 
     objectives = []
     for sense, position, name in chosen:
         key = f"objectives.{sense}[{position}]"
-        if name not in OBJECTIVES:
+        kind = objective_kind(name)
+        if kind is None:
             wanted = f"one of {', '.join(OBJECTIVES)}"
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, OBJECTIVES)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
-        objectives.append(Objective(name=name, sense=sense, unit=OBJECTIVES[name].unit))
+        objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
     return tuple(objectives)

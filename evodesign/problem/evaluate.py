@@ -5,18 +5,20 @@ An evaluation depends on problem and design alone: no state is carried from one 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from evodesign.pool.base import Limits
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.reach import Reach, ReachProblem
+from evodesign.posture.reach import Reach, ReachProblem, common_reach
 from evodesign.posture.sharing import shared_scene
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.shelf import Shelf
+from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
-from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.problem.objectives import objective_values
+from evodesign.problem.result import DesignResult
 from evodesign.records import (
     AgentDetail,
     Assessed,
@@ -29,7 +31,7 @@ from evodesign.records import (
     Status,
     worst_status,
 )
-from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
 __all__ = ["AssessmentFactory", "Evaluator", "detail_of", "outcome_of", "reach_of"]
 
@@ -45,28 +47,51 @@ class Evaluator:
     def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
         self.problem = problem
         self.known = known
-        scene, space, options = problem.scene, problem.space, problem.options
-        symmetric = problem.symmetry is not Symmetry.OFF
-        self._posture = PostureProblem(scene, space, problem.weights, options, problem.symmetry, known)
-        self._reach = ReachProblem(scene, space, options, symmetric=symmetric, known=known)
-        self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
+        space, options, symmetry = problem.space, problem.options, problem.symmetry
+        shelf = Shelf()
+        self._postures = [
+            PostureProblem(scene, space, problem.weights, options, symmetry, known.of_scene(number), shelf)
+            for number, scene in enumerate(problem.scenes)
+        ]
+        symmetric = symmetry is not Symmetry.OFF
+        self._reaches = {
+            id(scene.payload): ReachProblem(
+                scene, space, options, symmetric=symmetric, known=known, shelf=shelf
+            )
+            for scene in problem.scenes
+        }
+        self._people = {id(s.human): AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
-        scene = self.problem.scene
-        tree = self.problem.space.resized(scene.robot.tree, values)
-        checker = Checker(shared_scene(scene, self.problem.space, values), tree, self._human)
-        reach = self._reach.solve(values)
-        heights = tuple(self._at_height(values, height, reach, checker) for height in self.problem.heights)
+        problem = self.problem
+        tree = problem.space.resized(problem.scene.robot.tree, values)
+        scenes = [shared_scene(scene, problem.space, values) for scene in problem.scenes]
+        check = Checker(problem.scene, tree, self._people[id(problem.scene.human)])
+        reach = common_reach([reach.solve(values) for reach in self._reaches.values()])
+        heights: list[HeightSolution] = []
+        for number, scene in enumerate(scenes):
+            checker = check.elsewhere(scene, self._people[id(scene.human)])
+            alike = {h.height: h.postures for h in heights if h.solved and self._same_load(h.scene, number)}
+            for height in problem.heights:
+                found = self._at_height(values, number, height, reach, checker, alike.get(height))
+                heights.append(replace(found, scene=number))
         return DesignResult(
-            robot=scene.robot,
-            space=self.problem.space,
+            scenes=problem.scenes,
+            space=problem.space,
             values=tuple(values),
             tree=tree,
             reach=reach,
-            heights=heights,
-            paper=self.problem.joint,
+            heights=tuple(heights),
+            paper=problem.joint,
         )
+
+    def _scene(self, height: HeightSolution) -> Scene:
+        return self.problem.scenes[height.scene]
+
+    def _same_load(self, scene: int, other: int) -> bool:
+        """Whether two scenes have the same load."""
+        return self.problem.scenes[scene].payload is self.problem.scenes[other].payload
 
     def assess(self, genome: Genome) -> Assessed:
         """What a genome is worth, with its postures."""
@@ -75,12 +100,12 @@ class Evaluator:
     def assess_values(self, values: Sequence[float]) -> Assessed:
         """What a design given as one number per parameter is worth, with its postures."""
         result = self.solve(values)
-        heights = tuple(detail_of(height) for height in result.heights if height.solved)
+        heights = tuple(detail_of(height, self._scene(height)) for height in result.heights if height.solved)
         return Assessed(assessment=self.assessment(values, result), heights=heights)
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
-        heights = tuple(outcome_of(height) for height in result.heights)
+        heights = tuple(outcome_of(height, self._scene(height)) for height in result.heights)
         failed = [height for height in result.heights if not height.solved]
         return Assessment(
             design=dict(self.problem.space.named(values)),
@@ -93,7 +118,13 @@ class Evaluator:
         )
 
     def _at_height(
-        self, values: Sequence[float], height: float, reach: Reach, checker: Checker
+        self,
+        values: Sequence[float],
+        scene: int,
+        height: float,
+        reach: Reach,
+        checker: Checker,
+        alike: Mapping[str, AgentPosture] | None,
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
@@ -101,17 +132,17 @@ class Evaluator:
         if distance > 0.0:
             reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
             return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, (), "")
-        return self._posture.solve(values, height, checker)
+        return self._postures[scene].solve(values, height, checker, alike)
 
 
 def _violation(result: DesignResult) -> float | None:
     """Sum over heights of the distance to the reachable interval [m]; None when a failure hides it."""
-    distances = [result.reach.distance(height.height) for height in result.heights]
     total = 0.0
-    for distance, height in zip(distances, result.heights, strict=True):
+    for height in result.heights:
+        distance = result.reach.distance(height.height)
         if distance is None or (distance == 0.0 and not height.solved):
             return None
-        total += distance
+        total += distance if height.scene == 0 else 0.0  # the interval is the same in every scene
     return total
 
 
@@ -122,7 +153,7 @@ def reach_of(reach: Reach) -> ReachOutcome:
     )
 
 
-def outcome_of(height: HeightSolution) -> HeightOutcome:
+def outcome_of(height: HeightSolution, scene: Scene) -> HeightOutcome:
     """A height in short, as it is logged."""
     return HeightOutcome(
         height_m=height.height,
@@ -132,10 +163,12 @@ def outcome_of(height: HeightSolution) -> HeightOutcome:
         human_torque_norm=height.postures[HUMAN].torque_norm if height.solved else None,
         iterations=sum(attempt.iterations for attempt in height.attempts),
         residual=max(height.residuals.values()) if height.solved else None,
+        human_name=scene.human.label,
+        payload_name=scene.payload.label,
     )
 
 
-def detail_of(height: HeightSolution) -> HeightDetail:
+def detail_of(height: HeightSolution, scene: Scene) -> HeightDetail:
     """The postures at a height, as they are logged."""
     agents = {
         name: AgentDetail(
@@ -148,7 +181,12 @@ def detail_of(height: HeightSolution) -> HeightDetail:
         )
         for name, posture in height.postures.items()
     }
-    return HeightDetail(height_m=height.height, agents=agents)
+    return HeightDetail(
+        height_m=height.height,
+        agents=agents,
+        human_name=scene.human.label,
+        payload_name=scene.payload.label,
+    )
 
 
 @dataclass(frozen=True, slots=True)

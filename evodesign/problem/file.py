@@ -6,7 +6,7 @@ that name file, key, what was wanted and what was found.
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import msgspec
 from msgspec import Meta
@@ -22,6 +22,7 @@ NotNegative = Annotated[float, Meta(ge=0.0)]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Point = tuple[float, float, float]
 Name = Annotated[str, Meta(min_length=1)]
+T = TypeVar("T")
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -64,8 +65,9 @@ class RobotTable(Table, frozen=True):
 
 
 class HumanTable(Table, frozen=True):
-    """`[human]`: a person by stature, mass and sex, or a URDF with the names of its parts."""
+    """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts."""
 
+    name: Name | None = None
     stature_m: Positive | None = None
     mass_kg: Positive | None = None
     sex: Sex | None = None
@@ -85,13 +87,14 @@ class GraspsTable(Table, frozen=True):
 
 
 class PayloadTable(Table, frozen=True):
-    """`[payload]`: a box; size is depth (robot to person), width, height.
+    """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height.
 
     `hand_moment_n_m` bounds each component of the moment that a rigid hand passes.
     """
 
     size_m: tuple[Positive, Positive, Positive]
     mass_kg: Positive
+    name: Name | None = None
     center_of_mass_m: Point = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
     hand_moment_n_m: NotNegative | None = None
@@ -235,8 +238,8 @@ class ProblemFile(Table, frozen=True):
 
     name: Name
     robot: RobotTable
-    human: HumanTable
-    payload: PayloadTable
+    human: HumanTable | Annotated[tuple[HumanTable, ...], Meta(min_length=1)]
+    payload: PayloadTable | Annotated[tuple[PayloadTable, ...], Meta(min_length=1)]
     task: TaskTable
     design: DesignTable
     objectives: ObjectivesTable
@@ -244,6 +247,23 @@ class ProblemFile(Table, frozen=True):
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()
     baseline: BaselineTable = BaselineTable()
+
+    @property
+    def people(self) -> dict[str, HumanTable]:
+        """The tables of people by their keys, for messages."""
+        return _listed("human", self.human)
+
+    @property
+    def loads(self) -> dict[str, PayloadTable]:
+        """The tables of loads by their keys, for messages."""
+        return _listed("payload", self.payload)
+
+
+def _listed(key: str, tables: T | tuple[T, ...]) -> dict[str, T]:
+    """One table or a list of tables, each with its key."""
+    if isinstance(tables, tuple):
+        return {f"{key}[{position}]": table for position, table in enumerate(tables)}
+    return {key: tables}
 
 
 class DesignEntry(Table, frozen=True):

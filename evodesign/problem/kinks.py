@@ -29,7 +29,8 @@ DISTINCT = 1e-5
 
 def height_kinks(problem: Problem, height: HeightSolution, tangent: PostureTangent | Kink) -> Iterator[str]:
     """What is to be said of the posture at one height that was solved."""
-    place = f"at {height.height:g} m"
+    label = problem.scenes[height.scene].label
+    place = f"at {height.height:g} m" + (f", {label}" if label else "")
     yield f"{place}: {_winner(height, tangent)}"
     if isinstance(tangent, Kink):
         yield f"{place}: no gradient, for {tangent.reason}"

@@ -26,12 +26,15 @@ def notes(problem: Problem) -> tuple[str, ...]:
     generated person are looked at, in the same T-pose (x forward, y to the left, z up; docs/person.md), and
     whether or not the problem moves them. Limits do not depend on stature, mass or sex, so any person serves.
     """
-    human = problem.scene.human.tree
+    people = [scene.human.tree for scene in problem.scenes]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
     found = (
-        _turned(human.name, joint, anatomy[joint.name]) for joint in human.joints if joint.name in anatomy
+        _turned(human.name, joint, anatomy[joint.name])
+        for human in people
+        for joint in human.joints
+        if joint.name in anatomy
     )
-    return tuple(sentence for sentence in found if sentence)
+    return tuple(dict.fromkeys(sentence for sentence in found if sentence))
 
 
 def _turned(person: str, joint: Joint, anatomical: Joint) -> str:

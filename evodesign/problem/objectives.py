@@ -1,96 +1,37 @@
 """Objectives: pure functions of a design's results.
 
-Adding one is a function here and a line in `OBJECTIVES`; the problem file then knows its name. A function
-gives None where its value does not exist (no posture, no reach): absent, never large.
+Adding one is a function here and a line in `QUANTITIES`, for a value of every case (a person with a load at
+a height), or in `WHOLE`, for one of the design; the problem file then knows its name. What does not exist (no
+posture, no reach) is absent, never large.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import TORQUE_UNIT
-from evodesign.posture.joint import JointSettings
-from evodesign.posture.reach import Reach
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.solution import AgentPosture
 from evodesign.posture.tasks import pressure_task
+from evodesign.problem.cases import WORST, CaseQuantity, ObjectiveKind, over_cases, values_over_cases
+from evodesign.problem.result import DesignResult
 from evodesign.records import Objective
 from evodesign.statics.balance import standing_height_of_mass
-from evodesign.statics.scene import HUMAN, ROBOT, Agent
-from evodesign.tree.model import Tree
+from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["OBJECTIVES", "DesignResult", "ObjectiveKind", "objective_values"]
-
-
-@dataclass(frozen=True, slots=True)
-class DesignResult:
-    """Everything that was computed of one design.
-
-    Args:
-        robot: the agent as the file describes it.
-        space: design parameters.
-        values: one number per design parameter.
-        tree: the robot of the design.
-        reach: interval of load heights that it can hold.
-        heights: one solution per required height.
-        paper: the paper's tasks and their weights.
-    """
-
-    robot: Agent
-    space: DesignSpace
-    values: Sequence[float]
-    tree: Tree
-    reach: Reach
-    heights: tuple[HeightSolution, ...]
-    paper: JointSettings
+__all__ = ["OBJECTIVES", "QUANTITIES", "objective_kind", "objective_values", "value_of"]
 
 
-@dataclass(frozen=True, slots=True)
-class ObjectiveKind:
-    """An objective's unit and formula."""
-
-    unit: str
-    value: Callable[[DesignResult], float | None]
+def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The robot's |tau|_2 [N m] (paper, task t1)."""
+    return postures[ROBOT].torque_norm
 
 
-def _torque_norms(result: DesignResult, agent: str) -> list[float] | None:
-    """Torque norm of an agent per required height [N m]; None unless all are solved."""
-    if not all(height.solved for height in result.heights):
-        return None
-    return [height.postures[agent].torque_norm for height in result.heights]
-
-
-def _mean_torque(result: DesignResult, agent: str) -> float | None:
-    norms = _torque_norms(result, agent)
-    return None if norms is None else float(np.mean(norms))
-
-
-def _worst_torque(result: DesignResult, agent: str) -> float | None:
-    norms = _torque_norms(result, agent)
-    return None if norms is None else max(norms)
-
-
-def robot_torque(result: DesignResult) -> float | None:
-    """Mean over the required heights of the robot's |tau|_2 [N m] (paper, task t1)."""
-    return _mean_torque(result, ROBOT)
-
-
-def human_torque(result: DesignResult) -> float | None:
-    """Mean over the required heights of the person's |tau|_2 [N m] (paper, task t1)."""
-    return _mean_torque(result, HUMAN)
-
-
-def worst_robot_torque(result: DesignResult) -> float | None:
-    """Largest over the required heights of the robot's |tau|_2 [N m]."""
-    return _worst_torque(result, ROBOT)
-
-
-def worst_human_torque(result: DesignResult) -> float | None:
-    """Largest over the required heights of the person's |tau|_2 [N m]."""
-    return _worst_torque(result, HUMAN)
+def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The person's |tau|_2 [N m] (paper, task t1)."""
+    return postures[HUMAN].torque_norm
 
 
 def reach_height(result: DesignResult) -> float | None:
@@ -110,7 +51,7 @@ def com_height(result: DesignResult) -> float:
 
 def paper_cost(result: DesignResult) -> float | None:
     """W1 t1 + W3 t3 of all heights + W2 t2 + W4 t4 [(10 N m)^2], the paper's scalar cost (Eq. 14)."""
-    robot, human = _torque_norms(result, ROBOT), _torque_norms(result, HUMAN)
+    robot, human = values_over_cases(robot_torque, result), values_over_cases(human_torque, result)
     if robot is None or human is None:
         return None
     efforts, tasks = result.paper.efforts, result.paper.tasks
@@ -123,19 +64,52 @@ def paper_cost(result: DesignResult) -> float | None:
     return float(cost)
 
 
-OBJECTIVES: Mapping[str, ObjectiveKind] = {
-    "robot_torque": ObjectiveKind("N m", robot_torque),
-    "human_torque": ObjectiveKind("N m", human_torque),
-    "worst_robot_torque": ObjectiveKind("N m", worst_robot_torque),
-    "worst_human_torque": ObjectiveKind("N m", worst_human_torque),
+QUANTITIES: Mapping[str, CaseQuantity] = {
+    "robot_torque": CaseQuantity("N m", robot_torque),
+    "human_torque": CaseQuantity("N m", human_torque),
+}
+"""Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
+
+WHOLE: Mapping[str, ObjectiveKind] = {
     "reach_height": ObjectiveKind("m", reach_height),
     "mass": ObjectiveKind("kg", mass),
     "com_height": ObjectiveKind("m", com_height),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
 }
+"""Values of a design as a whole."""
+
+OBJECTIVES: Mapping[str, ObjectiveKind] = {
+    **{
+        f"{over}{name}": over_cases(quantity, over)
+        for over in ("", WORST)
+        for name, quantity in QUANTITIES.items()
+    },
+    **WHOLE,
+}
+"""Objectives by name; quantiles, of which there are many, are left to `objective_kind`."""
+
+
+def objective_kind(name: str) -> ObjectiveKind | None:
+    """The objective of a name, such as `robot_torque`, `worst_robot_torque` or `q90_robot_torque`."""
+    quantile = re.fullmatch(r"(q[1-9]\d?_)(.+)", name)
+    if quantile is None or quantile[2] not in QUANTITIES:
+        return OBJECTIVES.get(name)
+    return over_cases(QUANTITIES[quantile[2]], quantile[1])
 
 
 def objective_values(objectives: Sequence[Objective], result: DesignResult) -> dict[str, float]:
     """Natural values of a problem's objectives, by name, without those that do not exist."""
-    found = {objective.name: OBJECTIVES[objective.name].value(result) for objective in objectives}
+    found = {objective.name: value_of(objective.name, result) for objective in objectives}
     return {name: value for name, value in found.items() if value is not None}
+
+
+def value_of(name: str, result: DesignResult) -> float | None:
+    """An objective's value; None where it does not exist.
+
+    Raises:
+        KeyError: no objective has this name.
+    """
+    kind = objective_kind(name)
+    if kind is None:
+        raise KeyError(name)
+    return kind.value(result)

@@ -19,7 +19,7 @@ from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.reach_tangent import HeightTangent
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import DesignResult
+from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Assessment, Genome, Sense
 from evodesign.search.descent import Point, Slopes, descend

@@ -29,7 +29,8 @@ class Watcher(Protocol):
 
 def setting_of(problem: Problem) -> Setting:
     """What a problem's pieces follow from."""
-    return Setting(problem.scene, problem.space, problem.weights, problem.options, problem.symmetry)
+    scenes, middle = problem.scenes, problem.middle
+    return Setting(scenes, middle, problem.space, problem.weights, problem.options, problem.symmetry)
 
 
 def prepared(problem: Problem, cache: Cache | None, pool: Pool, watcher: Watcher) -> Preparation:

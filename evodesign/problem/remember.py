@@ -71,7 +71,11 @@ def problem_digest(source: ProblemSource) -> str:
         evaluation_memory_gb=SolverTable().evaluation_memory_gb,
     )
     tables = msgspec.structs.replace(tables, name="-", search=SearchTable(), solver=limitless)
-    texts = {name: source.files[name] for name in (tables.robot.urdf, tables.human.urdf) if name}
+    texts = {
+        name: source.files[name]
+        for name in (tables.robot.urdf, *(t.urdf for t in tables.people.values()))
+        if name
+    }
     return digest_of(
         msgspec.json.encode(tables, order="deterministic"),
         msgspec.json.encode(texts, order="deterministic"),

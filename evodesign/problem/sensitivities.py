@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -29,7 +30,8 @@ from evodesign.posture.solution import HeightSolution
 from evodesign.posture.tangent import PostureTangent, PostureTangents
 from evodesign.problem.build import Problem
 from evodesign.problem.kinks import end_kinks, height_kinks
-from evodesign.problem.objectives import OBJECTIVES, DesignResult
+from evodesign.problem.objectives import value_of
+from evodesign.problem.result import DesignResult
 from evodesign.records import Status
 
 __all__ = ["DesignTangent", "Sensitivities", "Sensitivity"]
@@ -86,7 +88,7 @@ class DesignTangent:
     def sensitivities(self) -> dict[str, Sensitivity]:
         """How each of the problem's objectives moves that exists for the design."""
         names = [objective.name for objective in self.problem.objectives]
-        existing = [name for name in names if OBJECTIVES[name].value(self.result) is not None]
+        existing = [name for name in names if value_of(name, self.result) is not None]
         around = [self._around(position) for position in range(len(self.values))]
         return {name: self._sensitivity(name, around) for name in existing}
 
@@ -98,7 +100,7 @@ class DesignTangent:
         return step, tuple(self.moved(count * step * unit) for count in range(-2, 3))
 
     def _sensitivity(self, name: str, around: Sequence[tuple[float, Sequence[DesignResult]]]) -> Sensitivity:
-        value = OBJECTIVES[name].value
+        value = partial(value_of, name)
         kinks = self._kinks(name)
         gradient: dict[str, float] = {}
         for parameter, (step, results) in zip(self.problem.space.parameters, around, strict=True):
@@ -114,7 +116,7 @@ class DesignTangent:
 
     def _kinks(self, name: str) -> list[str]:
         """Sentences on every part of the results that an objective depends on."""
-        value, result = OBJECTIVES[name].value, self.result
+        value, result = partial(value_of, name), self.result
         said: list[str] = []
         for position, (height, tangent) in enumerate(zip(result.heights, self.heights, strict=True)):
             others = [_without(h) if i == position else h for i, h in enumerate(result.heights)]
@@ -132,12 +134,17 @@ class Sensitivities:
 
     def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
         self._problem = problem
-        scene, space, options = problem.scene, problem.space, problem.options
+        space, options = problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
-        self._reach = ReachTangents(
-            ReachProblem(scene, space, options, symmetric=symmetric, known=known), options
-        )
-        self._postures = PostureTangents(scene, space, problem.weights, options, known.values)
+        loads = {id(scene.payload): scene for scene in problem.scenes}
+        self._reaches = [
+            ReachTangents(ReachProblem(scene, space, options, symmetric=symmetric, known=known), options)
+            for scene in loads.values()
+        ]
+        self._postures = [
+            PostureTangents(each, space, problem.weights, options, known.of_scene(number).values)
+            for number, each in enumerate(problem.scenes)
+        ]
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignTangent:
         """The tangent of a design from its results."""
@@ -146,12 +153,19 @@ class Sensitivities:
             values=tuple(values),
             result=result,
             heights=tuple(
-                self._postures.at(values, height) if height.solved else Kink(height.reason)
+                self._postures[height.scene].at(values, height) if height.solved else Kink(height.reason)
                 for height in result.heights
             ),
-            highest=self._reach.at(values, HIGHEST),
-            lowest=self._reach.at(values, LOWEST),
+            highest=self._end(values, HIGHEST),
+            lowest=self._end(values, LOWEST),
         )
+
+    def _end(self, values: Sequence[float], sense: float) -> HeightTangent | Kink:
+        """The extreme height of the load that binds: the least of the highest, the largest of the lowest."""
+        found = [reach.at(values, sense) for reach in self._reaches]
+        kinks = [tangent for tangent in found if isinstance(tangent, Kink)]
+        ends = [tangent for tangent in found if isinstance(tangent, HeightTangent)]
+        return kinks[0] if kinks else max(ends, key=lambda tangent: sense * tangent.height)
 
 
 def _end(tangent: HeightTangent | Kink, step: Array) -> float | None:

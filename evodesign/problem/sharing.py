@@ -82,7 +82,8 @@ def _ends(position: int, table: PolicyTable) -> tuple[tuple[str, float], ...]:
 
 def _allowed(scene: Scene, low: float, high: float) -> str:
     """The shares that balance the load, in words."""
-    grasps = f"{scene.payload.grasp} grasps"
+    label = scene.payload.label
+    grasps = f"{scene.payload.grasp} grasps of '{label}'" if label else f"{scene.payload.grasp} grasps"
     if high < low:
         return f"{grasps} that balance the load at all"
     if high - low <= SAME:

@@ -25,7 +25,7 @@ def read_source(path: Path, symmetry: str | None = None) -> ProblemSource:
     tables = decode_toml(text, str(path), ProblemFile)
     named = {
         "robot.urdf": tables.robot.urdf,
-        "human.urdf": tables.human.urdf,
+        **{f"{key}.urdf": table.urdf for key, table in tables.people.items()},
         "search.start": tables.search.start,
     }
     files = {

@@ -43,6 +43,7 @@ class Payload:
         hand_moment: largest size of each component of the moment that a rigid hand passes [N m].
         grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
             it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
+        label: what it is called where a problem has several loads.
     """
 
     size: Vector
@@ -51,6 +52,7 @@ class Payload:
     grasp: Grasp = Grasp.POINT
     hand_moment: float = math.inf
     grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
+    label: str = ""
 
     @property
     def inertia(self) -> Inertia:
@@ -100,6 +102,7 @@ class Agent:
         soles: frame under the foot, by side.
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
+        label: who it is where a problem has several people.
     """
 
     name: str
@@ -109,6 +112,7 @@ class Agent:
     soles: Mapping[str, str]
     sole_size: SoleSize
     trunk: tuple[str, ...]
+    label: str = ""
 
     @property
     def facing(self) -> float:
@@ -140,3 +144,8 @@ class Scene:
     ground: Ground = field(default_factory=Ground)
     stance: StanceLimits = field(default_factory=StanceLimits)
     robot_share: float | None = None
+
+    @property
+    def label(self) -> str:
+        """Who holds what, where there are several people or loads."""
+        return ", ".join(label for label in (self.human.label, self.payload.label) if label)

@@ -77,7 +77,7 @@ def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem
 
 
 def pieces(problem: Problem, scene: Scene) -> list[Subject]:
-    setting = replace(setting_of(problem), scene=scene)
+    setting = replace(setting_of(problem), scenes=(scene,))
     return [piece.subject for stage in stages(setting, (1.0,), seeds=False) for piece in stage]
 
 

@@ -37,7 +37,7 @@ def carried(solution: HeightSolution, agent: str) -> float:
 def test_load_leans_on_whom_it_is_nearer_to(offset: float, problem: Problem) -> None:
     """Lever rule of a beam on two supports half a metre apart (level grasps, no push to speak of)."""
     stance = replace(problem.scene.stance, push=0.0)
-    flat = replace(problem, scene=replace(problem.scene, stance=stance))
+    flat = replace(problem, scenes=(replace(problem.scene, stance=stance),))
     solution = solve(flat, Payload(BOX, 5.0, center_of_mass=(offset, 0.0, 0.0)))
     assert solution.status is Status.SOLVED, solution.reason
     weight = 5.0 * GRAVITY

@@ -12,7 +12,7 @@ from evodesign.posture.preparation import Preparation
 from evodesign.posture.solution import AgentPosture
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import DesignResult
+from evodesign.problem.result import DesignResult
 from evodesign.records import Status
 from evodesign.statics.balance import GRAVITY
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES

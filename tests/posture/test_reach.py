@@ -44,8 +44,8 @@ def test_postures_end_where_reach_ends(problem: Problem) -> None:
     scene = problem.scene
     checker = Checker(scene, result.tree, AgentModel.of(scene.human, scene.human.tree))
     assert result.reach.highest is not None
-    below = evaluator._posture.solve(values, result.reach.highest - 0.005, checker)
-    above = evaluator._posture.solve(values, result.reach.highest + 0.02, checker)
+    below = evaluator._postures[0].solve(values, result.reach.highest - 0.005, checker)
+    above = evaluator._postures[0].solve(values, result.reach.highest + 0.02, checker)
     assert below.status is Status.SOLVED
     assert above.status is not Status.SOLVED
     assert above.postures == {}

@@ -19,7 +19,7 @@ def with_joint(problem: Problem, joint: Joint) -> Problem:
     scene, tree = problem.scene, problem.scene.human.tree
     joints = tuple(joint if other.name == joint.name else other for other in tree.joints)
     human = replace(scene.human, tree=replace(tree, joints=joints))
-    return replace(problem, scene=replace(scene, human=human))
+    return replace(problem, scenes=(replace(scene, human=human),))
 
 
 def changed(
@@ -86,4 +86,4 @@ def test_a_joint_with_a_name_of_its_own_is_not_judged(problem: Problem) -> None:
         replace(joint, name="hip") if joint.name == "jLeftHip_roty" else joint for joint in tree.joints
     )
     human = replace(turned.scene.human, tree=replace(tree, joints=renamed), joints=("hip",))
-    assert notes(replace(turned, scene=replace(turned.scene, human=human))) == ()
+    assert notes(replace(turned, scenes=(replace(turned.scene, human=human),))) == ()

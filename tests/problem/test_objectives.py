@@ -11,7 +11,8 @@ import pytest
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import OBJECTIVES, DesignResult
+from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.result import DesignResult
 from evodesign.records import Status
 from evodesign.tree.urdf_write import urdf_text
 

@@ -1,0 +1,69 @@
+"""From values of single cases to one value of a design.
+
+A case is a person with a load at a height. A quantity has a value in every case; an objective is its mean
+over the cases, its largest value, or a quantile, so that a front may be asked to hold for everyone and not
+only on average. The way stands before the quantity's name: `human_torque` is the mean, and there are
+`worst_human_torque` and `q90_human_torque`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from evodesign.posture.solution import AgentPosture
+from evodesign.problem.result import DesignResult
+from evodesign.statics.scene import Scene
+
+__all__ = ["WORST", "CaseQuantity", "CaseValue", "ObjectiveKind", "over_cases", "values_over_cases"]
+
+WORST = "worst_"
+"""What stands before the name of a quantity whose largest value counts."""
+
+CaseValue = Callable[[Scene, Mapping[str, AgentPosture]], float]
+"""From a scene and the postures in it, by agent name, to a value."""
+
+
+@dataclass(frozen=True, slots=True)
+class CaseQuantity:
+    """A value of every case: its unit and formula."""
+
+    unit: str
+    value: CaseValue
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectiveKind:
+    """An objective's unit and formula."""
+
+    unit: str
+    value: Callable[[DesignResult], float | None]
+
+
+def values_over_cases(value: CaseValue, result: DesignResult) -> list[float] | None:
+    """A quantity in every case, in the order of the results; None unless all are solved."""
+    if not all(height.solved for height in result.heights):
+        return None
+    return [value(result.scenes[height.scene], height.postures) for height in result.heights]
+
+
+def over_cases(quantity: CaseQuantity, way: str) -> ObjectiveKind:
+    """The objective that a quantity is over all cases.
+
+    Args:
+        quantity: of single cases.
+        way: nothing for the mean, `worst_` for the largest, `q90_` for the 90 % quantile (interpolated
+            linearly between the values on both sides of it).
+    """
+
+    def value(result: DesignResult) -> float | None:
+        values = values_over_cases(quantity.value, result)
+        if values is None:
+            return None
+        if way == WORST:
+            return max(values)
+        return float(np.quantile(values, float(way[1:-1]) / 100.0) if way else np.mean(values))
+
+    return ObjectiveKind(quantity.unit, value)
