@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
@@ -12,11 +13,15 @@ from rich.text import Text
 
 from evodesign.cli.height_table import heights_table
 from evodesign.cli.opening import OpenedDesign
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, visible
+from evodesign.cli.person_table import TITLE, case_name, person_table
 from evodesign.cli.tables import heading
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter
 from evodesign.report.strain import most_strained
+
+if TYPE_CHECKING:
+    from evodesign.problem.ergonomics import Ergonomics
 
 __all__ = ["card"]
 
@@ -27,8 +32,13 @@ BAR = 16
 """Columns of a parameter's bar."""
 
 
-def card(opened: OpenedDesign) -> Group:
-    """The card."""
+def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
+    """The card.
+
+    Args:
+        opened: the design.
+        asked: of the people by each of its postures; none to leave it out.
+    """
     assessment = opened.evaluation.assessment
     sections: dict[str, Table] = {
         "objectives": _objectives(opened),
@@ -38,6 +48,9 @@ def card(opened: OpenedDesign) -> Group:
     if opened.heights:
         sections["largest joint torques [N m]"] = _torques(opened.heights)
         sections["contact forces [N]"] = _contacts(opened.heights)
+    if asked:
+        cases = zip(map(case_name, opened.heights), asked, strict=True)
+        sections[TITLE] = person_table(list(cases), title="")
     parts: list[RenderableType] = [_title(opened)]
     for title, table in sections.items():
         parts += [Text(f"\n{title}", style="italic"), table]
@@ -139,7 +152,7 @@ def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, 
 def _height_table(columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
     table = _table(*columns)
     for detail in heights:
-        table.add_column(f"{detail.height_m:g} m", justify="right")
+        table.add_column(escape(visible(case_name(detail))), justify="right")
     return table
 
 

@@ -9,13 +9,17 @@ from rich.table import Table
 
 from evodesign.cli.height_table import heights_table
 from evodesign.cli.output import figure
+from evodesign.cli.person_table import case_name, person_table
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
+from evodesign.problem.ergonomics import ergonomics
+from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
+from evodesign.statics.scene import HUMAN
 
-__all__ = ["assessment_tables", "sensitivity_table"]
+__all__ = ["assessment_tables", "people_table", "sensitivity_table"]
 
 STRONGEST = 4
 """Parameters shown per objective."""
@@ -34,6 +38,17 @@ def assessment_tables(
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
     return summary, heights_table(assessment, "the load at each height")
+
+
+def people_table(result: DesignResult) -> Table:
+    """What the solved postures of a design ask of the people."""
+    cases = []
+    for height in result.heights:
+        if height.solved:
+            scene = result.scenes[height.scene]
+            detail = detail_of(height, scene)
+            cases.append((case_name(detail), ergonomics(scene.human, detail.agents[HUMAN])))
+    return person_table(cases)
 
 
 def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:

@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.body.shape import Box, Cylinder, Shape
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.problem.build import Problem
 from evodesign.statics.scene import Agent
@@ -27,9 +27,10 @@ CAPTION = (
 def model_json(problem: Problem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
     scene = problem.scene
+    people = {one.human.label: one.human for one in problem.scenes}.values()
     return {
         "problem": problem.name,
-        "agents": [_agent(agent) for agent in (scene.robot, scene.human)],
+        "agents": [_agent(agent) for agent in (scene.robot, *people)],
         "payload": {"size_m": list(scene.payload.size), "mass_kg": scene.payload.mass},
         "heights_m": list(problem.heights),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
@@ -55,7 +56,10 @@ def _agents_table(name: str, agents: Iterable[dict[str, Any]]) -> Table:
         table.add_column(escape(column), justify="left" if column in ("agent", "model") else "right")
     for agent in agents:
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
-        table.add_row(agent["name"], escape(agent["model"]), *map(str, counts), figure(agent["mass_kg"]))
+        name = f"{agent['name']} {agent['who']}" if "who" in agent else agent["name"]
+        table.add_row(
+            escape(visible(name)), escape(agent["model"]), *map(str, counts), figure(agent["mass_kg"])
+        )
     return table
 
 
@@ -105,6 +109,7 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
 def _agent(agent: Agent) -> dict[str, Any]:
     return {
         "name": agent.name,
+        **({"who": agent.label} if agent.label else {}),
         "model": agent.tree.name,
         "links": len(agent.tree.links),
         "joints": len(agent.tree.joints),

@@ -40,6 +40,21 @@ def test_every_link_has_its_kind_solids_and_mass(small: Problem) -> None:
     assert (links["claw"]["axis"], links["claw"]["density_kg_per_m3"]) == (None, None)
 
 
+def test_everyone_of_a_population_is_listed(problem: Problem) -> None:
+    person = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
+    crowd = 'population = { sex = "both", percentiles = [5, 95] }'
+    source = problem.source
+    several = build_problem(ProblemSource(source.path, source.text.replace(person, crowd), source.files))
+    robot, *people = model_json(several)["agents"]
+    assert "who" not in robot
+    assert [one["who"] for one in people] == ["female P5", "female P95", "male P5", "male P95"]
+    assert [one["mass_kg"] for one in people] == pytest.approx([50.7, 119.2, 60.9, 131.8])
+    out = StringIO()
+    Console(file=out, width=110).print(model_tables(several)[0])
+    assert "human male P95" in out.getvalue()
+    assert "who" not in model_json(problem)["agents"][1]
+
+
 def test_a_density_parameter_does_not_grow(small: Problem) -> None:
     length, density = model_json(small)["parameters"]
     assert (length["unit"], density["unit"]) == ("1", "kg/m^3")
