@@ -24,7 +24,7 @@ from evodesign.statics.scene import Agent, Grasp, Payload, Scene
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
-__all__ = ["GRASP_ROWS", "AgentBlock", "agent_block", "hand_limits", "hand_wrench"]
+__all__ = ["COMFORT", "GRASP_ROWS", "AgentBlock", "agent_block", "hand_limits", "hand_wrench"]
 
 Expression = Any
 

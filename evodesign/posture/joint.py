@@ -40,7 +40,7 @@ from evodesign.posture.tasks import Tasks, pressure_task
 from evodesign.records import Genome, Status
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Scene
 
-__all__ = ["JointProblem", "JointSettings", "JointSolution"]
+__all__ = ["JointProblem", "JointSettings", "JointSolution", "refuse_chosen_weights"]
 
 Array = Any
 Expression = Any
@@ -103,8 +103,8 @@ class JointProblem:
         settings: costs and limits.
         fixed: a genome that the design is held at; None to optimise it.
     Raises:
-        ModelError: symmetric postures of a scene that is not its own mirror image, or a design that chooses
-            the weights of what is minimised.
+        ModelError: symmetric postures of a scene that is not its own mirror image.
+        InputError: a design that chooses the weights of what is minimised.
     """
 
     def __init__(
@@ -119,9 +119,7 @@ class JointProblem:
         self._space = space
         self._heights = tuple(heights)
         self._enforced = settings.enforced
-        if EFFORT_RATIO in space.policy_names:
-            found = "a cost whose weights are themselves to be chosen"
-            raise InputError("the joint problem", f"policy.{EFFORT_RATIO}", "one cost to be minimised", found)
+        refuse_chosen_weights(space)
         both = (whole(scene.robot), whole(scene.human))
         self._forms = symmetric_forms(scene) if settings.symmetric else both
         self._human = AgentModel.of(scene.human, scene.human.tree)
@@ -192,6 +190,17 @@ class JointProblem:
 
     def _postures(self, raw: RawSolution, index: int) -> dict[str, AgentPosture]:
         return {f.agent.name: f.expand(raw.of(f"{_prefix(index)}{f.agent.name}")) for f in self._forms}
+
+
+def refuse_chosen_weights(space: DesignSpace) -> None:
+    """Refuse designs that choose the weights of the efforts, for here the design minimises their sum.
+
+    Raises:
+        InputError: naming the policy.
+    """
+    if EFFORT_RATIO in space.policy_names:
+        found = "one whose weights the design chooses"
+        raise InputError("the joint problem", f"policy.{EFFORT_RATIO}", "a cost to minimise", found)
 
 
 def _prefix(index: int) -> str:

@@ -12,10 +12,10 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.agent import HAND_UNIT, hand_limits, hand_wrench
+from evodesign.posture.agent import COMFORT, HAND_UNIT, hand_limits, hand_wrench
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Variable
-from evodesign.statics.scene import Scene
+from evodesign.statics.scene import Grasp, Scene
 
 __all__ = ["Hands", "free_hands"]
 
@@ -29,10 +29,12 @@ class Hands:
     Args:
         variables: what they pass, for the sides of the form.
         wrenches: force [N] and moment [N m] on both hands by side, in their agent's frame.
+        comfort: small convex cost of their moments, so that rigid hands are unique; zero for point grasps.
     """
 
     variables: tuple[Variable, ...]
     wrenches: Mapping[str, Expression]
+    comfort: Expression
 
 
 def free_hands(form: Form, scene: Scene) -> Hands:
@@ -47,4 +49,7 @@ def free_hands(form: Form, scene: Scene) -> Hands:
     wrenches = {side: hand_wrench(variable.value) for side, variable in variables.items()}
     if form.mirror is not None:
         wrenches["right"] = wrenches["left"] * ca.DM(WRENCH)
-    return Hands(tuple(variables.values()), wrenches)
+    moments = [wrench[3:] / HAND_UNIT for wrench in wrenches.values()]
+    comfort = COMFORT * sum(ca.sumsqr(moment) for moment in moments)
+    rigid = scene.payload.grasp is Grasp.RIGID
+    return Hands(tuple(variables.values()), wrenches, comfort if rigid else ca.SX(0.0))

@@ -155,6 +155,6 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
         name="reach",
         variables=(height, *robot.variables, *partner.variables),
         constraints=(*robot.constraints, *load),
-        cost=sense * height.value + COMFORT * robot.comfort,
+        cost=sense * height.value + COMFORT * (robot.comfort + partner.comfort),
         parameters=ca.vertcat(design, mass, sense),
     )

@@ -227,5 +227,5 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
 
 
 def test_the_joint_problem_refuses_to_choose_its_own_weights(problem: Problem) -> None:
-    with pytest.raises(InputError, match=r"policy\.effort_ratio: wanted one cost"):
+    with pytest.raises(InputError, match=r"policy\.effort_ratio: wanted a cost to minimise"):
         JointProblem(problem.scene, policy(EFFORT_RATIO, -1.0, 1.0), (1.0,), problem.joint)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 
 from evodesign.bridge.opened_problem import OpenedProblem
+from evodesign.cli.baseline import start_baseline
 from evodesign.cli.model_table import model_json
 from evodesign.errors import InputError
 from evodesign.posture.sharing import EffortWeights
@@ -160,3 +162,30 @@ def test_polishing_moves_policies(shared: Problem) -> None:
     done = polish(Evaluator(shared), shared.space.genome(begun), aim, 4, lambda step: None)
     assert done.after.objectives["robot_torque"] < 0.7 * done.before.objectives["robot_torque"]
     assert done.after.design["policy.robot_share"] < 0.45
+
+
+def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem, tmp_path: Path) -> None:
+    """Before it begins a run."""
+    for name, text in {"p.toml": shared.source.text, **shared.source.files}.items():
+        (tmp_path / "problems" / name).resolve().parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "problems" / name).write_text(text)
+    with pytest.raises(InputError, match=r"policy\.effort_ratio: wanted a cost to minimise, found one whose"):
+        start_baseline(tmp_path / "problems/p.toml", tmp_path / "run", 1, 1, 1, "serial", json=False)
+    assert not (tmp_path / "run").exists()
+
+
+def test_reach_with_rigid_grasps_has_a_gradient(problem: Problem) -> None:
+    """Moments of the person's hands cost nothing there, and a little comfort decides between them."""
+    rigid = changed(problem, policies=SHARE)
+    rigid = replace(rigid, options=replace(rigid.options, tolerance=1e-11))
+    values = np.array((*rigid.space.unscaled(rigid.scene.robot.tree)[:-1], 0.3))
+    found = gradients(rigid, tuple(values.tolist()))["reach_height"]
+    evaluator = Evaluator(rigid)
+    place = [parameter.name for parameter in rigid.space.parameters].index("length.forearm")
+    step = 1e-4 * np.eye(len(values))[place]
+    worth = [
+        evaluator.assess_values(tuple(v)).assessment.objectives["reach_height"]
+        for v in (values + step, values - step)
+    ]
+    assert found["length.forearm"] == pytest.approx((worth[0] - worth[1]) / 2e-4, rel=1e-4)
+    assert found["length.forearm"] > 0.1
