@@ -21,7 +21,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from benchmarks.inner_problem import problem_at
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.constraints import equal
 from evodesign.posture.form import Form, symmetric_forms
 from evodesign.posture.program import Program, Solver

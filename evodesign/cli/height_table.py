@@ -8,6 +8,7 @@ from rich.table import Table
 from evodesign.cli.output import figure, shown
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightOutcome
+from evodesign.statics.scene import HUMAN, ROBOT
 
 __all__ = ["heights_table"]
 
@@ -32,6 +33,15 @@ def heights_table(assessment: Assessment, title: str) -> Table:
             "-" if outcome.residual is None else f"{outcome.residual:.1e}",
             escape(on_one_line(status)),
         )
+        for name, norms in outcome.disturbed.items():
+            table.add_row(
+                *([""] if any(holders) else []),
+                "",
+                *(figure(norms[agent]) for agent in (ROBOT, HUMAN)),
+                "",
+                "",
+                shown(f"under '{name}'"),
+            )
     return table
 
 

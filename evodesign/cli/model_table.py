@@ -12,6 +12,7 @@ from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.cli.output import figure, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.problem.build import Problem
+from evodesign.statics.disturbance import Disturbance
 from evodesign.statics.scene import Agent
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
@@ -27,15 +28,27 @@ CAPTION = (
 def model_json(problem: Problem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
     scene = problem.scene
+    disturbed = scene.disturbances
     people = {one.human.label: one.human for one in problem.scenes}.values()
     return {
         "problem": problem.name,
         "agents": [_agent(agent) for agent in (scene.robot, *people)],
         "payload": {"size_m": list(scene.payload.size), "mass_kg": scene.payload.mass},
         "heights_m": list(problem.heights),
+        **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
+    }
+
+
+def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
+    return {
+        "name": disturbance.name,
+        "load_mass_share": disturbance.mass_share,
+        "center_of_mass_m": list(disturbance.center_of_mass),
+        "push_n": list(disturbance.push),
+        "at": str(disturbance.at),
     }
 
 
@@ -69,8 +82,22 @@ def _task_table(shown: dict[str, Any]) -> Table:
         "load", f"{shown['payload']['mass_kg']:g} kg, {' x '.join(map(figure, shown['payload']['size_m']))} m"
     )
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
+    for disturbance in shown.get("disturbances", ()):
+        table.add_row("disturbance", escape(_told(disturbance)))
     table.add_row("objectives", ", ".join(shown["objectives"]))
     return table
+
+
+def _told(disturbance: dict[str, Any]) -> str:
+    """A disturbance in words."""
+    parts = []
+    if disturbance["load_mass_share"]:
+        parts.append(f"load {disturbance['load_mass_share']:+.0%}")
+    if any(disturbance["center_of_mass_m"]):
+        parts.append(f"centre of mass moved by {disturbance['center_of_mass_m']} m")
+    if any(disturbance["push_n"]):
+        parts.append(f"{disturbance['push_n']} N on the {disturbance['at']}")
+    return f"{disturbance['name']}: {', '.join(parts) or 'nothing changes'}"
 
 
 def _links_table(links: Iterable[dict[str, Any]]) -> Table:

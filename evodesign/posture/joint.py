@@ -23,10 +23,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.design.policy import EFFORT_RATIO
 from evodesign.design.space import DesignSpace, ParameterKind
-from evodesign.errors import InputError
-from evodesign.posture.agent import TORQUE_UNIT, AgentBlock, agent_block
+from evodesign.posture.agent import AgentBlock, agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.enforced import Enforced
@@ -40,7 +39,7 @@ from evodesign.posture.tasks import Tasks, pressure_task
 from evodesign.records import Genome, Status
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Scene
 
-__all__ = ["JointProblem", "JointSettings", "JointSolution", "refuse_chosen_weights"]
+__all__ = ["JointProblem", "JointSettings", "JointSolution"]
 
 Array = Any
 Expression = Any
@@ -104,7 +103,6 @@ class JointProblem:
         fixed: a genome that the design is held at; None to optimise it.
     Raises:
         ModelError: symmetric postures of a scene that is not its own mirror image.
-        InputError: a design that chooses the weights of what is minimised.
     """
 
     def __init__(
@@ -119,7 +117,6 @@ class JointProblem:
         self._space = space
         self._heights = tuple(heights)
         self._enforced = settings.enforced
-        refuse_chosen_weights(space)
         both = (whole(scene.robot), whole(scene.human))
         self._forms = symmetric_forms(scene) if settings.symmetric else both
         self._human = AgentModel.of(scene.human, scene.human.tree)
@@ -192,17 +189,6 @@ class JointProblem:
         return {f.agent.name: f.expand(raw.of(f"{_prefix(index)}{f.agent.name}")) for f in self._forms}
 
 
-def refuse_chosen_weights(space: DesignSpace) -> None:
-    """Refuse designs that choose the weights of the efforts, for here the design minimises their sum.
-
-    Raises:
-        InputError: naming the policy.
-    """
-    if EFFORT_RATIO in space.policy_names:
-        found = "one whose weights the design chooses"
-        raise InputError("the joint problem", f"policy.{EFFORT_RATIO}", "a cost to minimise", found)
-
-
 def _prefix(index: int) -> str:
     """What begins the names of variables and constraints of the posture at the height of an index."""
     return f"height_{index}."
@@ -264,7 +250,7 @@ def _asked(every: Sequence[Constraint], blocks: Sequence[AgentBlock], enforced: 
     """The constraints that are enforced, and upright feet where joint limits do not see to them."""
     rows = [constraint for constraint in every if enforced.covers(constraint.name)]
     if not enforced.joint_limits:
-        upright = [z for block in blocks for z in block.uprights.values()]
+        upright = [z for block in blocks for z in block.stand.uprights.values()]
         rows.append(Constraint("feet.upright", ca.vertcat(*upright), 0.0, np.inf))
     return rows
 
@@ -272,8 +258,8 @@ def _asked(every: Sequence[Constraint], blocks: Sequence[AgentBlock], enforced: 
 def _height_cost(block: AgentBlock, weight: float, settings: JointSettings) -> Expression:
     """An agent's W1 t1 + W3 t3 + comfort at one height."""
     weights = settings.tasks.weights
-    cost = weights.torque * weight * block.effort / TORQUE_UNIT**2 + block.posture_comfort
+    cost = weights.torque * weight * block.effort / TORQUE_UNIT**2 + block.stand.comfort
     if weights.center_of_pressure:
         feet = {v.name: v.value for v in block.variables if v.name.endswith("_foot")}
         cost += weights.center_of_pressure * len(SIDES) / len(feet) * pressure_task(feet)
-    return cost + block.wrench_comfort if settings.enforced.contact else cost
+    return cost + block.bearing.comfort if settings.enforced.contact else cost

@@ -21,10 +21,11 @@ import numpy as np
 
 from evodesign.posture.program import Constraint
 from evodesign.statics.balance import GRAVITY
+from evodesign.statics.disturbance import Disturbance, PushedAt
 from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.kinematics import vector
 
-__all__ = ["any_load", "load_constraints", "push_of"]
+__all__ = ["any_load", "disturbed_load_constraints", "load_constraints", "push_of", "turned_to_world"]
 
 Expression = Any
 
@@ -42,14 +43,30 @@ def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
     return in_agent * ca.DM([agent.sign, agent.sign, 1.0])
 
 
-def push_of(robot: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression:
-    """Horizontal force of the robot on the load, towards the person [N].
+def push_of(agent: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression:
+    """Force of an agent on the load along the world's x, from the robot towards the person [N].
 
     Args:
-        robot: the agent.
+        agent: robot or person.
         hand_wrenches: on its hands, in its frame, by side.
     """
-    return sum(-turned_to_world(robot, wrench[:3])[0] for wrench in hand_wrenches.values())
+    return sum(-turned_to_world(agent, wrench[:3])[0] for wrench in hand_wrenches.values())
+
+
+def squeeze_of(scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]]) -> Expression:
+    """How hard the agents push against each other [N].
+
+        (X_robot - X_human) / 2        X an agent's force on the load along the world's x
+
+    is the robot's push where nobody else pushes the load; a push from outside leaves it as it is when both
+    bear half of that.
+
+    Args:
+        scene: agents.
+        hand_wrenches: by agent name and side, in the agents' frames.
+    """
+    forces = [push_of(agent, hand_wrenches[agent.name]) for agent in (scene.robot, scene.human)]
+    return (forces[0] - forces[1]) / 2.0
 
 
 def load_constraints(
@@ -63,7 +80,59 @@ def load_constraints(
         symmetric: whether right hands mirror left ones, so that three of the six rows vanish by themselves.
     """
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
-    force: Expression = weight
+    rows = _unbalanced(scene, hand_wrenches, weight, weight, symmetric=symmetric)
+    push = push_of(scene.robot, hand_wrenches[scene.robot.name])
+    carried = _carried(hand_wrenches[scene.robot.name])
+    return _constraints(scene, rows, push, carried, -weight[2], "")
+
+
+def disturbed_load_constraints(
+    scene: Scene,
+    disturbance: Disturbance,
+    hand_wrenches: Mapping[str, Mapping[str, Expression]],
+    prefix: str,
+    *,
+    symmetric: bool,
+) -> tuple[Constraint, ...]:
+    """Balance of a load under a disturbance, and the bound on how hard the agents push against each other.
+
+    Args:
+        scene: agents and load, undisturbed.
+        disturbance: what happens to them.
+        hand_wrenches: as for `load_constraints`.
+        prefix: begins the constraints' names.
+        symmetric: as for `load_constraints`.
+    """
+    scene = replace(scene, payload=scene.payload.disturbed(disturbance))
+    weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
+    push = vector(disturbance.push_on(PushedAt.LOAD))
+    rows = _unbalanced(scene, hand_wrenches, weight + push, weight, symmetric=symmetric)
+    squeeze, carried = squeeze_of(scene, hand_wrenches), _carried(hand_wrenches[scene.robot.name])
+    return _constraints(scene, rows, squeeze, carried, -(weight + push)[2], prefix)
+
+
+def _carried(hand_wrenches: Mapping[str, Expression]) -> Expression:
+    """Upward force of an agent's hands on the load [N]."""
+    return -sum(wrench[2] for wrench in hand_wrenches.values())
+
+
+def _unbalanced(
+    scene: Scene,
+    hand_wrenches: Mapping[str, Mapping[str, Expression]],
+    force: Expression,
+    weight: Expression,
+    *,
+    symmetric: bool,
+) -> Expression:
+    """Sum of forces [N] and moments about the box's centre [N m] on the load.
+
+    Args:
+        scene: agents and load.
+        hand_wrenches: by agent name and side, in the agents' frames.
+        force: of everything but hands, [N].
+        weight: the part of it that acts at the centre of mass; the rest acts at the box's centre.
+        symmetric: whether rows that vanish by themselves are left out.
+    """
     moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
     for agent in (scene.robot, scene.human):
         for side in SIDES:
@@ -72,19 +141,31 @@ def load_constraints(
             point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, side)))
             force = force + on_load
             moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
-    rows = ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
-    push = push_of(scene.robot, hand_wrenches[scene.robot.name])
+    return ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
+
+
+def _constraints(
+    scene: Scene, rows: Expression, push: Expression, carried: Expression, whole: Expression, prefix: str
+) -> tuple[Constraint, ...]:
+    """The constraints of a load.
+
+    Args:
+        scene: limits and shares.
+        rows: what must vanish, [N] and [N m].
+        push: between the agents [N].
+        carried: by the robot, upwards [N].
+        whole: what both must carry [N].
+        prefix: begins the constraints' names.
+    """
     limit = scene.stance.push / LOAD_UNIT
-    constraints = [
-        Constraint("load.balance", rows / LOAD_UNIT, 0.0, 0.0),
-        Constraint("load.push", push / LOAD_UNIT, -limit, limit),
-    ]
-    carried = -sum(wrench[2] for wrench in hand_wrenches[scene.robot.name].values())
-    whole = GRAVITY * scene.payload.mass
+    balanced = (
+        Constraint(f"{prefix}load.balance", rows / LOAD_UNIT, 0.0, 0.0),
+        Constraint(f"{prefix}load.push", push / LOAD_UNIT, -limit, limit),
+    )
     if scene.robot_share is not None:
         missing = (carried - scene.robot_share * whole) / LOAD_UNIT
-        constraints.append(Constraint("load.share", missing, 0.0, 0.0))
-    elif scene.payload.grasp is Grasp.RIGID:
+        return (*balanced, Constraint(f"{prefix}load.share", missing, 0.0, 0.0))
+    if scene.payload.grasp is Grasp.RIGID:
         parts = ca.vertcat(carried, whole - carried) / LOAD_UNIT
-        constraints.append(Constraint("load.share", parts, 0.0, np.inf))
-    return tuple(constraints)
+        return (*balanced, Constraint(f"{prefix}load.share", parts, 0.0, np.inf))
+    return balanced

@@ -12,9 +12,10 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.agent import COMFORT, HAND_UNIT, hand_limits, hand_wrench
+from evodesign.posture.bearing import HAND_UNIT, hand_limits, hand_wrench
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Variable
+from evodesign.posture.stand import COMFORT
 from evodesign.statics.scene import Grasp, Scene
 
 __all__ = ["Hands", "free_hands"]
@@ -37,12 +38,18 @@ class Hands:
     comfort: Expression
 
 
-def free_hands(form: Form, scene: Scene) -> Hands:
-    """Hands that stand in for another agent of the same form (whole or half)."""
+def free_hands(form: Form, scene: Scene, prefix: str = "") -> Hands:
+    """Hands that stand in for another agent of the same form (whole or half).
+
+    Args:
+        form: of the agent that is there.
+        scene: for what a hand can pass.
+        prefix: begins the names of variables, where there is more than one thing to bear.
+    """
     limit = hand_limits(scene.payload)
     variables = {
         side: Variable.column(
-            f"partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
+            f"{prefix}partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
         )
         for side in form.sides
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from evodesign.design.policy import EFFORT_RATIO, POLICIES, ROBOT_SHARE
 from evodesign.errors import InputError, nearest_name
@@ -61,10 +62,14 @@ def robot_share(tables: ProblemFile, source: ProblemSource, scene: Scene) -> flo
     if not asked:
         return None
     low, high = share_interval(scene)
+    free = high - low > SAME
+    for disturbance in scene.disturbances.cases if free else ():
+        ends = share_interval(replace(scene, payload=scene.payload.disturbed(disturbance)))
+        low, high = max(low, ends[0]), min(high, ends[1])
     for key, share in asked.items():
         if not low - SAME <= share <= high + SAME:
             raise InputError(source.path, key, _allowed(scene, low, high), f"{share:g}")
-    return tables.task.robot_share if high - low > SAME else None
+    return tables.task.robot_share if free else None
 
 
 def _asked(tables: ProblemFile) -> Mapping[str, float]:

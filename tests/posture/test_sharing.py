@@ -12,7 +12,6 @@ import pytest
 
 from evodesign.design.policy import EFFORT_RATIO, ROBOT_SHARE
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
-from evodesign.errors import InputError
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.joint import JointProblem
@@ -224,8 +223,3 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     assert together.design[0] == pytest.approx(share(alone), abs=1e-3)
     cost = min(attempt.cost for attempt in alone.attempts if attempt.status is Status.SOLVED)
     assert together.attempt.cost == pytest.approx(cost, rel=1e-4)
-
-
-def test_the_joint_problem_refuses_to_choose_its_own_weights(problem: Problem) -> None:
-    with pytest.raises(InputError, match=r"policy\.effort_ratio: wanted a cost to minimise"):
-        JointProblem(problem.scene, policy(EFFORT_RATIO, -1.0, 1.0), (1.0,), problem.joint)

@@ -169,7 +169,7 @@ def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem, tmp_pat
     for name, text in {"p.toml": shared.source.text, **shared.source.files}.items():
         (tmp_path / "problems" / name).resolve().parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "problems" / name).write_text(text)
-    with pytest.raises(InputError, match=r"policy\.effort_ratio: wanted a cost to minimise, found one whose"):
+    with pytest.raises(InputError, match=r"design\.policy: wanted no effort_ratio in the joint problem"):
         start_baseline(tmp_path / "problems/p.toml", tmp_path / "run", 1, 1, 1, "serial", json=False)
     assert not (tmp_path / "run").exists()
 
