@@ -23,6 +23,7 @@ from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
 from evodesign.statics.balance import GRAVITY
+from evodesign.statics.disturbance import Disturbance, Disturbances
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
 
 NO_POLICY = DesignSpace(())
@@ -223,3 +224,18 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     assert together.design[0] == pytest.approx(share(alone), abs=1e-3)
     cost = min(attempt.cost for attempt in alone.attempts if attempt.status is Status.SOLVED)
     assert together.attempt.cost == pytest.approx(cost, rel=1e-4)
+
+
+def test_shares_and_moments_bind_under_disturbances_too(problem: Problem) -> None:
+    heavier, pushed = Disturbance("heavier", mass_share=0.2), Disturbance("pushed", push=(-20.0, 0.0, -10.0))
+    scene = replace(rigid(problem, 7.0, share=0.4), disturbances=Disturbances((heavier, pushed)))
+    found = solve(problem, scene)
+    for name, down in (("heavier", 1.2 * MASS * GRAVITY), ("pushed", MASS * GRAVITY + 10.0)):
+        agents = found.disturbed[name]
+        carried = {a: -sum(w[2] for w in agents[a].hand_wrenches.values()) for a in (ROBOT, HUMAN)}
+        assert carried[ROBOT] == pytest.approx(0.4 * down, abs=1e-5)
+        assert carried[HUMAN] == pytest.approx(0.6 * down, abs=1e-5)
+        assert (
+            max(np.abs(w[3:]).max() for p in agents.values() for w in p.hand_wrenches.values()) < 7.0 + 1e-6
+        )
+        assert found.residuals[f"{name}: load.share"] <= TOLERANCE
