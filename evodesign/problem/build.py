@@ -20,7 +20,7 @@ from evodesign.problem.disturbances import scene_disturbances
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
-from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, objective_kind
+from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
 from evodesign.problem.sharing import check_policies, effort_weights, robot_share
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
@@ -76,6 +76,12 @@ class Problem:
     def scene(self) -> Scene:
         """The first scene: all of them have its robot, ground and stance."""
         return self.scenes[0]
+
+    @property
+    def stretches(self) -> bool:
+        """Whether the people's own reach counts: it is an objective, or there are several of them."""
+        several = len({id(scene.human) for scene in self.scenes}) > 1
+        return several or any(objective.name == SHARED_REACH for objective in self.objectives)
 
     @property
     def middle(self) -> int:
