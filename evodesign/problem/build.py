@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Limits
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.joint import JointSettings
-from evodesign.posture.posture import EffortWeights, Symmetry
+from evodesign.posture.posture import Symmetry
 from evodesign.posture.program import IpoptOptions
+from evodesign.posture.sharing import EffortWeights
 from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
@@ -21,6 +22,7 @@ from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
 from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
+from evodesign.problem.sharing import check_policies, effort_weights, robot_share
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
@@ -114,6 +116,8 @@ def build_problem(source: ProblemSource) -> Problem:
     scenes = tuple(
         Scene(robot, human, load, ground, stance, disturbances) for human in people for load in loads
     )
+    check_policies(tables, source)
+    scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = _space(tables, source, robot.tree)
     symmetry = _symmetry(tables, source, scenes, space)
     start: dict[str, Genome] = {}
@@ -121,7 +125,7 @@ def build_problem(source: ProblemSource) -> Problem:
         name = tables.search.start
         designs = read_designs(source.files[name], name, space, robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
-    weights = EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human)
+    weights = effort_weights(tables)
     return Problem(
         name=tables.name,
         source=source,
@@ -206,8 +210,11 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
         DesignParameter(ParameterKind.DENSITY, t.name, t.links, t.lower_kg_per_m3, t.upper_kg_per_m3)
         for t in tables.design.density
     ]
+    parameters += [
+        DesignParameter(ParameterKind.POLICY, t.name, (), t.lower, t.upper) for t in tables.design.policy
+    ]
     if not parameters:
-        raise InputError(source.path, "design", "a length or density parameter", "none")
+        raise InputError(source.path, "design", "a length, density or policy parameter", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
     for parameter in parameters:
