@@ -41,6 +41,7 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 
 bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
+	$(BIN)/python -m benchmarks.catalogue_quality --population 24
 	$(BIN)/python benchmarks/evolution_vs_gradient.py
 	$(BIN)/python -m benchmarks.inner_speed
 	$(BIN)/python -m benchmarks.inner_quality

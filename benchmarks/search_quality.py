@@ -24,15 +24,28 @@ PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
 ALGORITHMS = ("random", "nsga2", "cma-es")
 
 
+Runs = dict[tuple[str, int], Run]
+"""By algorithm and seed."""
+
+
 def main() -> None:
     """Run all searches, compare, write and print."""
-    options = _options()
+    options = read_options("Searches against random sampling.")
+    report(PROBLEM, search_all(PROBLEM, options), options, "search_quality.json")
+
+
+def search_all(problem: Path, options: argparse.Namespace) -> Runs:
+    """Every algorithm's run of a problem with every seed."""
     with tempfile.TemporaryDirectory() as folder:
-        runs = {
-            (algorithm, seed): _search(Path(folder), algorithm, seed, options)
+        return {
+            (algorithm, seed): _search(problem, Path(folder), algorithm, seed, options)
             for algorithm in ALGORITHMS
             for seed in range(1, options.seeds + 1)
         }
+
+
+def report(problem: Path, runs: Runs, options: argparse.Namespace, name: str) -> None:
+    """Compare runs of a problem by hypervolume; write the results to a file of a name, and print a table."""
     objectives = next(iter(runs.values())).header.objectives
     reference = reference_point(objectives, [e for run in runs.values() for e in run.evaluations])
     if reference is None:
@@ -48,26 +61,27 @@ def main() -> None:
         for (algorithm, seed), volume in volumes.items()
     ]
     result = {
-        "problem": PROBLEM.name,
+        "problem": problem.name,
         "evaluations": options.evaluations,
         "population": options.population,
         "reference": reference,
         "rows": rows,
     }
-    target = HERE / "results" / "search_quality.json"
+    target = HERE / "results" / name
     target.parent.mkdir(exist_ok=True)
     target.write_text(json.dumps(result, indent=2) + "\n")
     print(f"| algorithm | seed | hypervolume | ratio to random |\n|---|---|---|---|\n{_table(rows)}")
 
 
-def _options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description="Searches against random sampling.")
+def read_options(description: str) -> argparse.Namespace:
+    """The command line's numbers."""
+    parser = argparse.ArgumentParser(description=description)
     for name, default in (("evaluations", 480), ("population", 48), ("seeds", 3), ("jobs", 2)):
         parser.add_argument(f"--{name}", type=int, default=default)
     return parser.parse_args()
 
 
-def _search(folder: Path, algorithm: str, seed: int, options: argparse.Namespace) -> Run:
+def _search(problem: Path, folder: Path, algorithm: str, seed: int, options: argparse.Namespace) -> Run:
     run = folder / f"{algorithm}-{seed}"
     numbers = {
         "--seed": seed,
@@ -75,7 +89,7 @@ def _search(folder: Path, algorithm: str, seed: int, options: argparse.Namespace
         "--population": options.population,
         "--jobs": options.jobs,
     }
-    command = [sys.executable, "-c", "from evodesign.cli import main; main()", "search", str(PROBLEM)]
+    command = [sys.executable, "-c", "from evodesign.cli import main; main()", "search", str(problem)]
     command += ["--run", str(run), "--algorithm", algorithm, "--json"]
     command += [str(part) for pair in numbers.items() for part in pair]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

@@ -7,6 +7,7 @@ height that was not reached) is absent or None, never a large number.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 
 import msgspec
@@ -34,7 +35,10 @@ __all__ = [
     "Stage",
     "Status",
     "Turn",
+    "choice_at",
     "design_of",
+    "materials_of",
+    "middle_of",
     "worst_status",
 ]
 
@@ -81,22 +85,49 @@ class Objective(Record, frozen=True):
     unit: str
 
 
-class Parameter(Record, frozen=True):
+class Parameter(Record, frozen=True, omit_defaults=True):
     """One design parameter: a length multiplier (unit "1") or a density (unit "kg/m^3").
 
-    A genome's coordinate u in [0, 1] stands for (1 - u) lower + u upper.
+    A genome's coordinate u in [0, 1] stands for (1 - u) lower + u upper. With n choices, it stands for the
+    choice in whose n-th part of [0, 1] it lies, and is the middle of that part.
+
+    Attributes:
+        choices: the only values that there are, rising; none if every value within the bounds is one.
+        materials: the choices' names.
     """
 
     name: str
     lower: float
     upper: float
     unit: str
+    choices: tuple[float, ...] = ()
+    materials: tuple[str, ...] = ()
+
+    def value_at(self, coordinate: float) -> float:
+        """The value that a genome's coordinate stands for."""
+        if self.choices:
+            return self.choices[choice_at(coordinate, len(self.choices))]
+        return _between(self.lower, self.upper, coordinate)
+
+    def material_of(self, value: float) -> str | None:
+        """The material of a value; None for a parameter without materials."""
+        return dict(zip(self.choices, self.materials, strict=False)).get(value)
+
+
+def choice_at(coordinate: float, count: int) -> int:
+    """Which of so many equal parts of [0, 1] holds a coordinate."""
+    return min(max(int(coordinate * count), 0), count - 1)
+
+
+def middle_of(choice: int, count: int) -> float:
+    """The middle of one of so many equal parts of [0, 1]: the coordinate of a choice."""
+    return (choice + 0.5) / count
 
 
 def design_of(parameters: tuple[Parameter, ...], genome: Genome) -> dict[str, float]:
     """Parameter values, by name, of a genome."""
     return {
-        parameter.name: _between(parameter.lower, parameter.upper, coordinate)
+        parameter.name: parameter.value_at(coordinate)
         for parameter, coordinate in zip(parameters, genome, strict=True)
     }
 
@@ -104,6 +135,12 @@ def design_of(parameters: tuple[Parameter, ...], genome: Genome) -> dict[str, fl
 def _between(lower: float, upper: float, share: float) -> float:
     """The number at a share of the way from lower to upper, never past them by rounding."""
     return min(max(lower * (1.0 - share) + upper * share, lower), upper)
+
+
+def materials_of(parameters: tuple[Parameter, ...], design: Mapping[str, float]) -> dict[str, str]:
+    """The material's name of each parameter that has one in a design."""
+    found = {parameter.name: parameter.material_of(design[parameter.name]) for parameter in parameters}
+    return {name: material for name, material in found.items() if material is not None}
 
 
 class ReachOutcome(Record, frozen=True):
@@ -273,6 +310,8 @@ class SearchSettings(Record, frozen=True):
     """Everything that determines a search beside the evaluations it is told.
 
     `past` holds the stages that a branch went through before, the earliest first; `start` is of the earliest.
+    `choices` is left out where no coordinate is discrete; else it says of each coordinate how many choices
+    there are, 0 for a continuous one.
     """
 
     algorithm: str
@@ -283,6 +322,17 @@ class SearchSettings(Record, frozen=True):
     start: tuple[Genome, ...] = ()
     past: tuple[Stage, ...] = ()
     asynchronous: bool = False
+    choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """The choices of every coordinate, 0 for a continuous one."""
+        return (0,) * self.dimension if self.choices is msgspec.UNSET else self.choices
+
+    @property
+    def discrete(self) -> bool:
+        """Whether some coordinate is discrete."""
+        return any(self.counts)
 
 
 class ProblemSource(Record, frozen=True):

@@ -15,6 +15,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.posture.cache import Cache, user_cache
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.materials import refuse_no_choice
 from evodesign.problem.prepare import prepared
 from evodesign.problem.source import read_source
 from evodesign.records import Objective, Parameter, ProblemSource
@@ -67,8 +68,9 @@ class OpenedProblem:
         Args:
             design: values by name, those left out as in the unscaled robot; or one value per parameter.
         Raises:
-            InputError: an unknown name, a wrong number of values, a value that is no positive number,
-                or a policy beyond its range.
+            InputError: an unknown name, a wrong number of values, a value that is no positive number, a
+                policy beyond its range, or a density that is neither a material's nor the unscaled robot's
+                where there are materials.
         """
         found = self._evaluator.assess_values(self._values(design))
         return Design(None, found.assessment, found.heights)
@@ -93,6 +95,9 @@ class OpenedProblem:
                 wanted, sound = "a positive number", math.isfinite(values[name]) and values[name] > 0.0
             if not sound:
                 raise InputError("design", name, wanted, f"{values[name]}")
+        for parameter, name in zip(self._evaluator.problem.space.parameters, names, strict=True):
+            if values[name] != self.unscaled[name]:
+                refuse_no_choice(parameter, values[name], "design", name)
         return tuple(float(values[name]) for name in names)
 
 

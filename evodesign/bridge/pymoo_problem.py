@@ -3,7 +3,7 @@
 Variables are the parameters in their own units, within their bounds. Objectives are minimised: a maximised
 one is negated. The one constraint is the violation [m], infinite when a failure left it unknown; the
 objectives of an infeasible design are not a number, for they do not exist. pymoo orders such designs by the
-constraint.
+constraint. A density with materials counts as that of the nearest one.
 """
 
 from __future__ import annotations
@@ -51,7 +51,11 @@ class PymooProblem(ElementwiseProblem):  # type: ignore[misc]
         )
 
     def _evaluate(self, x: NDArray[np.float64], out: dict[str, Any], *args: Any, **kwargs: Any) -> None:
-        assessment = self.problem.evaluate(x.tolist()).assessment
+        nearest = [
+            min(each.choices, key=lambda choice: abs(choice - value)) if each.choices else value
+            for each, value in zip(self.problem.parameters, x.tolist(), strict=True)
+        ]
+        assessment = self.problem.evaluate(nearest).assessment
         objectives = minimised(self.problem.objectives, assessment)
         violation = math.inf if assessment.violation is None else assessment.violation
         if violation == 0.0 and objectives is None:

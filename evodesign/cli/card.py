@@ -17,7 +17,7 @@ from evodesign.cli.output import figure, visible
 from evodesign.cli.person_table import TITLE, case_name, person_table
 from evodesign.cli.tables import heading
 from evodesign.errors import on_one_line
-from evodesign.records import Assessment, HeightDetail, Parameter
+from evodesign.records import Assessment, HeightDetail, Parameter, materials_of
 from evodesign.report.strain import most_strained
 
 if TYPE_CHECKING:
@@ -95,6 +95,9 @@ def _parameters(opened: OpenedDesign) -> Table:
     table = _table("parameter")
     for column in ("value", "unit", "lower", "within its bounds", "upper"):
         table.add_column(column, justify="right" if column in ("value", "lower") else "left")
+    made_of = materials_of(opened.run.header.parameters, opened.evaluation.assessment.design)
+    if made_of:
+        table.add_column("material", overflow="fold")
     for parameter in opened.run.header.parameters:
         value = opened.evaluation.assessment.design[parameter.name]
         unit = "" if parameter.unit == "1" else parameter.unit
@@ -107,6 +110,7 @@ def _parameters(opened: OpenedDesign) -> Table:
             ends[0],
             bar,
             ends[1],
+            *([escape(on_one_line(made_of.get(parameter.name, "")))] if made_of else []),
         )
     return table
 

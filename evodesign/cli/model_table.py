@@ -11,6 +11,7 @@ from rich.table import Table
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.cli.output import figure, visible
 from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.errors import on_one_line
 from evodesign.problem.build import Problem
 from evodesign.statics.disturbance import Disturbance
 from evodesign.statics.scene import Agent
@@ -39,6 +40,7 @@ def model_json(problem: Problem) -> dict[str, Any]:
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
+        **_materials(problem),
     }
 
 
@@ -52,6 +54,16 @@ def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
     }
 
 
+def _materials(problem: Problem) -> dict[str, Any]:
+    """All materials that some parameter may be of, under a key that other problems do not have."""
+    found = {each.name: each for parameter in problem.space.parameters for each in parameter.materials}
+    shown = [
+        {"name": each.name, "density_kg_per_m3": each.density, "source": each.source}
+        for each in sorted(found.values(), key=lambda each: each.density)
+    ]
+    return {"materials": shown} if shown else {}
+
+
 def model_tables(problem: Problem) -> tuple[Table, ...]:
     """What was understood, for a person: agents, task, the robot's links, and the parameters."""
     shown = model_json(problem)
@@ -60,6 +72,7 @@ def model_tables(problem: Problem) -> tuple[Table, ...]:
         _task_table(shown),
         _links_table(shown["links"]),
         _parameters_table(shown["parameters"]),
+        *([_materials_table(shown["materials"])] if "materials" in shown else []),
     )
 
 
@@ -129,7 +142,20 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
     for parameter in parameters:
         bounds = (figure(parameter["lower"]), figure(parameter["upper"]), parameter["unit"])
         links = ", ".join(link["link"] for link in parameter["links"])
+        if "materials" in parameter:
+            links = f"{links}; of {', '.join(parameter['materials'])}"
         table.add_row(escape(parameter["name"]), *bounds, escape(links))
+    return table
+
+
+def _materials_table(materials: Iterable[dict[str, Any]]) -> Table:
+    table = Table(title="materials", title_justify="left")
+    table.add_column("material", overflow="fold")
+    table.add_column(escape("density [kg/m^3]"), justify="right")
+    table.add_column("source", overflow="fold")
+    for material in materials:
+        name, source = escape(on_one_line(material["name"])), escape(on_one_line(material["source"]))
+        table.add_row(name, figure(material["density_kg_per_m3"]), source)
     return table
 
 
@@ -152,6 +178,7 @@ def _parameter(parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
         "lower": parameter.lower,
         "upper": parameter.upper,
         "unit": parameter.record.unit,
+        **({"materials": [each.name for each in parameter.materials]} if parameter.materials else {}),
         "links": [_link(tree.link_by_name[name], tree, grows=grows) for name in parameter.links],
     }
 

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.cli.output import figure, shown
-from evodesign.records import Evaluation, Objective
+from evodesign.records import Evaluation, Objective, materials_of
 from evodesign.runlog.run import Run
 
 __all__ = ["front_csv", "front_json", "front_table", "heading"]
@@ -47,19 +47,29 @@ def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
                 "id": evaluation.number,
                 "objectives": evaluation.assessment.objectives,
                 "parameters": evaluation.assessment.design,
+                **_materials(run, evaluation),
             }
             for evaluation in chosen.designs
         ],
     }
 
 
+def _materials(run: Run, evaluation: Evaluation) -> dict[str, Any]:
+    """The materials by parameter, under a key that only designs of materials have."""
+    found = materials_of(run.header.parameters, evaluation.assessment.design)
+    return {"materials": found} if found else {}
+
+
 def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
-    """Designs as comma-separated values: number, objectives, parameters, in full precision."""
+    """Designs as comma-separated values: number, objectives, parameters (in full), materials."""
     objectives = [objective.name for objective in run.header.objectives]
     parameters = [parameter.name for parameter in run.header.parameters]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["design", *objectives, *parameters])
+    made_of = [parameter for parameter in run.header.parameters if parameter.materials]
+    writer.writerow(
+        ["design", *objectives, *parameters, *(f"{parameter.name}.material" for parameter in made_of)]
+    )
     for evaluation in designs:
         assessment = evaluation.assessment
         writer.writerow(
@@ -67,6 +77,7 @@ def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
                 evaluation.number,
                 *(assessment.objectives[name] for name in objectives),
                 *(assessment.design[name] for name in parameters),
+                *(parameter.material_of(assessment.design[parameter.name]) for parameter in made_of),
             ]
         )
     return text.getvalue()

@@ -12,10 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
 from evodesign.design.policy import POLICIES
 from evodesign.errors import ModelError
-from evodesign.records import Genome, Parameter, design_of
+from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import growth_of, resize
 from evodesign.tree.symmetry import mirror_of
@@ -43,6 +44,8 @@ class DesignParameter:
         group: name of the group, unique among the parameters of its kind; of a policy, its own.
         links: names of the links that share the value; none for a policy.
         lower, upper: bounds.
+        materials: of which a density must be one's, the lightest first; none if every value within the
+            bounds will do.
     """
 
     kind: ParameterKind
@@ -50,6 +53,23 @@ class DesignParameter:
     links: tuple[str, ...]
     lower: float
     upper: float
+    materials: tuple[Material, ...] = ()
+
+    @property
+    def choices(self) -> tuple[float, ...]:
+        """The only values that there are, rising; none if every value within the bounds is one."""
+        return tuple(material.density for material in self.materials)
+
+    def nearest(self, value: float) -> Material:
+        """The material whose density is nearest to a value."""
+        return min(self.materials, key=lambda material: abs(material.density - value))
+
+    def coordinate(self, value: float) -> float:
+        """The genome's coordinate of a value; that of the nearest choice where there are choices."""
+        if self.choices:
+            nearest = min(self.choices, key=lambda choice: abs(choice - value))
+            return middle_of(self.choices.index(nearest), len(self.choices))
+        return (value - self.lower) / (self.upper - self.lower)
 
     @property
     def name(self) -> str:
@@ -59,7 +79,14 @@ class DesignParameter:
     @property
     def record(self) -> Parameter:
         """The parameter as it is remembered."""
-        return Parameter(name=self.name, lower=self.lower, upper=self.upper, unit=UNITS[self.kind])
+        return Parameter(
+            name=self.name,
+            lower=self.lower,
+            upper=self.upper,
+            unit=UNITS[self.kind],
+            choices=self.choices,
+            materials=tuple(material.name for material in self.materials),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +147,11 @@ class DesignSpace:
         """Names of the policies that a design chooses."""
         return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
 
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """How many choices each coordinate of a genome has, 0 for a continuous one."""
+        return tuple(len(parameter.materials) for parameter in self.parameters)
+
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
         """The file's robot as a design: multipliers one, densities averaged over groups, usual policies."""
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
@@ -140,10 +172,12 @@ class DesignSpace:
         return tuple(design_of(self.records, genome).values())
 
     def genome(self, values: Sequence[float]) -> Genome:
-        """The genome of parameter values; coordinates outside [0, 1] mean values outside the bounds."""
+        """The genome of parameter values; coordinates outside [0, 1] mean values outside the bounds.
+
+        A value that is no choice becomes the nearest one; who takes values from a user refuses it first.
+        """
         return tuple(
-            (value - parameter.lower) / (parameter.upper - parameter.lower)
-            for parameter, value in zip(self.parameters, values, strict=True)
+            parameter.coordinate(value) for parameter, value in zip(self.parameters, values, strict=True)
         )
 
     def named(self, values: Sequence[float]) -> Mapping[str, float]:

@@ -39,6 +39,7 @@ TORQUE_UNIT = 10.0  # [N m] per unit of a lifted torque
 FORCE_UNIT = 100.0  # [N] per unit of a foot wrench
 STRONGEST = 300.0  # [N] and [N m] of a hand, beyond any holding posture
 HAND_UNIT = 10.0  # [N] per unit of a hand force, [N m] per unit of a hand moment
+LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit
 
 GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}
 """Numbers of a hand's wrench that are free: a force, or a force and a moment."""
@@ -104,13 +105,12 @@ def bear(stand: Stand, scene: Scene, prefix: str = "", pushes: Sequence[AppliedW
 
 def _variables(form: Form, scene: Scene, name: str) -> tuple[Variable, ...]:
     """Wrenches on hands and feet, and torques."""
-    count = len(form.joints)
-    hand, foot, torque = hand_limits(scene.payload), [5000.0] * 6, [1000.0] * count
+    hand, foot, torque = hand_limits(scene.payload), [5000.0] * 6, _torque_bounds(form)
     rest = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
     bounded = [
         *((f"{side}_hand", hand, [0.0] * len(hand), HAND_UNIT) for side in form.sides),
         *((f"{side}_foot", foot, rest, FORCE_UNIT) for side in form.sides),
-        ("torques", torque, [0.0] * count, TORQUE_UNIT),
+        ("torques", torque, [0.0] * len(torque), TORQUE_UNIT),
     ]
     return tuple(
         Variable.column(f"{name}.{part}", [-x for x in limit], limit, begin, unit)
@@ -122,6 +122,16 @@ def hand_limits(payload: Payload) -> list[float]:
     """Largest size of each free number of a hand's wrench [N, N m]."""
     moment = min(STRONGEST, payload.hand_moment)
     return ([STRONGEST] * 3 + [moment] * 3)[: GRASP_ROWS[payload.grasp]]
+
+
+def _torque_bounds(form: Form) -> list[float]:
+    """Largest torque of each of the form's joints [N m]; a pair bears what its weaker joint does."""
+    limits = form.agent.torque_limits if form.agent.limits_torques else {}
+    pairs = {name: name for name in form.joints} if form.mirror is None else form.mirror.joints
+    return [
+        min(LARGEST_TORQUE, *(limits.get(joint, LARGEST_TORQUE) for joint in (name, pairs[name])))
+        for name in form.joints
+    ]
 
 
 def hand_wrench(free: Expression) -> Expression:

@@ -120,6 +120,7 @@ class Checker:
                 **_statics(agent, instant, posture, disturbance),
                 "foot_contact": _foot_contact(agent, posture, self._scene),
                 "moved": _distance(undisturbed[agent.name], posture),
+                **_torque_limits(agent, posture),
             }
             found.update({f"{agent.name}.{name}": value for name, value in own.items()})
         scene = replace(self._scene, payload=self._scene.payload.disturbed(disturbance))
@@ -196,7 +197,16 @@ def _limits(agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene)
         "feet_yaw": max(0.0, max(yaws) - stance.foot_yaw),
         "trunk_clear": max(0.0, *trunk),
         "base_tilt": max(0.0, float(np.abs(posture.base_angles).max()) - stance.base_tilt),
+        **_torque_limits(agent, posture),
     }
+
+
+def _torque_limits(agent: Agent, posture: AgentPosture) -> dict[str, float]:
+    """How far torques lie beyond their limits, where limits hold."""
+    if not agent.limits_torques:
+        return {}
+    beyond = [abs(posture.torques[name]) - limit for name, limit in agent.torque_limits.items()]
+    return {"torque_limits": max(0.0, *beyond)}
 
 
 def _load(scene: Scene, postures: Mapping[str, AgentPosture], outside: Array = STILL) -> dict[str, float]:

@@ -238,4 +238,5 @@ def _designs(
 
 def _named(agent: Agent) -> list[bytes]:
     named = (agent.joints, agent.hands, agent.soles, agent.sole_size, agent.trunk)
-    return [urdf_text(agent.tree).encode(), repr(named).encode()]
+    limits = [repr(sorted(agent.torque_limits.items())).encode()] if agent.limits_torques else []
+    return [urdf_text(agent.tree).encode(), repr(named).encode(), *limits]

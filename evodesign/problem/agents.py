@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
-from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable
+from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable, TorqueLimits
 from evodesign.problem.people import everyone
+from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
 from evodesign.statics.contact import SoleSize
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Agent
@@ -26,7 +27,9 @@ def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     table = tables.robot
     bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.SHAPES)
     tree = _with_frames(bare, table.frames, ROBOT, source)
-    return _agent(ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    agent = _agent(ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    hard = table.torque_limits is TorqueLimits.HARD
+    return replace(agent, torque_limits=torque_limits(tables, source, agent), limits_torques=hard)
 
 
 def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...]:

@@ -14,6 +14,8 @@ Where a problem has several people or loads, `heights` has an entry for each cas
 Where the problem has disturbances, a solved height's `disturbed` holds, by their names, torques and wrenches
 of the same posture under each. Residuals of such a case carry its name.
 
+`materials` names the material of each density that is one's; a problem without materials has no such key.
+
 `sensitivities` holds, for each objective that exists, how it moves with the design:
 
     {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
@@ -35,7 +37,7 @@ from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
-from evodesign.records import Assessment
+from evodesign.records import Assessment, materials_of
 from evodesign.statics.scene import HUMAN, SIDES, Scene
 
 __all__ = ["answer"]
@@ -49,9 +51,12 @@ def answer(
     sensitivities: Mapping[str, Sensitivity],
 ) -> dict[str, Any]:
     """The JSON object of one design."""
+    design = dict(problem.space.named(values))
+    materials = materials_of(problem.space.records, design)
     return {
         "problem": problem.name,
-        "design": dict(problem.space.named(values)),
+        "design": design,
+        **({"materials": materials} if materials else {}),
         "status": str(assessment.status),
         "objectives": assessment.objectives,
         "units": {objective.name: objective.unit for objective in problem.objectives},

@@ -19,6 +19,7 @@ from evodesign.posture.reach import Reach
 from evodesign.posture.solution import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
+from evodesign.problem.materials import refuse_choices
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
@@ -30,8 +31,10 @@ def refuse_unsuited(problem: Problem) -> None:
     """Refuse a problem that the joint problem cannot tell.
 
     Raises:
-        InputError: several people or loads, disturbances, or weights that a design would choose for itself.
+        InputError: several people or loads, disturbances, weights that a design would choose for itself, or a
+            density of materials.
     """
+    refuse_choices(problem.space, problem.source)
     if EFFORT_RATIO in problem.space.policy_names:
         wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"
         raise InputError(problem.source.path, "design.policy", wanted, f"'{EFFORT_RATIO}'")
@@ -50,6 +53,8 @@ class Baseline:
     Args:
         problem: with its `[baseline]`.
         fixed: a genome that the design is held at; None to optimise it.
+    Raises:
+        InputError: as in `refuse_unsuited`.
     """
 
     def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:

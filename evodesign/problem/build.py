@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import msgspec
+
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Limits
@@ -20,9 +22,11 @@ from evodesign.problem.disturbances import scene_disturbances
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
+from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
 from evodesign.problem.sharing import check_policies, effort_weights, robot_share
+from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
@@ -91,7 +95,13 @@ class Problem:
     def settings(
         self, algorithm: str, population: int, seed: int, asynchronous: bool = False
     ) -> SearchSettings:
-        """Settings of a search over this problem."""
+        """Settings of a search over this problem.
+
+        Raises:
+            InputError: starts of the joint problem, and a density of materials.
+        """
+        if algorithm == JOINT_STARTS:
+            refuse_choices(self.space, self.source)
         return SearchSettings(
             algorithm=algorithm,
             dimension=len(self.space.parameters),
@@ -100,6 +110,7 @@ class Problem:
             seed=seed,
             start=self.joint_start if algorithm == JOINT_STARTS else self.start,
             asynchronous=asynchronous,
+            choices=self.space.counts if any(self.space.counts) else msgspec.UNSET,
         )
 
 
@@ -111,6 +122,7 @@ def build_problem(source: ProblemSource) -> Problem:
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
     robot, ground, stance = robot_agent(tables, source), _ground(tables), _stance(tables, source)
+    refuse_unlimited(tables, source, robot)
     people, loads = human_agents(tables, source), payloads(tables, source)
     disturbances = scene_disturbances(tables, source, (robot, *people), loads)
     scenes = tuple(
@@ -206,10 +218,7 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
     parameters = [
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
-    parameters += [
-        DesignParameter(ParameterKind.DENSITY, t.name, t.links, t.lower_kg_per_m3, t.upper_kg_per_m3)
-        for t in tables.design.density
-    ]
+    parameters += density_parameters(tables, source)
     parameters += [
         DesignParameter(ParameterKind.POLICY, t.name, (), t.lower, t.upper) for t in tables.design.policy
     ]

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from evodesign.design.policy import POLICIES
-from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.file import DesignEntry, PopulationFile
+from evodesign.problem.materials import refuse_no_choice
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
@@ -28,7 +29,8 @@ def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict
     """Parameter values of every design of a population file, by name; what it leaves out stays unscaled.
 
     Raises:
-        InputError: the file does not decode, names a design twice, or names an unknown parameter.
+        InputError: the file does not decode, names a design twice or an unknown parameter, or has a density
+            of no material.
     """
     file = decode_toml(text, source, PopulationFile)
     unscaled = space.named(space.unscaled(tree))
@@ -37,12 +39,13 @@ def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict
         key = f"design[{position}]"
         if entry.name in designs:
             raise InputError(source, f"{key}.name", "a unique name", f"'{entry.name}' twice")
-        given = _given(entry, source, key, unscaled)
+        given = _given(entry, source, key, space)
         designs[entry.name] = tuple({**unscaled, **given}.values())
     return designs
 
 
-def _given(entry: DesignEntry, source: str, key: str, known: Mapping[str, float]) -> dict[str, float]:
+def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dict[str, float]:
+    known = {parameter.name: parameter for parameter in space.parameters}
     given: dict[str, float] = {}
     for kind, table in TABLES.items():
         values: dict[str, float] = getattr(entry, table)
@@ -54,8 +57,27 @@ def _given(entry: DesignEntry, source: str, key: str, known: Mapping[str, float]
                 raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
             if kind is ParameterKind.POLICY and not POLICIES[group].means(value):
                 raise InputError(source, f"{key}.{table}.{group}", POLICIES[group].wanted, f"{value:g}")
+            refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value
+    for group, material in entry.material.items():
+        name = f"{ParameterKind.DENSITY}.{group}"
+        given[name] = _density_of(material, known.get(name), source, f"{key}.material.{group}", given)
     return given
+
+
+def _density_of(
+    material: str, parameter: DesignParameter | None, source: str, key: str, given: Mapping[str, float]
+) -> float:
+    """The density [kg/m^3] of a material that a design names for a parameter."""
+    if parameter is None or not parameter.choices:
+        raise InputError(source, key, "a density parameter that has materials", f"'{material}' for another")
+    if parameter.name in given:
+        raise InputError(source, key, "either a material or a density", "both")
+    densities = {each.name: each.density for each in parameter.materials}
+    if material not in densities:
+        wanted = f"one of {', '.join(densities)}"
+        raise InputError(source, key, wanted, f"'{material}'{nearest_name(material, densities)}")
+    return densities[material]
 
 
 def designs_text(name: str, designs: Mapping[str, Sequence[float]], space: DesignSpace, remark: str) -> str:
@@ -92,11 +114,12 @@ def start_genomes(
     """Genomes of designs that a search begins with.
 
     Raises:
-        InputError: a design lies outside the bounds of the problem.
+        InputError: a design lies outside the bounds of the problem, or has a density of no material.
     """
     genomes = []
     for name, values in designs.items():
         for parameter, value in zip(space.parameters, values, strict=True):
+            refuse_no_choice(parameter, value, source, f"design '{name}'")
             if not parameter.lower <= value <= parameter.upper:
                 wanted = f"{parameter.name} within [{parameter.lower:g}, {parameter.upper:g}]"
                 raise InputError(source, f"design '{name}'", wanted, f"{value:g}")

@@ -6,6 +6,7 @@ that name file, key, what was wanted and what was found.
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated, TypeVar
 
 import msgspec
@@ -17,7 +18,15 @@ from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 from evodesign.tree.population import PopulationSex
 
-__all__ = ["BaselineTable", "DisturbanceTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
+__all__ = [
+    "BaselineTable",
+    "DisturbanceTable",
+    "HumanTable",
+    "ProblemFile",
+    "RobotTable",
+    "SearchTable",
+    "TorqueLimits",
+]
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
@@ -55,6 +64,13 @@ class FrameTable(Table, frozen=True):
     rpy_rad: Point = (0.0, 0.0, 0.0)
 
 
+class TorqueLimits(StrEnum):
+    """Whether the limits of the robot's joint torques hold in every posture."""
+
+    NONE = "none"
+    HARD = "hard"
+
+
 class RobotTable(Table, frozen=True):
     """`[robot]`: a URDF with primitive shapes, and the parts of it that matter."""
 
@@ -64,6 +80,8 @@ class RobotTable(Table, frozen=True):
     soles: SolesTable = SolesTable()
     trunk: tuple[Name, ...] = ("root_link", "chest")
     joints: tuple[Name, ...] = ()
+    torque_limits: TorqueLimits = TorqueLimits.NONE
+    torque_limits_n_m: dict[str, Positive] = {}
 
 
 class PopulationForm(Table, frozen=True):
@@ -175,12 +193,21 @@ class LengthTable(Table, frozen=True):
 
 
 class DensityTable(Table, frozen=True):
-    """`[[design.density]]`: a density shared by links."""
+    """`[[design.density]]`: a density shared by links: within bounds, or that of one of some materials."""
 
     name: Name
     links: Annotated[tuple[Name, ...], Meta(min_length=1)]
-    lower_kg_per_m3: Positive
-    upper_kg_per_m3: Positive
+    lower_kg_per_m3: Positive | None = None
+    upper_kg_per_m3: Positive | None = None
+    materials: tuple[Name, ...] | None = None
+
+
+class MaterialTable(Table, frozen=True):
+    """`[[material]]`: a material beside those of the catalogue, and where its density comes from."""
+
+    name: Name
+    density_kg_per_m3: Positive
+    source: Name
 
 
 class PolicyTable(Table, frozen=True):
@@ -274,6 +301,7 @@ class ProblemFile(Table, frozen=True):
     task: TaskTable
     design: DesignTable
     objectives: ObjectivesTable
+    material: tuple[MaterialTable, ...] = ()
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()
@@ -299,12 +327,16 @@ def _listed(key: str, tables: T | tuple[T, ...]) -> dict[str, T]:
 
 
 class DesignEntry(Table, frozen=True):
-    """`[[design]]` of a population file: values by group; what is left out stays unscaled."""
+    """`[[design]]` of a population file: values by group; what is left out stays unscaled.
+
+    `material` names the material of a density that has materials, in place of `density_kg_per_m3`.
+    """
 
     name: Name
     length: dict[str, Positive] = {}
     density_kg_per_m3: dict[str, Positive] = {}
     policy: dict[str, float] = {}
+    material: dict[str, Name] = {}
 
 
 class PopulationFile(Table, frozen=True):

@@ -50,6 +50,12 @@ def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return postures[HUMAN].torque_norm
 
 
+def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The robot's largest |tau| over its limit, over the joints: 1 for a joint that bears all that it can."""
+    torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
+    return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
+
+
 def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """The person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
     strain = largest_strain(postures[HUMAN].torques, scene.human.strengths)
@@ -100,6 +106,7 @@ HUMAN_EFFORT = "human_effort"
 QUANTITIES: Mapping[str, CaseQuantity] = {
     "robot_torque": CaseQuantity("N m", robot_torque),
     "human_torque": CaseQuantity("N m", human_torque),
+    "peak_torque": CaseQuantity("1", peak_torque),
     HUMAN_EFFORT: CaseQuantity("1", human_effort),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""

@@ -4,7 +4,7 @@ What is minimised is a weighted sum of objectives, each relative to its value at
 maximised ones with the opposite sign. Every design on the way is evaluated as a search would evaluate it, and
 counts only if it holds the load at every required height: how far the required heights lie within reach are
 the margins of the descent. Without weights all objectives count alike and none may get worse; then each is a
-margin too.
+margin too. Between materials there is nothing to descend on, so a density that is one's stays as it is.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ class _Slope:
         self._evaluator, self._aim = evaluator, aim
         self._problem = problem = evaluator.problem
         self._sensitivities = Sensitivities(problem, evaluator.known)
-        self._ranges = np.array([p.upper - p.lower for p in problem.space.parameters])
+        self._ranges = np.array([0.0 if p.choices else p.upper - p.lower for p in problem.space.parameters])
         self._signs = {o.name: 1.0 if o.sense is Sense.MINIMISE else -1.0 for o in problem.objectives}
         self.known: dict[bytes, _Evaluated] = {}
         position = np.array(genome, float)

@@ -70,5 +70,7 @@ def _unequal(first: Mapping[str, str], second: Mapping[str, str]) -> list[str]:
 
 
 def _short(value: object) -> str:
+    if value is msgspec.UNSET:
+        return "none"
     text = value if isinstance(value, str) else msgspec.json.encode(value).decode()
     return f"'{text[:40]}...'" if len(text) > 40 else f"'{text}'"

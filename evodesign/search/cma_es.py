@@ -13,7 +13,8 @@ import numpy as np
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.cma_instances import Array, Instances, check_population, instance_count
+from evodesign.search.cma_instances import Array, Instances, check_settings, instance_count
+from evodesign.search.discrete import snapped
 from evodesign.search.quasi_random import SobolStream, first_generation
 from evodesign.search.ranking import check_outcomes
 
@@ -26,14 +27,14 @@ class CmaEs:
     Args:
         settings: dimension, objectives, population, seed and start genomes.
     Raises:
-        InputError: a population too small to adapt from.
+        InputError: a population too small to adapt from, or one discrete coordinate alone.
     """
 
     def __init__(self, settings: SearchSettings) -> None:
-        check_population(settings)
+        check_settings(settings)
         stream_seed, *seeds = np.random.SeedSequence(settings.seed).spawn(1 + instance_count(settings))
         self._settings = settings
-        stream = SobolStream(settings.dimension, stream_seed)
+        stream = SobolStream(settings.counts, stream_seed)
         draws = [partial(_normal, np.random.default_rng(seed)) for seed in seeds]
         self._instances = Instances(settings, draws, stream)
         self._samples: list[list[Array]] = []
@@ -56,7 +57,8 @@ class CmaEs:
         else:
             self._instances.start(self._asked, outcomes)
         self._samples = [strategy.ask() for strategy in self._instances.strategies]
-        together = np.clip(np.concatenate(self._samples), 0.0, 1.0)
+        inside = np.clip(np.concatenate(self._samples), 0.0, 1.0)
+        together = snapped(inside, self._settings.counts)
         self._asked = tuple(tuple(row) for row in together.tolist())
 
     def _learn(self, outcomes: Sequence[Outcome]) -> None:

@@ -28,16 +28,18 @@ from collections.abc import Callable, Sequence
 
 import cma
 import numpy as np
+from cma.recombination_weights import RecombinationWeights
 from numpy.typing import NDArray
 
 from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
+from evodesign.search.discrete import least_deviations
 from evodesign.search.quasi_random import SobolStream
 from evodesign.search.ranking import ranks, usable
 from evodesign.search.uncrowded import UncrowdedGain
 
-__all__ = ["Instances", "check_population", "default_population", "instance_count", "uncrowded_cost"]
+__all__ = ["Instances", "check_settings", "default_population", "instance_count", "uncrowded_cost"]
 
 MARGIN = 0.1
 """Share of the range by which the reference point is worse than the worst outcome, so that the ends count."""
@@ -117,7 +119,7 @@ class Instances:
         self.strategies[index] = self._strategy(index, mean)
 
     def _strategy(self, index: int, mean: Genome) -> cma.CMAEvolutionStrategy:
-        return _strategy(np.array(mean), self.size(index), self._draws[index])
+        return _strategy(np.array(mean), self.size(index), self._draws[index], self._settings.counts)
 
     def _cost(self, index: int) -> Cost:
         """What one instance minimises, given what all others hold."""
@@ -149,12 +151,15 @@ def uncrowded_cost(others: Array, extent: Array) -> Cost:
     return lambda objectives: -gain((np.array(objectives) - best) / scale)
 
 
-def check_population(settings: SearchSettings) -> None:
-    """Refuse a population too small to adapt from.
+def check_settings(settings: SearchSettings) -> None:
+    """Refuse a population too small to adapt from, and a choice that is all there is to find.
 
     Raises:
-        InputError: it is.
+        InputError: it is one of them.
     """
+    if settings.discrete and settings.dimension == 1:  # pycma bounds no deviation in one dimension
+        wanted = "another one than 'cma-es' where one discrete coordinate is all there is"
+        raise InputError("search", "algorithm", wanted, "'cma-es'")
     if settings.population < SMALLEST_POPULATION:
         wanted = f"at least {SMALLEST_POPULATION} for cma-es"
         raise InputError("search", "population", wanted, str(settings.population))
@@ -168,12 +173,14 @@ def instance_count(settings: SearchSettings) -> int:
     return max(fewest, settings.population // default_population(settings.dimension))
 
 
-def _strategy(mean: Array, size: int, draw: Draw) -> cma.CMAEvolutionStrategy:
+def _strategy(mean: Array, size: int, draw: Draw, counts: Sequence[int]) -> cma.CMAEvolutionStrategy:
     """A pycma instance without output, files and clocks, told ranks.
 
-    The criteria on function values are off, since the best rank is always the same.
+    The criteria on function values are off, since the best rank is always the same. It samples and learns as
+    if all coordinates were continuous; those that are discrete it samples widely enough to leave a choice.
     """
     options = {
+        **({"minstd": least_deviations(counts, RecombinationWeights(size).mueff)} if any(counts) else {}),
         "bounds": [0.0, 1.0],
         "popsize": size,
         "randn": draw,

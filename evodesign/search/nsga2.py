@@ -3,7 +3,7 @@
 pymoo's operators draw from the algorithm's own random state (since 0.6.1.5). Every outcome enters with its
 infeasibility as the one constraint. pymoo splits by feasibility before it sorts, orders infeasible designs
 by that constraint alone and compares objectives of feasible designs only; the others carry NaN there, so
-that no number stands for a value that does not exist.
+that no number stands for a value that does not exist. `mixed_operators` varies discrete coordinates.
 
 Source: Deb, Pratap, Agarwal and Meyarivan, A fast and elitist multiobjective genetic algorithm, 2002.
 """
@@ -25,6 +25,7 @@ from pymoo.operators.mutation.pm import PM
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
+from evodesign.search.mixed_operators import MixedCrossover, MixedMutation
 from evodesign.search.quasi_random import SobolStream, first_generation
 from evodesign.search.ranking import check_outcomes, infeasibility, usable
 
@@ -46,7 +47,7 @@ class Nsga2:
     def __init__(self, settings: SearchSettings) -> None:
         stream_seed, algorithm_seed = np.random.SeedSequence(settings.seed).spawn(2)
         self._settings = settings
-        self._stream = SobolStream(settings.dimension, stream_seed)
+        self._stream = SobolStream(settings.counts, stream_seed)
         start = first_generation(settings, self._stream)
         self._algorithm = nsga2_algorithm(settings, np.array(start, dtype=float), algorithm_seed)
         self._asked = self._next_generation()
@@ -96,14 +97,26 @@ def nsga2_algorithm(
     algorithm = NSGA2(
         pop_size=settings.population,
         sampling=start,
-        crossover=SBX(prob=CROSSOVER_SHARE, eta=CROSSOVER_INDEX),
-        mutation=PM(eta=MUTATION_INDEX),
+        crossover=_crossover(settings),
+        mutation=_mutation(settings),
         seed=seed,
         eliminate_duplicates=eliminate_duplicates,
         output=None,
     )
     algorithm.setup(problem, termination=NoTermination())
     return algorithm
+
+
+def _crossover(settings: SearchSettings) -> SBX:
+    if settings.discrete:
+        return MixedCrossover(settings.counts, CROSSOVER_SHARE, CROSSOVER_INDEX)
+    return SBX(prob=CROSSOVER_SHARE, eta=CROSSOVER_INDEX)
+
+
+def _mutation(settings: SearchSettings) -> PM:
+    if settings.discrete:
+        return MixedMutation(settings.counts, MUTATION_INDEX)
+    return PM(eta=MUTATION_INDEX)
 
 
 def with_outcomes(population: Population, outcomes: Sequence[Outcome], objectives: int) -> None:

@@ -1,7 +1,7 @@
 """Quasi-random sampling: the honest baseline, and the first generation of every search.
 
 Points are those of a Sobol sequence, scrambled by the seed: they fill the cube more evenly than random
-ones. SciPy, which pymoo requires, computes them.
+ones. SciPy, which pymoo requires, computes them. The choices of a discrete coordinate get equally many.
 
 Source: Sobol 1967; Owen, Scrambling Sobol and Niederreiter-Xing points, 1998 (as in `scipy.stats.qmc`).
 """
@@ -16,6 +16,7 @@ from scipy.stats import qmc
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
+from evodesign.search.discrete import snapped
 from evodesign.search.ranking import check_outcomes
 
 __all__ = ["QuasiRandom", "SobolPoints", "SobolStream", "first_generation"]
@@ -31,18 +32,19 @@ class SobolStream:
     """An endless scrambled Sobol sequence.
 
     Args:
-        dimension: number of coordinates.
+        counts: of choices by coordinate, 0 for a continuous one.
         seed: everything that determines the scrambling.
     """
 
-    def __init__(self, dimension: int, seed: np.random.SeedSequence) -> None:
-        self._engine = qmc.Sobol(dimension, scramble=True, rng=np.random.default_rng(seed))
+    def __init__(self, counts: Sequence[int], seed: np.random.SeedSequence) -> None:
+        self._counts = counts
+        self._engine = qmc.Sobol(len(counts), scramble=True, rng=np.random.default_rng(seed))
         self._waiting: list[Genome] = []
 
     def take(self, count: int) -> tuple[Genome, ...]:
         """The next points of the sequence."""
         while len(self._waiting) < count:
-            self._waiting.extend(tuple(row) for row in self._engine.random(BLOCK).tolist())
+            self._waiting.extend(_next_block(self._engine, self._counts))
         taken, self._waiting = self._waiting[:count], self._waiting[count:]
         return tuple(taken)
 
@@ -51,12 +53,12 @@ class SobolPoints:
     """The points of the same sequence by number.
 
     Args:
-        dimension: number of coordinates.
+        counts: of choices by coordinate, 0 for a continuous one.
         seed: everything that determines the scrambling.
     """
 
-    def __init__(self, dimension: int, seed: np.random.SeedSequence) -> None:
-        self._block = functools.lru_cache(maxsize=KEPT_BLOCKS)(functools.partial(_block, dimension, seed))
+    def __init__(self, counts: Sequence[int], seed: np.random.SeedSequence) -> None:
+        self._block = functools.lru_cache(maxsize=KEPT_BLOCKS)(functools.partial(_block, counts, seed))
 
     def point(self, number: int) -> Genome:
         """A point; numbers that are near each other cost little."""
@@ -64,12 +66,16 @@ class SobolPoints:
         return self._block(block)[place]
 
 
-def _block(dimension: int, seed: np.random.SeedSequence, number: int) -> tuple[Genome, ...]:
+def _block(counts: Sequence[int], seed: np.random.SeedSequence, number: int) -> tuple[Genome, ...]:
     fresh = np.random.SeedSequence(seed.entropy, spawn_key=seed.spawn_key)  # SciPy counts its uses of a seed
-    engine = qmc.Sobol(dimension, scramble=True, rng=np.random.default_rng(fresh))
+    engine = qmc.Sobol(len(counts), scramble=True, rng=np.random.default_rng(fresh))
     if number > 0:  # SciPy cannot go forward by nothing
         engine.fast_forward(number * BLOCK)
-    return tuple(tuple(row) for row in engine.random(BLOCK).tolist())
+    return _next_block(engine, counts)
+
+
+def _next_block(engine: qmc.Sobol, counts: Sequence[int]) -> tuple[Genome, ...]:
+    return tuple(tuple(row) for row in snapped(engine.random(BLOCK), counts).tolist())
 
 
 def first_generation(settings: SearchSettings, stream: SobolStream) -> tuple[Genome, ...]:
@@ -88,7 +94,7 @@ class QuasiRandom:
     def __init__(self, settings: SearchSettings) -> None:
         (seed,) = np.random.SeedSequence(settings.seed).spawn(1)
         self._settings = settings
-        self._stream = SobolStream(settings.dimension, seed)
+        self._stream = SobolStream(settings.counts, seed)
         self._asked = first_generation(settings, self._stream)
 
     def ask(self) -> tuple[Genome, ...]:

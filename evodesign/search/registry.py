@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping
 from typing import Any, Final
 
 from evodesign.errors import InputError, nearest_name
-from evodesign.records import SearchSettings
+from evodesign.records import SearchSettings, choice_at, middle_of
 from evodesign.search.base import JOINT_STARTS, Search
 from evodesign.search.branched import Branched
 from evodesign.search.steady import SteadySearch
@@ -71,10 +71,24 @@ def _check(settings: SearchSettings, searches: Collection[str]) -> None:
         value = getattr(settings, key)
         if value < least:
             raise InputError("search", key, f"at least {least}", str(value))
+    _check_counts(settings)
     for index, genome in enumerate(settings.start):
         if len(genome) != settings.dimension:
             wanted = f"{settings.dimension} coordinates"
             raise InputError("search", f"start[{index}]", wanted, str(len(genome)))
-        for coordinate in genome:
+        for coordinate, count in zip(genome, settings.counts, strict=True):
             if not 0.0 <= coordinate <= 1.0:
                 raise InputError("search", f"start[{index}]", "coordinates in [0, 1]", str(coordinate))
+            if count and coordinate != middle_of(choice_at(coordinate, count), count):
+                wanted = f"the middle of one of {count} parts of [0, 1] in a discrete coordinate"
+                raise InputError("search", f"start[{index}]", wanted, str(coordinate))
+
+
+def _check_counts(settings: SearchSettings) -> None:
+    counts = settings.counts
+    if len(counts) != settings.dimension:
+        found = f"{len(counts)} numbers"
+        raise InputError("search", "choices", f"a number for each of {settings.dimension} coordinates", found)
+    for index, count in enumerate(counts):
+        if count < 0 or count == 1:
+            raise InputError("search", f"choices[{index}]", "0, or at least 2", str(count))

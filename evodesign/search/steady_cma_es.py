@@ -17,7 +17,8 @@ import numpy as np
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.cma_instances import Array, Instances, check_population, instance_count
+from evodesign.search.cma_instances import Array, Instances, check_settings, instance_count
+from evodesign.search.discrete import snapped
 from evodesign.search.quasi_random import SobolPoints, SobolStream
 from evodesign.search.steady import Beginning, generator_of
 
@@ -39,18 +40,18 @@ class SteadyCmaEs:
     Args:
         settings: dimension, objectives, population, seed and start genomes.
     Raises:
-        InputError: a population too small to adapt from.
+        InputError: a population too small to adapt from, or one discrete coordinate alone.
     """
 
     def __init__(self, settings: SearchSettings) -> None:
-        check_population(settings)
+        check_settings(settings)
         begin_seed, restart_seed = np.random.SeedSequence(settings.seed).spawn(2)
         self._settings = settings
-        points = SobolPoints(settings.dimension, begin_seed)
+        points = SobolPoints(settings.counts, begin_seed)
         self._beginning = Beginning(settings.start, settings.population, points)
         self._generator = generator_of(settings.seed, 0)
         draws = [self._normal] * instance_count(settings)
-        self._instances = Instances(settings, draws, SobolStream(settings.dimension, restart_seed))
+        self._instances = Instances(settings, draws, SobolStream(settings.counts, restart_seed))
         self._first: dict[int, Genome] = {}
         self._known: list[tuple[Genome, Outcome]] = []
         self._asked: dict[int, _Sample] = {}
@@ -65,7 +66,8 @@ class SteadyCmaEs:
         strategy = self._instances.strategies[instance]
         point = self._sample(strategy, turn)
         self._asked[turn] = _Sample(instance, strategy, point)
-        return tuple(np.clip(point, 0.0, 1.0).tolist())
+        inside = np.clip(point[np.newaxis], 0.0, 1.0)
+        return tuple(snapped(inside, self._settings.counts)[0].tolist())
 
     def tell(self, turn: int, outcome: Outcome) -> None:
         """Keep an outcome until its instance has a batch to learn from."""

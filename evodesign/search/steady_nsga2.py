@@ -17,6 +17,7 @@ from pymoo.core.population import Population
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
+from evodesign.search.discrete import snapped
 from evodesign.search.nsga2 import nsga2_algorithm, with_outcomes
 from evodesign.search.quasi_random import SobolPoints
 from evodesign.search.steady import Beginning, generator_of
@@ -40,7 +41,7 @@ class SteadyNsga2:
     def __init__(self, settings: SearchSettings) -> None:
         stream_seed, algorithm_seed = np.random.SeedSequence(settings.seed).spawn(2)
         self._settings = settings
-        points = SobolPoints(settings.dimension, stream_seed)
+        points = SobolPoints(settings.counts, stream_seed)
         self._beginning = Beginning(settings.start, settings.population, points)
         nobody = np.empty((0, settings.dimension))
         self._algorithm = nsga2_algorithm(settings, nobody, algorithm_seed, eliminate_duplicates=False)
@@ -96,4 +97,5 @@ class SteadyNsga2:
             genome = tuple(children[0].X.tolist())
             if genome not in self._members:
                 return genome
-        return tuple(algorithm.random_state.random(self._settings.dimension).tolist())
+        anywhere = algorithm.random_state.random((1, self._settings.dimension))
+        return tuple(snapped(anywhere, self._settings.counts)[0].tolist())

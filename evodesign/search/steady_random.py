@@ -21,7 +21,7 @@ class SteadyRandom:
 
     def __init__(self, settings: SearchSettings) -> None:
         (seed,) = np.random.SeedSequence(settings.seed).spawn(1)
-        points = SobolPoints(settings.dimension, seed)
+        points = SobolPoints(settings.counts, seed)
         self._beginning = Beginning(settings.start, settings.population, points)
 
     def ask(self, turn: int) -> Genome:

@@ -112,6 +112,8 @@ class Agent:
         trunk: frames that keep clear of the load.
         label: who it is where a problem has several people.
         strengths: of its joints, by name; none for a robot.
+        torque_limits: largest torque [N m] of each joint that moves and has a limit.
+        limits_torques: whether these limits hold in every posture.
     """
 
     name: str
@@ -123,6 +125,8 @@ class Agent:
     trunk: tuple[str, ...]
     label: str = ""
     strengths: Mapping[str, JointStrength] = field(default_factory=dict)
+    torque_limits: Mapping[str, float] = field(default_factory=dict)
+    limits_torques: bool = False
 
     @property
     def pushed_frame(self) -> str:

@@ -77,6 +77,18 @@ def crowd(percentiles: str, sex: str = "both") -> str:
         (PROBLEM, "[task]", "[task]\nrobot_share = 0.7", ["task.robot_share", "point grasps", "0.5", "0.7"]),
         (PROBLEM, "[task]", "[task]\nrobot_share = 1.7", ["task.robot_share", "<= 1.0", "1.7"]),
         (PROBLEM, 'name = "icub-lifting"', "", ["name", "this key", "nothing"]),
+        (
+            PROBLEM,
+            "lower_kg_per_m3 = 500.0\nupper_kg_per_m3 = 4000.0",
+            'materials = ["steel_4340", "aluminum_6061"]',
+            ["design.density[0].materials[1]", "did you mean 'aluminium_6061'?"],
+        ),
+        (
+            PROBLEM,
+            "[human]",
+            "[robot.torque_limits_n_m]\nl_kne = 50.0\n[human]",
+            ["robot.torque_limits_n_m", "did you mean 'l_knee'?"],
+        ),
         (PROBLEM, '"nsga2"', '"nsga"', ["algorithm", "did you mean 'nsga2'?"]),
         ("../populations/icub.toml", "shank = 1.6", "shank = 9.6", ["icub.toml", "long_legs", "9.6"]),
         ("../populations/icub.toml", "shank = 1.6", "shnk = 1.6", ["icub.toml", "did you mean 'shank'?"]),

@@ -5,16 +5,22 @@ from __future__ import annotations
 import csv
 import io
 import json
+from io import StringIO
 from pathlib import Path
 
 import msgspec
 import pytest
+from rich.console import Console
 
 from evodesign.analysis.front import front
 from evodesign.analysis.knees import knees
+from evodesign.cli.card import card
 from evodesign.cli.fronts import Picking, Printing, show
+from evodesign.cli.opening import OpenedDesign, RebuiltProblem
 from evodesign.errors import InputError
-from evodesign.records import Evaluation, Objective, Parameter, RunHeader, Sense
+from evodesign.records import Evaluation, Objective, Parameter, RunHeader, Sense, materials_of
+from evodesign.report.export.design import design_json
+from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_evaluations, toy_header
 
@@ -49,6 +55,42 @@ def test_csv_holds_every_number_of_the_log(run: Path, capsys: pytest.CaptureFixt
         assessment = RUN[int(row["design"])].assessment
         for name, value in {**assessment.objectives, **assessment.design}.items():
             assert float(row[name]) == value
+
+
+def of_materials() -> RunHeader:
+    """A header whose second parameter is a density of two materials."""
+    first, second = HEADER.parameters
+    made = msgspec.structs.replace(
+        second, upper=2700.0, choices=(800.0, 2700.0), materials=("shell", "alloy")
+    )
+    search = msgspec.structs.replace(HEADER.search, start=(), choices=(0, 2))
+    return msgspec.structs.replace(HEADER, parameters=(first, made), search=search)
+
+
+def test_materials_stand_beside_their_densities(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    header = of_materials()
+    evaluations = toy_evaluations(header, 60)
+    run = logged(tmp_path / "run", header, evaluations)
+    rows = list(csv.DictReader(io.StringIO(printed(capsys, run, csv=True))))
+    designs = json.loads(printed(capsys, run, json=True))["designs"]
+    expected = front(header.objectives, evaluations)
+    assert [design["id"] for design in designs] == [int(row["design"]) for row in rows]
+    assert len(rows) == len(expected)
+    for row, design in zip(rows, designs, strict=True):
+        material = {800.0: "shell", 2700.0: "alloy"}[evaluations[design["id"]].assessment.design["arm.1"]]
+        assert row["arm.1.material"] == material
+        assert design["materials"] == {"arm.1": material}
+        told = design_json(header, evaluations[design["id"]], (), on_front=True)
+        assert told["materials"] == {"arm.1": material}
+    shown = StringIO()
+    opened = OpenedDesign(read_run(run), evaluations[5], (), on_front=False, rebuilt=RebuiltProblem(header))
+    Console(file=shown, width=120).print(card(opened, ()))
+    assert materials_of(header.parameters, evaluations[5].assessment.design)["arm.1"] in shown.getvalue()
+
+
+def test_a_run_without_materials_says_nothing_of_any(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ".material" not in printed(capsys, run, csv=True)
+    assert '"materials"' not in printed(capsys, run, json=True)
 
 
 def test_table_holds_the_log_s_numbers_to_four_figures(run: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,7 +8,8 @@ import sys
 import numpy as np
 import pytest
 
-from evodesign.records import SearchSettings
+from evodesign.errors import InputError
+from evodesign.records import SearchSettings, Stage
 from evodesign.search.base import JOINT_STARTS, Outcome
 from evodesign.search.registry import SEARCHES, make_search
 
@@ -197,6 +198,71 @@ class TestEverySearch:
         search.ask()
         with pytest.raises(ValueError, match="wanted 2 objectives, found 3 in outcome 11"):
             search.tell([FAILED] * 11 + [Outcome((1.0, 2.0, 3.0), 0.0)])
+
+
+CHOICES = (0, 3, 0, 5, 2)
+
+
+def discrete(algorithm, *, choices=CHOICES, objectives=2, seed=1, start=(), past=()):
+    """Settings of a search whose coordinates are discrete where there are choices."""
+    return SearchSettings(
+        algorithm=algorithm,
+        dimension=len(choices),
+        objectives=objectives,
+        population=12,
+        seed=seed,
+        start=start,
+        past=past,
+        choices=choices,
+    )
+
+
+def middles(count):
+    return {(choice + 0.5) / count for choice in range(count)}
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+class TestEverySearchOfChoices:
+    def test_asks_only_for_the_middles_of_choices_and_for_each_of_them(self, algorithm):
+        asked = [genome for genomes in run(make_search(discrete(algorithm)), 30) for genome in genomes]
+        for position, count in enumerate(CHOICES):
+            seen = {genome[position] for genome in asked}
+            assert seen == middles(count) if count else len(seen) > 100
+
+    def test_replay_of_remembered_outcomes_continues_the_run(self, algorithm):
+        whole = run(make_search(discrete(algorithm)), 9)
+        resumed = make_search(discrete(algorithm))
+        for genomes in whole[:5]:
+            assert resumed.ask() == genomes
+            resumed.tell([mixed(genome, 2) for genome in genomes])
+        assert run(resumed, 4) == whole[5:]
+
+    def test_a_space_of_fewer_designs_than_a_population_is_searched_to_the_end(self, algorithm):
+        asked = run(make_search(discrete(algorithm, choices=(2, 3))), 10)
+        assert {len(genomes) for genomes in asked} == {12}
+        assert len({genome for genomes in asked for genome in genomes}) == 6
+
+    def test_a_start_genome_beside_the_middles_is_refused(self, algorithm):
+        right = (0.3, 0.5, 0.3, 0.1, 0.75)
+        assert make_search(discrete(algorithm, start=(right,))).ask()[0] == right
+        with pytest.raises(InputError, match="middle of one of 5 parts"):
+            make_search(discrete(algorithm, start=((0.3, 0.5, 0.3, 0.2, 0.75),)))
+
+    @pytest.mark.parametrize(("choices", "words"), [((0, 1, 3), "at least 2"), ((0, -2, 3), "at least 2")])
+    def test_a_choice_of_one_is_refused(self, algorithm, choices, words):
+        with pytest.raises(InputError, match=words):
+            make_search(discrete(algorithm, choices=choices))
+
+    def test_zero_choices_everywhere_mean_a_continuous_search(self, algorithm):
+        assert run(make_search(discrete(algorithm, choices=(0,) * 5)), 5) == run(
+            make_search(settings(algorithm)), 5
+        )
+
+    def test_a_branch_goes_on_among_the_choices(self, algorithm):
+        past = (Stage(algorithm="random", population=12, seed=3, generations=2),)
+        search = make_search(discrete(algorithm, past=past))
+        asked = [genome for genomes in run(search, 8) for genome in genomes]
+        assert {genome[3] for genome in asked} == middles(5)
 
 
 @pytest.mark.parametrize("algorithm", LEARNING)

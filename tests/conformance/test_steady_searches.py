@@ -3,6 +3,7 @@
 import random
 
 import moocore
+import msgspec
 import numpy as np
 import pytest
 
@@ -144,6 +145,35 @@ class TestEverySteadySearch:
     def test_an_unknown_algorithm_names_the_nearest(self, algorithm):
         with pytest.raises(InputError, match=f"did you mean '{algorithm}'"):
             make_steady_search(settings(algorithm[:-1]))
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+class TestEverySteadySearchOfChoices:
+    CHOICES = (0, 3, 0, 5, 2)
+
+    def discrete(self, algorithm):
+        return msgspec.structs.replace(settings(algorithm), choices=self.CHOICES)
+
+    def test_asks_only_for_the_middles_of_choices_and_for_each_of_them(self, algorithm):
+        log = run(make_steady_search(self.discrete(algorithm)), 360)
+        for position, count in enumerate(self.CHOICES):
+            seen = {genome[position] for *_, genome in log}
+            expected = {(choice + 0.5) / count for choice in range(count)}
+            assert seen == expected if count else len(seen) > 100
+
+    def test_the_order_of_arrival_rebuilds_the_search(self, algorithm):
+        search = make_steady_search(self.discrete(algorithm))
+        log = run(search, 120, workers=7)
+        rebuilt = make_steady_search(self.discrete(algorithm))
+        replay(rebuilt, log)
+        assert [search.ask(turn) for turn in range(200, 230)] == [
+            rebuilt.ask(turn) for turn in range(200, 230)
+        ]
+
+    def test_few_designs_are_all_asked_for(self, algorithm):
+        few = msgspec.structs.replace(settings(algorithm, dimension=2), choices=(2, 3))
+        log = run(make_steady_search(few), 240, outcome=lambda genome, _: Outcome(genome, 0.0))
+        assert len({genome for *_, genome in log}) == 6
 
 
 @pytest.mark.parametrize("algorithm", LEARNING)

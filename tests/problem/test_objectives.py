@@ -53,7 +53,25 @@ def test_torques_of_a_design_that_misses_a_height_are_absent(result: DesignResul
     assert OBJECTIVES["reach_height"].value(broken) == result.reach.highest
 
 
+def limited(result: DesignResult) -> DesignResult:
+    """The result of a robot whose joints may bear 20 N m, and its elbows 8."""
+    limits = {joint: 8.0 if joint.endswith("elbow") else 20.0 for joint in result.robot.joints}
+    scenes = tuple(replace(s, robot=replace(s.robot, torque_limits=limits)) for s in result.scenes)
+    return replace(result, scenes=scenes)
+
+
+def test_peak_torque_is_the_largest_share_of_a_joints_limit(result: DesignResult) -> None:
+    shares = []
+    for height in result.heights:
+        torques = height.postures["robot"].torques
+        elbows = [abs(torque) / 8.0 for name, torque in torques.items() if "elbow" in name]
+        others = [abs(torque) / 20.0 for name, torque in torques.items() if "elbow" not in name]
+        shares.append(max(elbows + others))
+    assert OBJECTIVES["peak_torque"].value(limited(result)) == pytest.approx(sum(shares) / 3)
+    assert OBJECTIVES["worst_peak_torque"].value(limited(result)) == pytest.approx(max(shares))
+
+
 def test_every_objective_has_a_unit_and_a_value(result: DesignResult) -> None:
     for kind in OBJECTIVES.values():
         assert kind.unit
-        assert kind.value(replace(result, people_highest=1.9)) is not None
+        assert kind.value(replace(limited(result), people_highest=1.9)) is not None

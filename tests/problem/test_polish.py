@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evodesign.body.material import CATALOGUE
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem
 from evodesign.problem.designs import designs_text, read_designs
@@ -78,3 +80,20 @@ def test_design_that_misses_a_height_is_refused(problem: Problem, evaluator: Eva
 def test_wrong_weights_are_explained(problem: Problem, weights: dict[str, float], words: str) -> None:
     with pytest.raises(InputError, match=words):
         aim_of(problem, weights, "--weights")
+
+
+def test_polish_moves_lengths_and_leaves_materials_as_they_are(problem: Problem) -> None:
+    choices = (CATALOGUE["abs"], CATALOGUE["aluminium_6061"])
+    parameters = tuple(
+        replace(each, lower=1050.0, upper=2700.0, materials=choices) if each.kind == "density" else each
+        for each in problem.space.parameters
+    )
+    chosen = replace(problem, space=DesignSpace(parameters), heights=(1.0,), start=())
+    genome = (*(0.45,) * 8, *(0.25, 0.75) * 4)
+    done = polish(Evaluator(chosen), genome, aim_of(chosen, {"robot_torque": 1.0}, ""), 4, lambda step: None)
+    assert done.after.objectives["robot_torque"] < done.before.objectives["robot_torque"]
+    before, after = done.before.design, done.after.design
+    moved = {name for name in before if before[name] != after[name]}
+    assert moved
+    assert all(name.startswith("length.") for name in moved)
+    assert [after[name] for name in after if name.startswith("density.")] == [1050.0, 2700.0] * 4

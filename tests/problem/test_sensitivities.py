@@ -40,16 +40,20 @@ def benchmark_module(repository: Path) -> Iterator[ModuleType]:
 
 @pytest.fixture(scope="module")
 def wide(problem: Problem) -> Problem:
-    """The default problem with every objective that there is."""
+    """The default problem with every objective that there is, and limits that joints do not meet."""
+    limits = dict.fromkeys(problem.scene.robot.joints, 30.0)
+    robot = replace(problem.scene.robot, torque_limits=limits)
+    scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
     every = [Objective(name=name, sense=Sense.MINIMISE, unit=kind.unit) for name, kind in OBJECTIVES.items()]
-    return replace(problem, objectives=tuple(every))
+    return replace(problem, scenes=scenes, objectives=tuple(every))
 
 
 @pytest.fixture(scope="module")
 def tangent(wide: Problem, known: Preparation, evaluator: Evaluator) -> DesignTangent:
     """Of a design whose agents do not lean on each other as far as they may, so that the person moves too."""
     values = wide.space.unscaled(wide.scene.robot.tree)
-    result = replace(evaluator.solve(values), people_highest=9.0)  # higher than the robot reaches
+    found = replace(evaluator.solve(values), scenes=wide.scenes)
+    result = replace(found, people_highest=9.0)  # higher than the robot reaches
     return Sensitivities(wide, known).at(values, result)
 
 

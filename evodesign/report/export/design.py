@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from evodesign.records import Evaluation, HeightDetail, RunHeader
+from evodesign.records import Evaluation, HeightDetail, RunHeader, materials_of
 from evodesign.report.stage import Cast
 
 __all__ = ["ExportedDesign", "design_json"]
@@ -38,6 +38,7 @@ def design_json(
     """A design as a JSON object, as the log has it; its shape is a promise."""
     assessment = evaluation.assessment
     outcome: dict[str, Any] = msgspec.to_builtins(assessment)
+    materials = materials_of(header.parameters, assessment.design)
     return {
         "problem": header.problem_name,
         "id": evaluation.number,
@@ -48,6 +49,7 @@ def design_json(
         "objectives": outcome["objectives"],
         "units": {objective.name: objective.unit for objective in header.objectives},
         "parameters": outcome["design"],
+        **({"materials": materials} if materials else {}),
         "violation": outcome["violation"],
         "reach": outcome["reach"],
         "heights": outcome["heights"],

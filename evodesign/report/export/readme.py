@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from evodesign.errors import on_one_line
-from evodesign.records import Objective
+from evodesign.records import Objective, materials_of
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 
@@ -58,11 +58,13 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
     """
     evaluation = design.evaluation
     objectives = (_objective(each, evaluation.assessment.objectives) for each in design.header.objectives)
+    materials = materials_of(design.header.parameters, evaluation.assessment.design)
+    made_of = (f"- {_code(name)}: {_code(material)}" for name, material in materials.items())
     missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
     parts = [
         f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
         f"From the run {_code(design.run)}, generation {evaluation.generation}; {_outcome(design)}.",
-        "\n".join(objectives),
+        "\n".join((*objectives, *made_of)),
         "## Files",
         "\n".join((*(f"- `{name}`: {_indented(FILES[name])}" for name in files), *missing)),
         "## Frames and units",

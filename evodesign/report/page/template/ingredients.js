@@ -19,6 +19,9 @@ const meter = (share, reference) => {
   return box;
 };
 
+// The name of the material of a density, or nothing.
+const materialOf = (axis, row) => axis.materials?.[axis.choices.indexOf(axis.column[row])] ?? "";
+
 const parameterTable = (row) => {
   const reference = unscaledMark ? rowOf.get(unscaledMark.number) : null;
   const body = axes.slice(objectives.length).map((axis) => {
@@ -33,7 +36,7 @@ const parameterTable = (row) => {
         meter(share(axis.column[row]), reference === null ? null : share(axis.column[reference])),
       ),
       element("td", { class: "number", "data-parameter": axis.name, text: exact(axis.column[row]) }),
-      element("td", { text: axis.unit === "1" ? "×" : unitText(axis.unit) }),
+      element("td", { text: [axis.unit === "1" ? "×" : unitText(axis.unit), materialOf(axis, row)].filter(Boolean).join(" ") }),
     );
   });
   const tick = reference === null ? "" : "; the tick is the unscaled robot";
