@@ -10,18 +10,17 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from evodesign.cli.height_table import heights_table
+from evodesign.analysis.cases import named_people_or_loads
+from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
 from evodesign.cli.tables import heading
+from evodesign.cli.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter
 from evodesign.report.strain import most_strained
 
 __all__ = ["card"]
-
-JOINTS_SHOWN = 6
-"""Rows of joints per agent; the others bear less."""
 
 BAR = 16
 """Columns of a parameter's bar."""
@@ -30,12 +29,18 @@ BAR = 16
 def card(opened: OpenedDesign) -> Group:
     """The card."""
     assessment = opened.evaluation.assessment
-    sections: dict[str, Table] = {
-        "objectives": _objectives(opened),
-        "parameters": _parameters(opened),
-        f"the load at each height (reach: {_reach(assessment)})": heights_table(assessment, ""),
-    }
-    if opened.heights:
+    several = named_people_or_loads(assessment.heights)
+    reach = f"reach: {_reach(assessment)}"
+    sections: dict[str, Table] = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
+    if several:
+        sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
+        sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
+    else:
+        sections[f"the load at each height ({reach})"] = heights_table(assessment, "")
+    if opened.heights and several:
+        sections["largest joint torques [N m]"] = worst_torques(opened.heights)
+        sections["contact forces [N]"] = worst_forces(opened.heights)
+    elif opened.heights:
         sections["largest joint torques [N m]"] = _torques(opened.heights)
         sections["contact forces [N]"] = _contacts(opened.heights)
     parts: list[RenderableType] = [_title(opened)]

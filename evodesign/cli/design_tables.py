@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.cli.height_table import heights_table
+from evodesign.analysis.cases import named_people_or_loads
+from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
@@ -23,8 +24,8 @@ STRONGEST = 4
 
 def assessment_tables(
     problem: Problem, name: str, result: DesignResult, assessment: Assessment
-) -> tuple[Table, Table]:
-    """One design: its objectives, and its postures height by height."""
+) -> tuple[Table, ...]:
+    """One design: its objectives, its postures case by case, and a summary where there are many cases."""
     summary = Table(title=escape(f"{problem.name}: {name}"), title_justify="left")
     summary.add_column("objective")
     summary.add_column("value", justify="right")
@@ -33,7 +34,13 @@ def assessment_tables(
         summary.add_row(escape(heading(objective)), figure(value))
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
-    return summary, heights_table(assessment, "the load at each height")
+    if not named_people_or_loads(assessment.heights):
+        return summary, heights_table(assessment, "the load at each height")
+    return (
+        summary,
+        summary_table(assessment, "torque norms |tau| over the cases [N m]"),
+        cases_table(assessment, "the load in each case, torques in N m"),
+    )
 
 
 def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:

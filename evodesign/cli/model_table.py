@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
 
 from evodesign.body.shape import Box, Cylinder, Shape
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.problem.build import Problem
-from evodesign.statics.scene import Agent
+from evodesign.statics.scene import Agent, Payload
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
+from evodesign.tree.standing import standing_height
 
 __all__ = ["model_json", "model_tables"]
 
@@ -27,10 +28,13 @@ CAPTION = (
 def model_json(problem: Problem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
     scene = problem.scene
+    people = {each.human.label: each.human for each in problem.scenes}
+    loads = {each.payload.label: each.payload for each in problem.scenes}
+    told = [_load(load) for load in loads.values()]
     return {
         "problem": problem.name,
-        "agents": [_agent(agent) for agent in (scene.robot, scene.human)],
-        "payload": {"size_m": list(scene.payload.size), "mass_kg": scene.payload.mass},
+        "agents": [_agent(agent) for agent in (scene.robot, *people.values())],
+        **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
         "heights_m": list(problem.heights),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
@@ -49,21 +53,34 @@ def model_tables(problem: Problem) -> tuple[Table, ...]:
     )
 
 
-def _agents_table(name: str, agents: Iterable[dict[str, Any]]) -> Table:
+def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
+    """Robot and people; of several people, also who each is and how tall."""
+    several = any("who" in agent for agent in agents)
     table = Table(title=escape(name), title_justify="left")
-    for column in ("agent", "model", "links", "joints", "that move", "mass [kg]"):
-        table.add_column(escape(column), justify="left" if column in ("agent", "model") else "right")
+    for column in ("agent", *(("person", "stands [m]") if several else ()), "model"):
+        table.add_column(escape(column), overflow="fold")
+    for column in ("links", "joints", "that move", "mass [kg]"):
+        table.add_column(escape(column), justify="right")
     for agent in agents:
+        who = (visible(agent["who"]), figure(agent["standing_height_m"])) if "who" in agent else ("", "")
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
-        table.add_row(agent["name"], escape(agent["model"]), *map(str, counts), figure(agent["mass_kg"]))
+        table.add_row(
+            agent["name"],
+            *(map(escape, who) if several else ()),
+            escape(agent["model"]),
+            *map(str, counts),
+            figure(agent["mass_kg"]),
+        )
     return table
 
 
 def _task_table(shown: dict[str, Any]) -> Table:
     table = Table(show_header=False)
-    table.add_row(
-        "load", f"{shown['payload']['mass_kg']:g} kg, {' x '.join(map(figure, shown['payload']['size_m']))} m"
-    )
+    for load in shown["payloads"] if "payloads" in shown else [shown["payload"]]:
+        mass, size = f"{load['mass_kg']:g} kg", f"{' x '.join(map(figure, load['size_m']))} m"
+        name = load.get("payload_name", mass)
+        told = mass if name == mass else f"{visible(name)}: {mass}"
+        table.add_row("load", escape(f"{told}, {size}"))
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
     table.add_row("objectives", ", ".join(shown["objectives"]))
     return table
@@ -102,9 +119,17 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
     return table
 
 
+def _load(load: Payload) -> dict[str, Any]:
+    name = {"payload_name": load.label} if load.label else {}
+    return {**name, "size_m": list(load.size), "mass_kg": load.mass}
+
+
 def _agent(agent: Agent) -> dict[str, Any]:
+    """An agent in short; of several people, also who it is and how tall it stands."""
+    height = standing_height(agent.tree, agent.soles["left"])
     return {
         "name": agent.name,
+        **({"who": agent.label, "standing_height_m": height} if agent.label else {}),
         "model": agent.tree.name,
         "links": len(agent.tree.links),
         "joints": len(agent.tree.joints),
