@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from evodesign.analysis.cases import named_people_or_loads
+from evodesign.analysis.cases import case_name, named_people_or_loads
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
+from evodesign.cli.person_table import TITLE, person_table
 from evodesign.cli.tables import heading
 from evodesign.cli.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter
 from evodesign.report.strain import most_strained
+
+if TYPE_CHECKING:
+    from evodesign.problem.ergonomics import Ergonomics
 
 __all__ = ["card"]
 
@@ -26,8 +31,13 @@ BAR = 16
 """Columns of a parameter's bar."""
 
 
-def card(opened: OpenedDesign) -> Group:
-    """The card."""
+def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
+    """The card.
+
+    Args:
+        opened: the design.
+        asked: of the people by each of its postures; none to leave it out.
+    """
     assessment = opened.evaluation.assessment
     several = named_people_or_loads(assessment.heights)
     reach = f"reach: {_reach(assessment)}"
@@ -43,6 +53,9 @@ def card(opened: OpenedDesign) -> Group:
     elif opened.heights:
         sections["largest joint torques [N m]"] = _torques(opened.heights)
         sections["contact forces [N]"] = _contacts(opened.heights)
+    if asked:
+        cases = zip(map(case_name, opened.heights), asked, strict=True)
+        sections[TITLE] = person_table(list(cases), title="")
     parts: list[RenderableType] = [_title(opened)]
     for title, table in sections.items():
         parts += [Text(f"\n{title}", style="italic"), table]

@@ -7,16 +7,20 @@ from collections.abc import Mapping
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.cases import named_people_or_loads
+from evodesign.analysis.cases import case_name, named_people_or_loads
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
+from evodesign.cli.person_table import person_table
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
+from evodesign.problem.ergonomics import ergonomics
+from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
+from evodesign.statics.scene import HUMAN
 
-__all__ = ["assessment_tables", "sensitivity_table"]
+__all__ = ["assessment_tables", "people_table", "sensitivity_table"]
 
 STRONGEST = 4
 """Parameters shown per objective."""
@@ -41,6 +45,17 @@ def assessment_tables(
         summary_table(assessment, "torque norms |tau| over the cases [N m]"),
         cases_table(assessment, "the load in each case, torques in N m"),
     )
+
+
+def people_table(result: DesignResult) -> Table:
+    """What the solved postures of a design ask of the people."""
+    cases = []
+    for height in result.heights:
+        if height.solved:
+            scene = result.scenes[height.scene]
+            detail = detail_of(height, scene)
+            cases.append((case_name(detail), ergonomics(scene.human, detail.agents[HUMAN])))
+    return person_table(cases)
 
 
 def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:

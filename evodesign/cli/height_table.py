@@ -8,7 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.cases import pair_name
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, shown
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightOutcome
 
@@ -45,7 +45,7 @@ def cases_table(assessment: Assessment, title: str) -> Table:
     table.add_column("status", overflow="fold")
     for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=True):
         table.add_row(
-            *(escape(on_one_line(name_of(outcome))) for name_of in names.values()),
+            *(shown(name_of(outcome)) for name_of in names.values()),
             _height(outcome),
             figure(outcome.robot_torque_norm),
             figure(outcome.human_torque_norm),
@@ -88,7 +88,7 @@ def _add_summary(table: Table, name: str, outcomes: Sequence[HeightOutcome], *, 
     human = [norm for outcome in outcomes if (norm := outcome.human_torque_norm) is not None]
     numbers = [*_mean_and_worst(robot), *_mean_and_worst(human)]
     solved = f"{len(robot)} of {len(outcomes)}"
-    table.add_row(escape(on_one_line(name)), solved, *map(figure, numbers), end_section=last)
+    table.add_row(shown(name), solved, *map(figure, numbers), end_section=last)
 
 
 def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:

@@ -12,10 +12,12 @@ from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.cli.output import figure, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.problem.build import Problem
+from evodesign.problem.decode import decode_toml
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.people import everyone
 from evodesign.statics.scene import Agent, Payload
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
-from evodesign.tree.standing import standing_height
 
 __all__ = ["model_json", "model_tables"]
 
@@ -28,12 +30,11 @@ CAPTION = (
 def model_json(problem: Problem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
     scene = problem.scene
-    people = {each.human.label: each.human for each in problem.scenes}
     loads = {each.payload.label: each.payload for each in problem.scenes}
     told = [_load(load) for load in loads.values()]
     return {
         "problem": problem.name,
-        "agents": [_agent(agent) for agent in (scene.robot, *people.values())],
+        "agents": [_agent(scene.robot), *_people(problem)],
         **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
         "heights_m": list(problem.heights),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
@@ -57,12 +58,12 @@ def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
     """Robot and people; of several people, also who each is and how tall."""
     several = any("who" in agent for agent in agents)
     table = Table(title=escape(name), title_justify="left")
-    for column in ("agent", *(("person", "stands [m]") if several else ()), "model"):
+    for column in ("agent", *(("person", "sex, stature") if several else ()), "model"):
         table.add_column(escape(column), overflow="fold")
     for column in ("links", "joints", "that move", "mass [kg]"):
         table.add_column(escape(column), justify="right")
     for agent in agents:
-        who = (visible(agent["who"]), figure(agent["standing_height_m"])) if "who" in agent else ("", "")
+        who = (visible(agent["who"]), _figures(agent)) if "who" in agent else ("", "")
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
         table.add_row(
             agent["name"],
@@ -72,6 +73,10 @@ def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
             figure(agent["mass_kg"]),
         )
     return table
+
+
+def _figures(person: dict[str, Any]) -> str:
+    return f"{person['sex']}, {figure(person['stature_m'])} m" if person["sex"] else "as its URDF"
 
 
 def _task_table(shown: dict[str, Any]) -> Table:
@@ -124,12 +129,22 @@ def _load(load: Payload) -> dict[str, Any]:
     return {**name, "size_m": list(load.size), "mass_kg": load.mass}
 
 
+def _people(problem: Problem) -> list[dict[str, Any]]:
+    """The people in short; of several, also who each is, with sex and stature unless a URDF describes it."""
+    people = {scene.human.label: scene.human for scene in problem.scenes}
+    if len(people) == 1:
+        return [_agent(problem.scene.human)]
+    tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
+    given = [table for _, table in everyone(tables, problem.source)]
+    return [
+        {**_agent(person), "who": label, "sex": table.sex, "stature_m": table.stature_m}
+        for (label, person), table in zip(people.items(), given, strict=True)
+    ]
+
+
 def _agent(agent: Agent) -> dict[str, Any]:
-    """An agent in short; of several people, also who it is and how tall it stands."""
-    height = standing_height(agent.tree, agent.soles["left"])
     return {
         "name": agent.name,
-        **({"who": agent.label, "standing_height_m": height} if agent.label else {}),
         "model": agent.tree.name,
         "links": len(agent.tree.links),
         "joints": len(agent.tree.joints),

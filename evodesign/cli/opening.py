@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,8 +18,10 @@ from evodesign.search.base import JOINT_STARTS
 
 if TYPE_CHECKING:
     from evodesign.problem.build import Problem
+    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.statics.scene import Agent
 
-__all__ = ["OpenedDesign", "RebuiltProblem", "company_of", "open_design"]
+__all__ = ["OpenedDesign", "RebuiltProblem", "asked_of_people", "company_of", "open_design"]
 
 
 class RebuiltProblem:
@@ -33,6 +36,17 @@ class RebuiltProblem:
         from evodesign.problem.build import build_problem  # CasADi takes its time to load
 
         return build_problem(self._header.problem)
+
+    @cached_property
+    def people(self) -> Mapping[str, Agent]:
+        """Its people by what they are called; faster than the whole problem, whose robot is a URDF."""
+        from evodesign.problem.agents import human_agents  # CasADi takes its time to load
+        from evodesign.problem.decode import decode_toml
+        from evodesign.problem.file import ProblemFile
+
+        source = self._header.problem
+        tables = decode_toml(source.text, source.path, ProblemFile)
+        return {person.label: person for person in human_agents(tables, source)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,3 +116,18 @@ def company_of(opened: OpenedDesign) -> Company:
     design = opened.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
     values = [design[parameter.name] for parameter in problem.space.parameters]
     return Company.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+
+
+def asked_of_people(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
+    """What the design's postures ask of the people, one for each; none if the people cannot be told."""
+    if not opened.heights:
+        return ()
+    from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
+    from evodesign.statics.scene import HUMAN
+
+    try:
+        people = opened.rebuilt.people
+    except InputError as error:
+        show_notes([f"what the postures ask of the person is left out ({error})"])
+        return ()
+    return tuple(ergonomics(people[detail.human_name], detail.agents[HUMAN]) for detail in opened.heights)

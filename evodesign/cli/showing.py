@@ -7,7 +7,7 @@ from pathlib import Path
 
 from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.card import card
-from evodesign.cli.opening import OpenedDesign, company_of, open_design
+from evodesign.cli.opening import OpenedDesign, asked_of_people, company_of, open_design
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.errors import InputError
 from evodesign.report.export.design import design_json
@@ -23,10 +23,13 @@ def show_design(directory: Path, number: int, jobs: int, json: bool, plot: Path 
     if plot is not None:
         _write_figures(opened, plot)
     if json:
+        from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
+
         told = design_json(opened.run.header, opened.evaluation, opened.heights, on_front=opened.on_front)
-        print_json({"run": str(directory), **told})
+        asked = [ergonomics_json(one) for one in asked_of_people(opened)]
+        print_json({"run": str(directory), **told, "ergonomics": asked})
         return
-    console().print(card(opened))
+    console().print(card(opened, asked_of_people(opened)))
 
 
 def _make(directory: Path) -> None:

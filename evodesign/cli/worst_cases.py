@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.cases import case_name
-from evodesign.cli.output import figure
-from evodesign.errors import on_one_line
+from evodesign.cli.output import figure, shown
 from evodesign.records import AgentDetail, HeightDetail
 from evodesign.report.strain import most_strained
 
@@ -27,9 +25,9 @@ def worst_torques(heights: Sequence[HeightDetail]) -> Table:
     table = _table("agent", "joint", ("mean size", "worst"))
     for agent in heights[0].agents:
         torques = [detail.agents[agent].torques_n_m for detail in heights]
-        shown = most_strained(torques)[:JOINTS_SHOWN]
-        for joint in shown:
-            _add(table, agent, joint, heights, [by[joint] for by in torques], last=joint == shown[-1])
+        joints = most_strained(torques)[:JOINTS_SHOWN]
+        for joint in joints:
+            _add(table, agent, joint, heights, [by[joint] for by in torques], last=joint == joints[-1])
     return table
 
 
@@ -57,10 +55,10 @@ def _add(
     worst = max(range(len(values)), key=lambda case: abs(values[case]))
     table.add_row(
         agent,
-        escape(on_one_line(name)),
+        shown(name),
         figure(sum(map(abs, values)) / len(values)),
         figure(values[worst]),
-        escape(on_one_line(case_name(heights[worst]))),
+        shown(case_name(heights[worst])),
         end_section=last,
     )
 

@@ -107,11 +107,13 @@ class HumanProblem:
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
         """The person's posture at a height [m] under a push [N], about as good as V promises.
 
-        It starts from the nearest node; where that fails or leads to a dearer optimum, from the next ones.
+        It starts from the nearest node, close to the solution; where that fails or leads to a dearer optimum,
+        from the next ones.
         """
+        nearest = value.nearest(push)[:NODES_TRIED]
         ends: list[RawSolution] = []
-        for start in value.nearest(push)[:NODES_TRIED]:
-            ends.append(self.solve(height, push, start))
+        for solver, start in [(self._solver.near, nearest[0]), *((self._solver, start) for start in nearest)]:
+            ends.append(solver.solve([height, self._mass, push], start))
             if ends[-1].status is Status.SOLVED and ends[-1].cost <= value.cost(push) + LARGEST_ERROR:
                 return ends[-1]
         return min(ends, key=lambda end: (end.status is not Status.SOLVED, end.cost))

@@ -114,13 +114,14 @@ class PostureProblem:
             values: one number per design parameter.
             height: of the load's centre [m].
             checker: the independent check, made for this design.
-            alike: postures of the same design with the same load beside another person, which then take the
-                place of the seeds.
+            alike: postures of the same design with the same load at this height beside another person; where
+                the person's part is known, the robot's is close to the one sought.
         """
         trials: list[Trial] = []
-        for program, seeds in self._programs(height):
-            starts = program.starts(seeds, alike)
-            trials.append(program.trial(values, height, starts, checker))
+        if alike is not None and height in self._split_heights:
+            trials.append(self._split.beside_another(values, height, alike, checker))
+        for program, seeds in self._programs(height) if not trials or trials[0].best is None else ():
+            trials.append(program.trial(values, height, seeds, checker))
             if trials[-1].best is not None:
                 break
         best = trials[-1].best
@@ -191,21 +192,11 @@ class _Postures:
         """The program's cost at a height [m]."""
         return Landscape(self._solver, (height, self._mass), self._fixed, *NEAR)
 
-    def starts(
-        self, seeds: Sequence[Start], alike: Mapping[str, AgentPosture] | None
-    ) -> list[tuple[str, Start]]:
-        """Known postures, or the seeds, or the fixed starts if there are none."""
-        known = start_from(self._forms, self._solver.program, alike) if alike else None
-        return named_starts(self._name, self._solver, seeds, self._fixed, known)
-
     def trial(
-        self,
-        values: Sequence[float],
-        height: float,
-        starts: Sequence[tuple[str, Start]],
-        checker: Checker,
+        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
     ) -> Trial:
-        """What named starts lead to."""
+        """What the seeds lead to, or the fixed starts if there are none."""
+        starts = named_starts(self._name, self._solver, seeds, self._fixed)
         ends = [(name, self._solver.solve([*values, height, self._mass], start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 

@@ -68,24 +68,22 @@ class SplitPostures:
         """The robot's cost at a height [m], with V(X)."""
         return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
 
-    def starts(
-        self, seeds: Sequence[Start], alike: Mapping[str, AgentPosture] | None
-    ) -> list[tuple[str, Start]]:
-        """The robot's known posture, or the seeds, or the fixed starts if there are none."""
-        known = start_from(self._forms, self._robot.program, alike) if alike else None
-        return named_starts(SPLIT, self._robot, seeds, self._fixed, known)
-
     def trial(
-        self,
-        values: Sequence[float],
-        height: float,
-        starts: Sequence[tuple[str, Start]],
-        checker: Checker,
+        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
     ) -> Trial:
-        """What named starts lead the robot to, with the person beside it."""
+        """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
         parameters = [*values, *self._beside(height)]
+        starts = named_starts(SPLIT, self._robot, seeds, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
+
+    def beside_another(
+        self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
+    ) -> Trial:
+        """What the robot's posture with the same load and another person leads to."""
+        start = start_from(self._forms, self._robot.program, postures)
+        end = self._robot.near.solve([*values, *self._beside(height)], start)
+        return cheapest([(f"{SPLIT}: beside another", end)], partial(self._candidate, height, checker))
 
     def _beside(self, height: float) -> tuple[float, ...]:
         """The robot's parameters beside the design's."""

@@ -29,7 +29,7 @@ def fixed_starts(solver: Solver) -> tuple[Start, ...]:
 
 
 def named_starts(
-    program: str, solver: Solver, seeds: Sequence[Start], fixed: Sequence[Start], known: Start | None
+    program: str, solver: Solver, seeds: Sequence[Start], fixed: Sequence[Start]
 ) -> list[tuple[str, Start]]:
     """Where a program begins, each start with its name in results.
 
@@ -38,10 +38,7 @@ def named_starts(
         solver: of it; seeds that do not fit its variables, made for other agents, are left out.
         seeds: of the problem.
         fixed: starts where no seed fits.
-        known: a posture that takes the place of all others.
     """
-    if known is not None:
-        return [(f"{program}: alike", known)]
     rows = {variable.name: variable.symbol.numel() for variable in solver.program.variables}
     fitting = [seed for seed in seeds if all(len(v) == rows[n] for n, v in seed.items() if n in rows)]
     kind, starts = ("seed", fitting) if fitting else ("start", fixed)

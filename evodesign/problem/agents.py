@@ -8,12 +8,14 @@ from dataclasses import replace
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable
+from evodesign.problem.people import everyone
 from evodesign.records import ProblemSource
 from evodesign.statics.contact import SoleSize
 from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Agent
 from evodesign.tree.anthropometry import Person
 from evodesign.tree.human import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
 from evodesign.tree.model import Joint, JointKind, Link, Tree
+from evodesign.tree.strength import joint_strengths, with_given
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
 __all__ = ["human_agents", "refuse_unknown", "robot_agent"]
@@ -29,11 +31,12 @@ def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
 
 def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...]:
     """The people of the `human` tables; where there are several, each has a label of its own."""
-    people = [_human(key, table, source) for key, table in tables.people.items()]
+    entries = everyone(tables, source)
+    people = [_human(key, table, source) for key, table in entries]
     if len(people) == 1:
         return tuple(people)
     labels: list[str] = []
-    for (key, table), person in zip(tables.people.items(), people, strict=True):
+    for (key, table), person in zip(entries, people, strict=True):
         label = table.name or _told(table, person)
         if label in labels:
             raise InputError(source.path, f"{key}.name", "a name of its own", f"'{label}' twice")
@@ -49,7 +52,16 @@ def _told(table: HumanTable, person: Agent) -> str:
 
 
 def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
-    """A person: generated, or read from a URDF."""
+    """A person: generated, or read from a URDF; strengths in the table go before published ones."""
+    person = _of_table(key, table, source)
+    for joint in table.strengths_n_m:
+        refuse_unknown(
+            source, f"{key}.strengths_n_m", "moving joint", joint, person.tree.actuated, person.tree.name
+        )
+    return replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
+
+
+def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     if table.urdf is None:
         return _generated(key, table, source)
     for figure in ("stature_m", "mass_kg", "sex"):
@@ -76,7 +88,8 @@ def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
     soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
     joints = table.joints or DEFAULT_JOINTS
-    return _agent(HUMAN, key, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    agent = _agent(HUMAN, key, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    return replace(agent, strengths=joint_strengths(someone))
 
 
 def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], table: str, source: ProblemSource) -> Tree:

@@ -5,6 +5,9 @@ Positions and hand wrenches are in the agent's own frame, which looks along +x a
 wrench is force, then moment, acting on the agent: at a hand about the grasp point, at a foot about the sole's
 origin and in the sole frame.
 
+`ergonomics` says what a posture asks of the person: `effort` is the share of its strength that the hardest
+joint needs, in the direction of `movement`; the rest is the revised NIOSH lifting equation (docs/people.md).
+
 Where a problem has several people or loads, `heights` has an entry for each case, with its `human_name` and
 `payload_name`.
 
@@ -25,10 +28,12 @@ from typing import Any
 
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.problem.build import Problem
+from evodesign.problem.ergonomics import ergonomics, ergonomics_json
+from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
-from evodesign.statics.scene import SIDES, Scene
+from evodesign.statics.scene import HUMAN, SIDES, Scene
 
 __all__ = ["answer"]
 
@@ -80,6 +85,8 @@ def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
             for contact, wrench in _wrenches(posture).items()
         }
         shown["residuals"] = dict(height.residuals)
+        posture = detail_of(height, scene).agents[HUMAN]
+        shown["ergonomics"] = ergonomics_json(ergonomics(scene.human, posture))
     return shown
 
 

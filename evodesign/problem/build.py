@@ -18,7 +18,8 @@ from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
-from evodesign.problem.objectives import OBJECTIVES, objective_kind
+from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, objective_kind
+from evodesign.problem.people import refuse_unrated
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
 from evodesign.statics.contact import Ground
@@ -120,7 +121,7 @@ def build_problem(source: ProblemSource) -> Problem:
         space=space,
         heights=_heights(tables, source),
         weights=weights,
-        objectives=_objectives(tables, source),
+        objectives=_objectives(tables, source, scenes),
         options=IpoptOptions(
             iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
         ),
@@ -235,7 +236,7 @@ def _check_parameter(
     seen[parameter.kind, f"name {parameter.group}"] = key
 
 
-def _objectives(tables: ProblemFile, source: ProblemSource) -> tuple[Objective, ...]:
+def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Scene]) -> tuple[Objective, ...]:
     chosen = [
         *((Sense.MINIMISE, position, name) for position, name in enumerate(tables.objectives.minimise)),
         *((Sense.MAXIMISE, position, name) for position, name in enumerate(tables.objectives.maximise)),
@@ -252,5 +253,7 @@ def _objectives(tables: ProblemFile, source: ProblemSource) -> tuple[Objective, 
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, OBJECTIVES)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
+        if name.endswith(HUMAN_EFFORT):
+            refuse_unrated(key, name, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
     return tuple(objectives)

@@ -14,6 +14,7 @@ from msgspec import Meta
 from evodesign.posture.posture import Symmetry
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
+from evodesign.tree.population import PopulationSex
 
 __all__ = ["BaselineTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
 
@@ -63,10 +64,22 @@ class RobotTable(Table, frozen=True):
     joints: tuple[Name, ...] = ()
 
 
+class PopulationForm(Table, frozen=True):
+    """People at percentiles of published distributions of stature and mass."""
+
+    sex: PopulationSex
+    percentiles: tuple[float, ...]
+
+
 class HumanTable(Table, frozen=True):
-    """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts."""
+    """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts.
+
+    `population` stands for several people. `strengths_n_m` gives the largest torques of joints in their
+    negative and positive direction, for a URDF or instead of published ones.
+    """
 
     name: Name | None = None
+    population: PopulationForm | None = None
     stature_m: Positive | None = None
     mass_kg: Positive | None = None
     sex: Sex | None = None
@@ -76,6 +89,7 @@ class HumanTable(Table, frozen=True):
     soles: SolesTable | None = None
     trunk: tuple[Name, ...] = ()
     joints: tuple[Name, ...] = ()
+    strengths_n_m: dict[str, tuple[Positive, Positive]] = {}
 
 
 class GraspsTable(Table, frozen=True):

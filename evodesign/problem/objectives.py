@@ -20,8 +20,9 @@ from evodesign.problem.result import DesignResult
 from evodesign.records import Objective
 from evodesign.statics.balance import standing_height_of_mass
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
+from evodesign.tree.strength import largest_strain
 
-__all__ = ["OBJECTIVES", "QUANTITIES", "objective_kind", "objective_values", "value_of"]
+__all__ = ["HUMAN_EFFORT", "OBJECTIVES", "QUANTITIES", "objective_kind", "objective_values", "value_of"]
 
 
 def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
@@ -32,6 +33,12 @@ def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
 def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """The person's |tau|_2 [N m] (paper, task t1)."""
     return postures[HUMAN].torque_norm
+
+
+def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
+    strain = largest_strain(postures[HUMAN].torques, scene.human.strengths)
+    return 0.0 if strain is None else strain.share
 
 
 def reach_height(result: DesignResult) -> float | None:
@@ -64,9 +71,13 @@ def paper_cost(result: DesignResult) -> float | None:
     return float(cost)
 
 
+HUMAN_EFFORT = "human_effort"
+"""The quantity that needs people of known strength."""
+
 QUANTITIES: Mapping[str, CaseQuantity] = {
     "robot_torque": CaseQuantity("N m", robot_torque),
     "human_torque": CaseQuantity("N m", human_torque),
+    HUMAN_EFFORT: CaseQuantity("1", human_effort),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 

@@ -17,6 +17,7 @@ from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.statics.contact import Ground, SoleSize
 from evodesign.tree.model import Tree
+from evodesign.tree.strength import JointStrength
 
 __all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
 
@@ -101,6 +102,7 @@ class Agent:
         sole_size: of each foot.
         trunk: frames that keep clear of the load.
         label: who it is where a problem has several people.
+        strengths: of its joints, by name; none for a robot.
     """
 
     name: str
@@ -111,6 +113,7 @@ class Agent:
     sole_size: SoleSize
     trunk: tuple[str, ...]
     label: str = ""
+    strengths: Mapping[str, JointStrength] = field(default_factory=dict)
 
     @property
     def facing(self) -> float:

@@ -34,6 +34,12 @@ def spoil(place: Path, file: str, old: str, new: str) -> Path:
 
 
 PROBLEM, ROBOT = "icub_lifting.toml", "robots/icub_shapes.urdf"
+PERSON = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
+
+
+def crowd(percentiles: str, sex: str = "both") -> str:
+    """A population's key, in the place of one person's."""
+    return f'population = {{ sex = "{sex}", percentiles = {percentiles} }}'
 
 
 @pytest.mark.parametrize(
@@ -54,6 +60,18 @@ PROBLEM, ROBOT = "icub_lifting.toml", "robots/icub_shapes.urdf"
         (PROBLEM, "[0.8, 1.0, 1.2]", "[]", ["task.heights_m", "[]"]),
         (PROBLEM, 'sex = "male"', 'sex = "robot"', ["human.sex", "'robot'"]),
         (PROBLEM, "stature_m = 1.82", "stature_m = 3.82", ["human.stature_m", "3.82"]),
+        (PROBLEM, "mass_kg = 72.7", "mass_kg = 7.27", ["human.mass_kg", "from 40 to 140", "7.27"]),
+        (PROBLEM, PERSON, crowd("[]"), ["human.population.percentiles", "at least one percentile"]),
+        (PROBLEM, PERSON, crowd("[50, 99.9]"), ["human.population.percentiles[1]", "from 5 to 95", "99.9"]),
+        (PROBLEM, PERSON, crowd("[5, 5]"), ["human.population.percentiles[1]", "each percentile once"]),
+        (PROBLEM, PERSON, crowd("[50]", "all"), ["human.population.sex", "'all'"]),
+        (PROBLEM, "sex = ", f"{crowd('[50]')}\nsex = ", ["human.stature_m", "population", "both"]),
+        (
+            PROBLEM,
+            "[human]",
+            "[human]\nstrengths_n_m = { jLeftKne_roty = [200.0, 100.0] }",
+            ["human.strengths_n_m", "moving joint", "did you mean 'jLeftKnee_roty'?"],
+        ),
         (PROBLEM, '"reach_height"', '"reach_hight"', ["objectives.maximise[0]", "did you mean"]),
         (PROBLEM, "icub_shapes.urdf", "icub.urdf", ["robot.urdf", "an existing file"]),
         (PROBLEM, 'name = "icub-lifting"', "", ["name", "this key", "nothing"]),

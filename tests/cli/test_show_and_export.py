@@ -107,6 +107,33 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
         assert [row[2:] for row in rows if row[:2] == [agent, "left foot"]] == [expected]
 
 
+def test_card_and_json_say_what_the_postures_ask_of_the_person(
+    run: Path, problem: Problem, capsys: pytest.CaptureFixture[str]
+) -> None:
+    show_design(run, 0, jobs=1, json=True, plot=None)
+    told = json.loads(capsys.readouterr().out)["ergonomics"]
+    details = read_run(run).details[0].heights
+    person = problem.scene.human
+    for one, detail in zip(told, details, strict=True):
+        torque = detail.agents["human"].torques_n_m[one["hardest_joint"]]
+        both = person.strengths[one["hardest_joint"]]
+        way = both.negative if torque < 0.0 else both.positive
+        assert one["movement"] == way.movement
+        assert one["effort"] == pytest.approx(abs(torque) / way.moment)
+        assert one["held_kg"] == pytest.approx(2.5, abs=1e-3), "half of 5 kg, with point grasps"
+        assert one["hands_height_m"] == pytest.approx(detail.height_m + 0.0125, abs=1e-4)
+        assert one["lifting_index"] == pytest.approx(one["held_kg"] / one["recommended_weight_kg"])
+    show_design(run, 0, jobs=1, json=False, plot=None)
+    text = capsys.readouterr().out
+    rows = {row[0]: row[1:] for row in cells(text) if row[0].endswith(" m")}
+    assert set(rows) == {f"{detail.height_m:g} m" for detail in details}
+    for one, detail in zip(told, details, strict=True):
+        row = rows[f"{detail.height_m:g} m"]
+        assert row[0].startswith(one["hardest_joint"])
+        assert row[1:3] == [f"{one['effort']:.1%}", f"{one['hands_ahead_m']:.2f}"]
+        assert row[-2:] == [f"{one['recommended_weight_kg']:.1f}", f"{one['lifting_index']:.2f}"]
+
+
 def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     show_design(run, 0, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()

@@ -21,6 +21,7 @@ from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import Problem
 from evodesign.records import Detail
+from evodesign.report.company import Company
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 from evodesign.report.replay.recording import write_replay
@@ -62,7 +63,9 @@ class Replay:
 def replay(problem: Problem) -> Replay:
     cast, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
     stream = io.BytesIO()
-    write_replay(stream, cast, detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"})
+    write_replay(
+        stream, Company((cast,)), detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
+    )
     content = stream.getvalue()
     messages = {}
     for schema, channel, message in make_reader(io.BytesIO(content), validate_crcs=True).iter_messages():
@@ -225,7 +228,7 @@ def test_one_height_gives_a_recording_with_a_length(problem: Problem) -> None:
 
 
 def test_layout_shows_topics_frames_and_joints_that_exist(replay: Replay) -> None:
-    layout = json.loads(layout_text(replay.cast, replay.detail.heights))
+    layout = json.loads(layout_text(Company((replay.cast,)), replay.detail.heights))
     panels = layout["configById"]
     assert panels_of(layout["layout"]) == set(panels)
     scene = panels["3D!scene"]

@@ -1,0 +1,46 @@
+"""The table of a design's postures names who holds what only where there are several."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from io import StringIO
+
+from rich.console import Console
+from rich.table import Table
+
+from evodesign.cli.height_table import cases_table, heights_table
+from evodesign.records import Assessment, HeightOutcome, Status
+
+
+def outcome(human: str = "", payload: str = "") -> HeightOutcome:
+    return HeightOutcome(
+        height_m=1.0,
+        status=Status.SOLVED,
+        reason="solved",
+        robot_torque_norm=1.0,
+        human_torque_norm=2.0,
+        iterations=3,
+        residual=1e-9,
+        human_name=human,
+        payload_name=payload,
+    )
+
+
+def printed(table: Callable[[Assessment, str], Table], *heights: HeightOutcome) -> str:
+    assessment = Assessment(
+        design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", heights=heights
+    )
+    out = StringIO()
+    Console(file=out, width=110).print(table(assessment, ""))
+    return out.getvalue()
+
+
+def test_who_holds_what_is_named_where_there_are_several() -> None:
+    text = printed(cases_table, outcome("male P5", "5 kg"), outcome("[red]tall"))
+    assert "person" in text
+    assert "│ male P5   │ 5 kg │" in text
+    assert "│ [red]tall │" in text
+
+
+def test_one_person_with_one_load_needs_no_name() -> None:
+    assert "person" not in printed(heights_table, outcome())
