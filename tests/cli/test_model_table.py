@@ -78,7 +78,8 @@ def test_every_load_is_listed(problem: Problem) -> None:
     source = problem.source
     one = "[payload]\nsize_m = [0.5, 0.5, 0.025]\nmass_kg = 5.0\n"
     assert one in source.text
-    two = '[[payload]]\nsize_m = [0.5, 0.5, 0.025]\nmass_kg = 5.0\n[[payload]]\nname = "[box]"\nsize_m = [0.4, 0.3, 0.2]\nmass_kg = 12\n'
+    box = '[[payload]]\nname = "[box]"\nsize_m = [0.4, 0.3, 0.2]\nmass_kg = 12\n'
+    two = one.replace("[payload]", "[[payload]]") + box
     several = build_problem(ProblemSource(source.path, source.text.replace(one, two), source.files))
     told = model_json(several)
     assert "payload" not in told

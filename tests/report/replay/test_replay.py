@@ -26,7 +26,7 @@ from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 from evodesign.report.replay.recording import write_replay
 from evodesign.report.stage import Cast, looks_of, stage_of
-from tests.report.stages import random_cast, random_detail
+from tests.report.stages import random_cast, random_company, random_detail
 from tests.report.test_stage import posture_of
 
 CLASSES = {
@@ -222,7 +222,7 @@ def test_models_are_attached_and_the_recording_says_of_what_it_is(replay: Replay
 
 def test_one_height_gives_a_recording_with_a_length(problem: Problem) -> None:
     stream = io.BytesIO()
-    write_replay(stream, random_cast(problem, 1), random_detail(problem, 1, (1.0,)).heights, {}, {})
+    write_replay(stream, random_company(problem, 1), random_detail(problem, 1, (1.0,)).heights, {}, {})
     times = {message.log_time for _, _, message in make_reader(io.BytesIO(stream.getvalue())).iter_messages()}
     assert times == {10_000_000_000, 11_000_000_000}
 
