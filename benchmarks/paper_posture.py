@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.form import whole
 from evodesign.posture.load import LOAD_UNIT, push_of

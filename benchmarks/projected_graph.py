@@ -19,7 +19,7 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.agent import GRASP_ROWS, hand_wrench
+from evodesign.posture.bearing import GRASP_ROWS, hand_wrench
 from evodesign.statics.balance import AppliedWrench, cut
 from evodesign.statics.coupled import PAYLOAD
 from evodesign.statics.scene import SIDES, Agent, Payload, Scene

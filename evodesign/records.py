@@ -16,6 +16,7 @@ __all__ = [
     "AgentDetail",
     "Assessed",
     "Assessment",
+    "BorneDetail",
     "Detail",
     "Evaluation",
     "Front",
@@ -115,7 +116,10 @@ class ReachOutcome(Record, frozen=True):
 
 
 class HeightOutcome(Record, frozen=True, omit_defaults=True):
-    """One posture problem of one design, in short; person and load are named where there are several."""
+    """One posture problem of one design, in short; person and load are named where there are several.
+
+    `disturbed` holds torque norms by disturbance and agent, where the problem has disturbances.
+    """
 
     height_m: float
     status: Status
@@ -126,6 +130,7 @@ class HeightOutcome(Record, frozen=True, omit_defaults=True):
     residual: float | None
     human_name: str = ""
     payload_name: str = ""
+    disturbed: dict[str, dict[str, float]] = {}
 
 
 class Assessment(Record, frozen=True):
@@ -165,13 +170,25 @@ class AgentDetail(Record, frozen=True):
     foot_wrenches: dict[str, tuple[float, ...]]
 
 
+class BorneDetail(Record, frozen=True):
+    """What an agent bears under a disturbance, its posture being what it is; as in `AgentDetail`."""
+
+    torques_n_m: dict[str, float]
+    hand_wrenches: dict[str, tuple[float, ...]]
+    foot_wrenches: dict[str, tuple[float, ...]]
+
+
 class HeightDetail(Record, frozen=True, omit_defaults=True):
-    """The postures at one height of the load, by the agents' names; who and what as in `HeightOutcome`."""
+    """The postures at one height of the load, by the agents' names; who and what as in `HeightOutcome`.
+
+    `disturbed` holds what the agents bear in the same postures, by disturbance and agent.
+    """
 
     height_m: float
     agents: dict[str, AgentDetail]
     human_name: str = ""
     payload_name: str = ""
+    disturbed: dict[str, dict[str, BorneDetail]] = {}
 
 
 class Assessed(Record, frozen=True):

@@ -133,7 +133,8 @@ class OpenedRun:
             designs: of this run; left out, all evaluations.
         Returns:
             Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
-            the reach [m], torque norms by height and by case [N m], parameters; None where a value does not exist.
+            the reach [m], torque norms by height and by case [N m], parameters; None where a value does not
+            exist.
         """
         wanted = None if designs is None else [design.number for design in designs]
         by_number = {evaluation.number: evaluation for evaluation in self.run.evaluations}

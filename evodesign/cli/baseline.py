@@ -8,6 +8,7 @@ from pathlib import Path
 
 from evodesign.cli.output import console, counted
 from evodesign.cli.searching import Budgets, Wishes, Workers, start
+from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 from evodesign.runlog.directory import name_in_path
@@ -24,7 +25,9 @@ def start_baseline(
     problem: Path, run: Path | None, starts: int, seed: int | None, jobs: int, pool: str, json: bool
 ) -> None:
     """Solve the joint problem from many starts; print its front, and how the starts ended."""
-    name = name_in_path(build_problem(read_source(problem)).name)
+    built = build_problem(read_source(problem))
+    refuse_unsuited(built)
+    name = name_in_path(built.name)
     directory = Path("runs") / f"{name}-baseline-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
     wishes = Wishes(JOINT_STARTS, min(starts, GENERATION), seed, asynchronous=False)
     budgets = Budgets(starts, hours=None, stagnation_generations=0)

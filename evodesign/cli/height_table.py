@@ -11,6 +11,7 @@ from evodesign.analysis.cases import pair_name
 from evodesign.cli.output import figure, shown
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightOutcome
+from evodesign.statics.scene import HUMAN, ROBOT
 
 __all__ = ["cases_table", "heights_table", "summary_table"]
 
@@ -30,6 +31,14 @@ def heights_table(assessment: Assessment, title: str) -> Table:
             _residual(outcome),
             _status(outcome),
         )
+        for name, norms in outcome.disturbed.items():
+            table.add_row(
+                "",
+                *(figure(norms[agent]) for agent in (ROBOT, HUMAN)),
+                "",
+                "",
+                shown(f"under '{name}'"),
+            )
     return table
 
 
@@ -51,8 +60,12 @@ def cases_table(assessment: Assessment, title: str) -> Table:
             figure(outcome.human_torque_norm),
             _residual(outcome),
             _status(outcome),
-            end_section=following is not None and pair_name(outcome) != pair_name(following),
         )
+        for name, norms in outcome.disturbed.items():
+            bore = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
+            table.add_row(*("" for _ in names), "", *bore, "", shown(f"under '{name}'"))
+        if following is not None and pair_name(outcome) != pair_name(following):
+            table.add_section()
     return table
 
 
@@ -66,7 +79,10 @@ def _status(outcome: HeightOutcome) -> str:
 
 
 def summary_table(assessment: Assessment, title: str) -> Table:
-    """Torque norms [N m] over all cases, and over those with each person or load, or at each height."""
+    """Torque norms [N m] over all cases, and over those with each person or load, or at each height.
+
+    Torques under disturbances count as the objectives count them, each beside the undisturbed one.
+    """
     table = Table(title=title or None, title_justify="left")
     table.add_column("cases", overflow="fold")
     table.add_column("solved", justify="right")
@@ -84,11 +100,23 @@ def summary_table(assessment: Assessment, title: str) -> Table:
 
 
 def _add_summary(table: Table, name: str, outcomes: Sequence[HeightOutcome], *, last: bool) -> None:
-    robot = [norm for outcome in outcomes if (norm := outcome.robot_torque_norm) is not None]
-    human = [norm for outcome in outcomes if (norm := outcome.human_torque_norm) is not None]
-    numbers = [*_mean_and_worst(robot), *_mean_and_worst(human)]
-    solved = f"{len(robot)} of {len(outcomes)}"
-    table.add_row(shown(name), solved, *map(figure, numbers), end_section=last)
+    solved = [outcome for outcome in outcomes if outcome.robot_torque_norm is not None]
+    numbers = [
+        number
+        for agent in (ROBOT, HUMAN)
+        for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, agent)])
+    ]
+    share = f"{len(solved)} of {len(outcomes)}"
+    table.add_row(shown(name), share, *map(figure, numbers), end_section=last)
+
+
+def _norms(outcome: HeightOutcome, agent: str) -> Iterator[float]:
+    """An agent's torque norms in a case, quiet and disturbed."""
+    quiet = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
+    if quiet is not None:
+        yield quiet
+    for norms in outcome.disturbed.values():
+        yield norms[agent]
 
 
 def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:

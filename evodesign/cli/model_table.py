@@ -15,6 +15,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.people import everyone
+from evodesign.statics.disturbance import Disturbance
 from evodesign.statics.scene import Agent, Payload
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
@@ -32,14 +33,26 @@ def model_json(problem: Problem) -> dict[str, Any]:
     scene = problem.scene
     loads = {each.payload.label: each.payload for each in problem.scenes}
     told = [_load(load) for load in loads.values()]
+    disturbed = scene.disturbances
     return {
         "problem": problem.name,
         "agents": [_agent(scene.robot), *_people(problem)],
         **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
         "heights_m": list(problem.heights),
+        **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
+    }
+
+
+def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
+    return {
+        "name": disturbance.name,
+        "load_mass_share": disturbance.mass_share,
+        "center_of_mass_m": list(disturbance.center_of_mass),
+        "push_n": list(disturbance.push),
+        "at": str(disturbance.at),
     }
 
 
@@ -87,8 +100,22 @@ def _task_table(shown: dict[str, Any]) -> Table:
         told = mass if name == mass else f"{visible(name)}: {mass}"
         table.add_row("load", escape(f"{told}, {size}"))
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
+    for disturbance in shown.get("disturbances", ()):
+        table.add_row("disturbance", escape(_told(disturbance)))
     table.add_row("objectives", ", ".join(shown["objectives"]))
     return table
+
+
+def _told(disturbance: dict[str, Any]) -> str:
+    """A disturbance in words."""
+    parts = []
+    if disturbance["load_mass_share"]:
+        parts.append(f"load {disturbance['load_mass_share']:+.0%}")
+    if any(disturbance["center_of_mass_m"]):
+        parts.append(f"centre of mass moved by {disturbance['center_of_mass_m']} m")
+    if any(disturbance["push_n"]):
+        parts.append(f"{disturbance['push_n']} N on the {disturbance['at']}")
+    return f"{disturbance['name']}: {', '.join(parts) or 'nothing changes'}"
 
 
 def _links_table(links: Iterable[dict[str, Any]]) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from evodesign.posture.check import TOLERANCE
 from evodesign.posture.program import RawSolution
@@ -21,11 +21,13 @@ class Candidate:
         attempt: how it ended; solved only if the check agrees.
         postures: by agent name.
         residuals: what the check found.
+        disturbed: what is borne under each disturbance, by its name and the agent's.
     """
 
     attempt: Attempt
     postures: Mapping[str, AgentPosture]
     residuals: Mapping[str, float]
+    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
 
     @property
     def solved(self) -> bool:
@@ -81,5 +83,12 @@ def height_solution(height: float, trials: Sequence[Trial]) -> HeightSolution:
         return HeightSolution(height, status, reason, {}, {}, attempts, "")
     best = min(found, key=lambda candidate: candidate.attempt.cost)
     return HeightSolution(
-        height, Status.SOLVED, "solved", best.postures, best.residuals, attempts, best.attempt.start
+        height=height,
+        status=Status.SOLVED,
+        reason="solved",
+        postures=best.postures,
+        residuals=best.residuals,
+        attempts=attempts,
+        start=best.attempt.start,
+        disturbed=best.disturbed,
     )

@@ -12,14 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 import pinocchio as pin
 
-from evodesign.posture.solution import AgentPosture
+from evodesign.posture.solution import AgentPosture, Array
 from evodesign.statics.balance import GRAVITY
 from evodesign.statics.contact import foot_margins
+from evodesign.statics.disturbance import Disturbance, PushedAt
 from evodesign.statics.floating import ROOT, Configuration, FloatingBody, Instant
 from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.model import Tree
@@ -28,6 +30,10 @@ __all__ = ["TOLERANCE", "AgentModel", "Checker"]
 
 TOLERANCE = 1e-5
 """Largest residual of a posture that counts as solved, in SI units."""
+
+QUIET = Disturbance("none")
+STILL = np.zeros(3)
+NOTHING: Mapping[str, Mapping[str, AgentPosture]] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,13 +67,26 @@ class Checker:
         other._scene, other._models = scene, (self._models[0], human)
         return other
 
-    def residuals(self, postures: Mapping[str, AgentPosture], height: float) -> dict[str, float]:
+    def residuals(
+        self,
+        postures: Mapping[str, AgentPosture],
+        height: float,
+        disturbed: Mapping[str, Mapping[str, AgentPosture]] = NOTHING,
+    ) -> dict[str, float]:
         """Largest violation of each kind, SI units; zero or rounding for a posture that holds.
 
         Args:
             postures: by agent name.
             height: of the load's centre [m].
+            disturbed: what is borne under each of the scene's disturbances, by its name and the agent's.
         """
+        found = self._undisturbed(postures, height)
+        for disturbance in self._scene.disturbances.cases:
+            own = self._disturbed(disturbance, postures, disturbed[disturbance.name])
+            found.update({f"{disturbance.name}: {name}": value for name, value in own.items()})
+        return found
+
+    def _undisturbed(self, postures: Mapping[str, AgentPosture], height: float) -> dict[str, float]:
         found: dict[str, float] = {}
         for model in self._models:
             posture = postures[model.agent.name]
@@ -81,10 +100,44 @@ class Checker:
         found.update(_load(self._scene, postures))
         return found
 
+    def _disturbed(
+        self,
+        disturbance: Disturbance,
+        undisturbed: Mapping[str, AgentPosture],
+        postures: Mapping[str, AgentPosture],
+    ) -> dict[str, float]:
+        """What may differ under a disturbance: statics, feet, load, and a posture that moved."""
+        found: dict[str, float] = {}
+        for model in self._models:
+            agent, posture = model.agent, postures[model.agent.name]
+            instant = model.at(posture)
+            own = {
+                **_statics(agent, instant, posture, disturbance),
+                "foot_contact": _foot_contact(agent, posture, self._scene),
+                "moved": _distance(undisturbed[agent.name], posture),
+            }
+            found.update({f"{agent.name}.{name}": value for name, value in own.items()})
+        scene = replace(self._scene, payload=self._scene.payload.disturbed(disturbance))
+        found.update(_load(scene, postures, np.array(disturbance.push_on(PushedAt.LOAD))))
+        return found
 
-def _statics(agent: Agent, instant: Instant, posture: AgentPosture) -> dict[str, float]:
+
+def _distance(posture: AgentPosture, other: AgentPosture) -> float:
+    """Largest difference of base [m, rad] and joints [rad] of two postures."""
+    base = np.abs(posture.base_position - other.base_position).max()
+    turned = np.abs(posture.base_angles - other.base_angles).max()
+    return float(max(base, turned, *(abs(posture.joints[name] - x) for name, x in other.joints.items())))
+
+
+def _statics(
+    agent: Agent, instant: Instant, posture: AgentPosture, disturbance: Disturbance = QUIET
+) -> dict[str, float]:
     """Rows of h - J^T f: six of the base, then the joints."""
     rows = np.array(instant.bias)
+    push = np.array(disturbance.push_on(PushedAt(agent.name)))
+    if push.any():
+        in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ push
+        rows -= instant.twist_in_world(agent.trunk[-1])[0][:3].T @ in_agent
     for side in SIDES:
         rows -= instant.twist_in_world(agent.hands[side])[0].T @ posture.hand_wrenches[side]
         rows -= instant.twist_in_frame(agent.soles[side])[0].T @ posture.foot_wrenches[side]
@@ -99,20 +152,26 @@ def _statics(agent: Agent, instant: Instant, posture: AgentPosture) -> dict[str,
 def _contacts(
     agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene, height: float
 ) -> dict[str, float]:
-    hands, heights, slants, margins = [], [], [], []
+    hands, heights, slants = [], [], []
     for side in SIDES:
         grasp = np.array(scene.payload.grasp_point(agent, side)) + np.array([0.0, 0.0, height])
         hands.append(float(np.abs(instant.pose(agent.hands[side])[1] - grasp).max()))
         rotation, origin = instant.pose(agent.soles[side])
         heights.append(abs(float(origin[2])))
         slants.append(float(np.abs(rotation[:, 2] - [0.0, 0.0, 1.0]).max()))
-        margins += foot_margins(posture.foot_wrenches[side], agent.sole_size, scene.ground)
     return {
         "hands_on_load": max(hands),
         "feet_on_ground": max(heights),
         "feet_flat": max(slants),
-        "foot_contact": max(0.0, -float(min(margins))),
+        "foot_contact": _foot_contact(agent, posture, scene),
     }
+
+
+def _foot_contact(agent: Agent, posture: AgentPosture, scene: Scene) -> float:
+    """By how much feet pass to the ground what it cannot bear [N, N m]."""
+    wrenches = [posture.foot_wrenches[side] for side in SIDES]
+    margins = [m for wrench in wrenches for m in foot_margins(wrench, agent.sole_size, scene.ground)]
+    return max(0.0, -float(min(margins)))
 
 
 def _limits(agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene) -> dict[str, float]:
@@ -135,10 +194,11 @@ def _limits(agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene)
     }
 
 
-def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float]:
+def _load(scene: Scene, postures: Mapping[str, AgentPosture], outside: Array = STILL) -> dict[str, float]:
+    """Balance of the load, of which a force from outside [N] meets the box's centre, and bounds on hands."""
     weight = np.array([0.0, 0.0, -GRAVITY * scene.payload.mass])
-    force, moment = weight, np.cross(scene.payload.center_of_mass, weight)
-    push, passed = 0.0, 0.0
+    force, moment = weight + outside, np.cross(scene.payload.center_of_mass, weight)
+    squeeze, passed = float(outside[0]) / 2.0, 0.0
     for agent in (scene.robot, scene.human):
         world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
         for side in SIDES:
@@ -147,11 +207,11 @@ def _load(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, float
             point = world_from_agent @ np.array(scene.payload.grasp_point(agent, side))
             force = force + on_load
             moment = moment + np.cross(point, on_load) - world_from_agent @ wrench[3:]
-            push += float(on_load[0]) if agent is scene.robot else 0.0
+            squeeze += float(on_load[0]) if agent is scene.robot else 0.0
             passed = max(passed, float(np.abs(wrench[3:]).max()))
     return {
         "load.force_balance": float(np.abs(force).max()),
         "load.moment_balance": float(np.abs(moment).max()),
-        "load.push": max(0.0, abs(push) - scene.stance.push),
+        "load.push": max(0.0, abs(squeeze) - scene.stance.push),
         "load.grasp": passed if scene.payload.grasp is Grasp.POINT else 0.0,
     }

@@ -21,10 +21,10 @@ import numpy as np
 from evodesign.posture.form import Form
 from evodesign.posture.program import Constraint
 from evodesign.statics.contact import foot_margins
-from evodesign.statics.scene import SIDES, Scene
+from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.kinematics import Pose, vector
 
-__all__ = ["equal", "feet_constraints", "hand_constraints", "stance_constraints"]
+__all__ = ["equal", "foot_contact", "foot_flat", "foot_yaw", "hand_constraints", "stance_constraints"]
 
 Expression = Any
 
@@ -50,22 +50,31 @@ def hand_constraints(
     ]
 
 
-def feet_constraints(
-    form: Form, poses: Mapping[str, Pose], feet: Mapping[str, Expression], scene: Scene
-) -> list[Constraint]:
-    """Soles on the ground, flat, not turned far, and pressing as the ground allows (Eq. 14 e to g)."""
-    agent, yaw = form.agent, math.sin(scene.stance.foot_yaw)
-    constraints = []
-    for side in form.sides:
-        sole = poses[agent.soles[side]]
-        level = ca.vertcat(sole.position[2], sole.rotation[0, 2], sole.rotation[1, 2])
-        margins = ca.vertcat(*foot_margins(feet[side], agent.sole_size, scene.ground)) / MARGIN_UNIT
-        constraints += [
-            equal(f"{agent.name}.{side}_foot_flat", level),
-            Constraint(f"{agent.name}.{side}_foot_contact", margins, 0.0, np.inf),
-            Constraint(f"{agent.name}.{side}_foot_yaw", sole.rotation[1, 0], -yaw, yaw),
-        ]
-    return constraints
+def foot_flat(agent: Agent, poses: Mapping[str, Pose], side: str) -> Constraint:
+    """A sole on the ground, and flat (Eq. 14 e to g)."""
+    sole = poses[agent.soles[side]]
+    level = ca.vertcat(sole.position[2], sole.rotation[0, 2], sole.rotation[1, 2])
+    return equal(f"{agent.name}.{side}_foot_flat", level)
+
+
+def foot_yaw(agent: Agent, poses: Mapping[str, Pose], side: str, scene: Scene) -> Constraint:
+    """A foot that is not turned far."""
+    yaw = math.sin(scene.stance.foot_yaw)
+    return Constraint(f"{agent.name}.{side}_foot_yaw", poses[agent.soles[side]].rotation[1, 0], -yaw, yaw)
+
+
+def foot_contact(name: str, side: str, wrench: Expression, agent: Agent, scene: Scene) -> Constraint:
+    """A foot that presses as the ground allows.
+
+    Args:
+        name: begins the constraint's name.
+        side: of the foot.
+        wrench: force [N] and moment [N m] on it, in the sole frame.
+        agent: whose foot it is.
+        scene: for the ground.
+    """
+    margins = ca.vertcat(*foot_margins(wrench, agent.sole_size, scene.ground)) / MARGIN_UNIT
+    return Constraint(f"{name}.{side}_foot_contact", margins, 0.0, np.inf)
 
 
 def stance_constraints(form: Form, poses: Mapping[str, Pose], scene: Scene) -> list[Constraint]:

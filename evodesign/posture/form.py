@@ -152,6 +152,10 @@ def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
         if tuple(left) != (right[0], -right[1], right[2]):
             key = f"{agent.name}_grasps_m"
             raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")
+    for disturbance in scene.disturbances.cases:
+        if disturbance.sideways:
+            where = f"disturbance '{disturbance.name}'"
+            raise ModelError(where, "", "y = 0 everywhere in a symmetric scene", "a part along y")
     return half(scene.robot), half(scene.human)
 
 

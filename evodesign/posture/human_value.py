@@ -22,7 +22,8 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.constraints import equal
 from evodesign.posture.form import Form
 from evodesign.posture.load import any_load, load_constraints, push_of

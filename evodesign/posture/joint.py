@@ -24,7 +24,8 @@ import casadi as ca
 import numpy as np
 
 from evodesign.design.space import DesignSpace, ParameterKind
-from evodesign.posture.agent import TORQUE_UNIT, AgentBlock, agent_block
+from evodesign.posture.agent import AgentBlock, agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.enforced import Enforced
@@ -248,7 +249,7 @@ def _asked(every: Sequence[Constraint], blocks: Sequence[AgentBlock], enforced: 
     """The constraints that are enforced, and upright feet where joint limits do not see to them."""
     rows = [constraint for constraint in every if enforced.covers(constraint.name)]
     if not enforced.joint_limits:
-        upright = [z for block in blocks for z in block.uprights.values()]
+        upright = [z for block in blocks for z in block.stand.uprights.values()]
         rows.append(Constraint("feet.upright", ca.vertcat(*upright), 0.0, np.inf))
     return rows
 
@@ -256,8 +257,8 @@ def _asked(every: Sequence[Constraint], blocks: Sequence[AgentBlock], enforced: 
 def _height_cost(block: AgentBlock, weight: float, settings: JointSettings) -> Expression:
     """An agent's W1 t1 + W3 t3 + comfort at one height."""
     weights = settings.tasks.weights
-    cost = weights.torque * weight * block.effort / TORQUE_UNIT**2 + block.posture_comfort
+    cost = weights.torque * weight * block.effort / TORQUE_UNIT**2 + block.stand.comfort
     if weights.center_of_pressure:
         feet = {v.name: v.value for v in block.variables if v.name.endswith("_foot")}
         cost += weights.center_of_pressure * len(SIDES) / len(feet) * pressure_task(feet)
-    return cost + block.wrench_comfort if settings.enforced.contact else cost
+    return cost + block.bearing.comfort if settings.enforced.contact else cost

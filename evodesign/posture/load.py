@@ -18,10 +18,11 @@ import casadi as ca
 
 from evodesign.posture.program import Constraint
 from evodesign.statics.balance import GRAVITY
+from evodesign.statics.disturbance import Disturbance, PushedAt
 from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.kinematics import vector
 
-__all__ = ["any_load", "load_constraints", "push_of"]
+__all__ = ["any_load", "disturbed_load_constraints", "load_constraints", "push_of", "turned_to_world"]
 
 Expression = Any
 
@@ -39,14 +40,30 @@ def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
     return in_agent * ca.DM([agent.sign, agent.sign, 1.0])
 
 
-def push_of(robot: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression:
-    """Horizontal force of the robot on the load, towards the person [N].
+def push_of(agent: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression:
+    """Force of an agent on the load along the world's x, from the robot towards the person [N].
 
     Args:
-        robot: the agent.
+        agent: robot or person.
         hand_wrenches: on its hands, in its frame, by side.
     """
-    return sum(-turned_to_world(robot, wrench[:3])[0] for wrench in hand_wrenches.values())
+    return sum(-turned_to_world(agent, wrench[:3])[0] for wrench in hand_wrenches.values())
+
+
+def squeeze_of(scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]]) -> Expression:
+    """How hard the agents push against each other [N].
+
+        (X_robot - X_human) / 2        X an agent's force on the load along the world's x
+
+    is the robot's push where nobody else pushes the load; a push from outside leaves it as it is when both
+    bear half of that.
+
+    Args:
+        scene: agents.
+        hand_wrenches: by agent name and side, in the agents' frames.
+    """
+    forces = [push_of(agent, hand_wrenches[agent.name]) for agent in (scene.robot, scene.human)]
+    return (forces[0] - forces[1]) / 2.0
 
 
 def load_constraints(
@@ -60,7 +77,52 @@ def load_constraints(
         symmetric: whether right hands mirror left ones, so that three of the six rows vanish by themselves.
     """
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
-    force: Expression = weight
+    rows = _unbalanced(scene, hand_wrenches, weight, weight, symmetric=symmetric)
+    push = push_of(scene.robot, hand_wrenches[scene.robot.name])
+    return _constraints(scene, rows, push, "")
+
+
+def disturbed_load_constraints(
+    scene: Scene,
+    disturbance: Disturbance,
+    hand_wrenches: Mapping[str, Mapping[str, Expression]],
+    prefix: str,
+    *,
+    symmetric: bool,
+) -> tuple[Constraint, ...]:
+    """Balance of a load under a disturbance, and the bound on how hard the agents push against each other.
+
+    Args:
+        scene: agents and load, undisturbed.
+        disturbance: what happens to them.
+        hand_wrenches: as for `load_constraints`.
+        prefix: begins the constraints' names.
+        symmetric: as for `load_constraints`.
+    """
+    scene = replace(scene, payload=scene.payload.disturbed(disturbance))
+    weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
+    push = vector(disturbance.push_on(PushedAt.LOAD))
+    rows = _unbalanced(scene, hand_wrenches, weight + push, weight, symmetric=symmetric)
+    return _constraints(scene, rows, squeeze_of(scene, hand_wrenches), prefix)
+
+
+def _unbalanced(
+    scene: Scene,
+    hand_wrenches: Mapping[str, Mapping[str, Expression]],
+    force: Expression,
+    weight: Expression,
+    *,
+    symmetric: bool,
+) -> Expression:
+    """Sum of forces [N] and moments about the box's centre [N m] on the load.
+
+    Args:
+        scene: agents and load.
+        hand_wrenches: by agent name and side, in the agents' frames.
+        force: of everything but hands, [N].
+        weight: the part of it that acts at the centre of mass; the rest acts at the box's centre.
+        symmetric: whether rows that vanish by themselves are left out.
+    """
     moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
     for agent in (scene.robot, scene.human):
         for side in SIDES:
@@ -69,10 +131,12 @@ def load_constraints(
             point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, side)))
             force = force + on_load
             moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
-    rows = ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
-    push = push_of(scene.robot, hand_wrenches[scene.robot.name])
+    return ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
+
+
+def _constraints(scene: Scene, rows: Expression, push: Expression, prefix: str) -> tuple[Constraint, ...]:
     limit = scene.stance.push / LOAD_UNIT
     return (
-        Constraint("load.balance", rows / LOAD_UNIT, 0.0, 0.0),
-        Constraint("load.push", push / LOAD_UNIT, -limit, limit),
+        Constraint(f"{prefix}load.balance", rows / LOAD_UNIT, 0.0, 0.0),
+        Constraint(f"{prefix}load.push", push / LOAD_UNIT, -limit, limit),
     )

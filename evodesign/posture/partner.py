@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.agent import GRASP_ROWS, HAND_UNIT, hand_wrench
+from evodesign.posture.bearing import GRASP_ROWS, HAND_UNIT, hand_wrench
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Variable
 from evodesign.statics.scene import Scene
@@ -37,12 +37,18 @@ class Hands:
     wrenches: Mapping[str, Expression]
 
 
-def free_hands(form: Form, scene: Scene) -> Hands:
-    """Hands that stand in for another agent of the same form (whole or half)."""
+def free_hands(form: Form, scene: Scene, prefix: str = "") -> Hands:
+    """Hands that stand in for another agent of the same form (whole or half).
+
+    Args:
+        form: of the agent that is there.
+        scene: for what a hand can pass.
+        prefix: begins the names of variables, where there is more than one thing to bear.
+    """
     limit = [STRONGEST] * GRASP_ROWS[scene.payload.grasp]
     variables = {
         side: Variable.column(
-            f"partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
+            f"{prefix}partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
         )
         for side in form.sides
     }

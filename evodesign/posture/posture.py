@@ -25,9 +25,11 @@ from functools import cached_property, partial
 import casadi as ca
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import AgentBlock, agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked, height_solution
 from evodesign.posture.check import Checker
+from evodesign.posture.disturbed import cases_of, filled, over_cases, postures_in_cases, with_cases
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.load import any_load, load_constraints
 from evodesign.posture.portfolio import NEAR, Landscape
@@ -183,7 +185,7 @@ class _Postures:
     ) -> None:
         self._name = name
         self._forms = forms
-        self._mass = scene.payload.mass
+        self._scene, self._mass = scene, scene.payload.mass
         key = (name, likeness(scene, *(form.agent for form in forms)))
         self._solver = shelf.solver(key, lambda: posture_program(forms, scene, space, weights), options)
         self._fixed = fixed_starts(self._solver)
@@ -197,7 +199,7 @@ class _Postures:
     ) -> Trial:
         """What the seeds lead to, or the fixed starts if there are none."""
         starts = named_starts(self._name, self._solver, seeds, self._fixed)
-        ends = [(name, self._solver.solve([*values, height, self._mass], start)) for name, start in starts]
+        ends = [(name, self._solve(values, height, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 
     def polish(
@@ -205,13 +207,17 @@ class _Postures:
     ) -> Trial:
         """What known whole postures lead to."""
         start = start_from(self._forms, self._solver.program, postures)
-        end = self._solver.solve([*values, height, self._mass], start)
+        end = self._solve(values, height, start)
         return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
+
+    def _solve(self, values: Sequence[float], height: float, start: Start) -> RawSolution:
+        return self._solver.solve([*values, height, self._mass], filled(start, self._solver.program))
 
     def _candidate(self, height: float, checker: Checker, start: str, raw: RawSolution) -> Candidate:
         postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form in self._forms}
-        residuals = checker.residuals(postures, height)
-        return Candidate(checked(start, raw, residuals), postures, residuals)
+        disturbed = postures_in_cases(self._scene, self._forms, raw.values)
+        residuals = checker.residuals(postures, height, disturbed)
+        return Candidate(checked(start, raw, residuals), postures, residuals, disturbed)
 
 
 def posture_program(
@@ -227,10 +233,28 @@ def posture_program(
     hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}
     load = load_constraints(scene, hands, symmetric=forms[0].mirror is not None)
     effort = weights.robot * robot.effort + weights.human * human.effort
-    return Program(
+    program = Program(
         name="posture",
         variables=(*robot.variables, *human.variables),
         constraints=(*robot.constraints, *human.constraints, *load),
         cost=effort / TORQUE_UNIT**2 + robot.comfort + human.comfort,
         parameters=ca.vertcat(design, height, mass),
     )
+    return _disturbed(program, scene, weights, robot, human) if scene.disturbances else program
+
+
+def _disturbed(
+    program: Program, scene: Scene, weights: EffortWeights, robot: AgentBlock, human: AgentBlock
+) -> Program:
+    """The program with a case for each of the scene's disturbances beside the undisturbed one."""
+    cases = cases_of(scene, robot.stand, human.stand)
+    pairs = [(robot.bearing, human.bearing)]
+    pairs += [(case.bearings[ROBOT], case.bearings[HUMAN]) for case in cases]
+    costs = [
+        (weights.robot * one.effort + weights.human * other.effort) / TORQUE_UNIT**2
+        + one.comfort
+        + other.comfort
+        for one, other in pairs
+    ]
+    still = replace(program, cost=robot.stand.comfort + human.stand.comfort)
+    return over_cases(with_cases(still, cases), scene.disturbances.effort, costs)

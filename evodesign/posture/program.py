@@ -19,7 +19,16 @@ import numpy as np
 from evodesign.posture.codegen import CompiledFunctions, NotCompiled, compiled_functions
 from evodesign.records import Status
 
-__all__ = ["Constraint", "IpoptOptions", "Multipliers", "Program", "RawSolution", "Solver", "Variable"]
+__all__ = [
+    "Constraint",
+    "IpoptOptions",
+    "Multipliers",
+    "Program",
+    "RawSolution",
+    "Solver",
+    "Variable",
+    "values_under",
+]
 
 Array = Any
 Expression = Any
@@ -178,10 +187,13 @@ class RawSolution:
 
     def of(self, agent: str) -> dict[str, Array]:
         """The values of one agent's variables, by their name without the agent's."""
-        prefix = f"{agent}."
-        return {
-            name.removeprefix(prefix): value for name, value in self.values.items() if name.startswith(prefix)
-        }
+        return values_under(agent, self.values)
+
+
+def values_under(block: str, values: Mapping[str, Array]) -> dict[str, Array]:
+    """The values of an agent's (or other block's) variables, by their name without the block's."""
+    prefix = f"{block}."
+    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
 
 
 _STATUS = {

@@ -18,6 +18,7 @@ import casadi as ca
 
 from evodesign.design.space import DesignSpace
 from evodesign.posture.agent import agent_block
+from evodesign.posture.disturbed import cases_of, filled, with_cases
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.load import any_load, load_constraints
 from evodesign.posture.partner import free_hands
@@ -123,9 +124,8 @@ class ReachProblem:
 
     def solves(self, values: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense."""
-        return [
-            self._solver.solve([*values, self.mass, sense], start) for start in self._seeds[sense] or FIXED
-        ]
+        starts = [filled(start, self.program) for start in self._seeds[sense] or FIXED]
+        return [self._solver.solve([*values, self.mass, sense], start) for start in starts]
 
     def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
@@ -148,10 +148,11 @@ def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
     partner = free_hands(form, scene)
     hands = {ROBOT: robot.hand_wrenches, HUMAN: partner.wrenches}
     load = load_constraints(scene, hands, symmetric=form.mirror is not None)
-    return Program(
+    program = Program(
         name="reach",
         variables=(height, *robot.variables, *partner.variables),
         constraints=(*robot.constraints, *load),
         cost=sense * height.value + COMFORT * robot.comfort,
         parameters=ca.vertcat(design, mass, sense),
     )
+    return with_cases(program, cases_of(scene, robot.stand))

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
+from evodesign.posture.disturbed import prefix_of
 from evodesign.posture.form import Form
 from evodesign.posture.program import Program
 from evodesign.posture.solution import AgentPosture
@@ -12,8 +14,14 @@ from evodesign.posture.solution import AgentPosture
 __all__ = ["start_from"]
 
 
+NOTHING: Mapping[str, Mapping[str, AgentPosture]] = MappingProxyType({})
+
+
 def start_from(
-    forms: Sequence[Form], program: Program, postures: Mapping[str, AgentPosture]
+    forms: Sequence[Form],
+    program: Program,
+    postures: Mapping[str, AgentPosture],
+    disturbed: Mapping[str, Mapping[str, AgentPosture]] = NOTHING,
 ) -> dict[str, Any]:
     """Whole postures as values of a program's variables; hands of an absent agent are the partner's.
 
@@ -21,21 +29,30 @@ def start_from(
         forms: of robot and person.
         program: over both or one of them.
         postures: by agent name.
+        disturbed: what is borne under each disturbance, in their order, by its name and the agent's.
     """
     counts = {variable.name: variable.symbol.numel() for variable in program.variables}
     known: dict[str, Any] = {}
     for form in forms:
         posture, agent = postures[form.agent.name], form.agent.name
-        present = f"{agent}.joints" in counts
-        hands = {
-            f"{agent if present else 'partner'}.{side}_hand": posture.hand_wrenches[side]
-            for side in form.sides
-        }
-        known |= {name: wrench[: counts[name]] for name, wrench in hands.items()}
-        if present:
-            known |= {f"{agent}.{side}_foot": posture.foot_wrenches[side] for side in form.sides}
+        known |= _borne(form, posture, counts, "")
+        for number, borne in enumerate(disturbed.values()):
+            known |= _borne(form, borne[agent], counts, prefix_of(number))
+        if f"{agent}.joints" in counts:
             known[f"{agent}.base_position"] = posture.base_position
             known[f"{agent}.base_angles"] = posture.base_angles
             known[f"{agent}.joints"] = [posture.joints[name] for name in form.joints]
-            known[f"{agent}.torques"] = [posture.torques[name] for name in form.joints]
+    return known
+
+
+def _borne(form: Form, posture: AgentPosture, counts: Mapping[str, int], prefix: str) -> dict[str, Any]:
+    """An agent's wrenches and torques in a case whose variables begin with a prefix."""
+    agent = f"{prefix}{form.agent.name}"
+    present = f"{agent}.torques" in counts
+    hand = agent if present else f"{prefix}partner"
+    hands = {f"{hand}.{side}_hand": posture.hand_wrenches[side] for side in form.sides}
+    known: dict[str, Any] = {name: wrench[: counts[name]] for name, wrench in hands.items()}
+    if present:
+        known |= {f"{agent}.{side}_foot": posture.foot_wrenches[side] for side in form.sides}
+        known[f"{agent}.torques"] = [posture.torques[name] for name in form.joints]
     return known

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +75,8 @@ class HeightSolution:
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         start: name of the start that led to the postures; empty unless solved.
+        disturbed: by disturbance and agent name, the same base and joints with what is borne then; empty
+            without disturbances.
         scene: which of the problem's scenes it is in, from zero.
     """
 
@@ -86,6 +88,7 @@ class HeightSolution:
     attempts: tuple[Attempt, ...]
     start: str
     scene: int = 0
+    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
 
     @property
     def solved(self) -> bool:

@@ -20,7 +20,8 @@ import casadi as ca
 import numpy as np
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.form import Form

@@ -22,11 +22,12 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.design.space import DesignSpace
+from evodesign.posture.disturbed import postures_in_cases, with_worst
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
 from evodesign.posture.kkt import Array, Kink
 from evodesign.posture.posture import SYMMETRIC, EffortWeights, posture_program
-from evodesign.posture.program import IpoptOptions
+from evodesign.posture.program import IpoptOptions, values_under
 from evodesign.posture.retold import start_from
 from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
 from evodesign.posture.solution import AgentPosture, HeightSolution
@@ -66,7 +67,12 @@ class PostureTangent:
     def postures(self, step: Array) -> dict[str, AgentPosture]:
         """To first order, the postures of a design that differs by a step, one number per parameter."""
         moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
-        return {form.agent.name: form.expand(_of(form, moved)) for form in self.forms}
+        return {form.agent.name: form.expand(values_under(form.agent.name, moved)) for form in self.forms}
+
+    def disturbed(self, scene: Scene, step: Array) -> dict[str, dict[str, AgentPosture]]:
+        """Likewise, what is borne under each of the scene's disturbances."""
+        moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
+        return postures_in_cases(scene, self.forms, moved)
 
 
 class _Way(Protocol):
@@ -138,8 +144,9 @@ class _Joint:
 
     def at(self, design: Sequence[float], solution: HeightSolution) -> PostureTangent | Kink:
         """The tangent of a posture that this program might have found."""
-        start = start_from(self._forms, self._both.program, solution.postures)
-        found = self._both.at([*design, solution.height, self._mass], start)
+        start = start_from(self._forms, self._both.program, solution.postures, solution.disturbed)
+        parameters = [*design, solution.height, self._mass]
+        found = self._both.at(parameters, with_worst(start, self._both.program, parameters))
         if isinstance(found, Kink):
             return found
         own = slice(len(design))
@@ -238,8 +245,11 @@ def _same(tangent: PostureTangent, solution: HeightSolution) -> bool:
 
 def _determined(tangent: PostureTangent) -> bool:
     """Whether everything of the agents has a derivative."""
+    agents = {form.agent.name for form in tangent.forms}
     return not any(
-        np.isnan(slope).any() for form in tangent.forms for slope in _of(form, tangent.slopes).values()
+        np.isnan(slope).any()
+        for name, slope in tangent.slopes.items()
+        if agents.intersection(name.split("."))  # in every case
     )
 
 
@@ -247,9 +257,3 @@ def labels_of(forms: Sequence[Form]) -> dict[str, tuple[str, ...]]:
     """Names of joints and trunk frames for the rows of variables and constraints about them."""
     joints = {f"{form.agent.name}.{part}": form.joints for form in forms for part in ("joints", "torques")}
     return joints | {f"{form.agent.name}.trunk_clear": form.trunk for form in forms}
-
-
-def _of(form: Form, values: Mapping[str, Array]) -> dict[str, Array]:
-    """The values of a form's agent, by their name without the agent's."""
-    prefix = f"{form.agent.name}."
-    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}

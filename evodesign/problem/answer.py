@@ -11,6 +11,9 @@ joint needs, in the direction of `movement`; the rest is the revised NIOSH lifti
 Where a problem has several people or loads, `heights` has an entry for each case, with its `human_name` and
 `payload_name`.
 
+Where the problem has disturbances, a solved height's `disturbed` holds, by their names, torques and wrenches
+of the same posture under each. Residuals of such a case carry its name.
+
 `sensitivities` holds, for each objective that exists, how it moves with the design:
 
     {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
@@ -79,15 +82,30 @@ def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
     }
     if height.solved:
         shown.update({name: _agent(posture) for name, posture in height.postures.items()})
-        shown["wrenches"] = {
-            f"{name}.{contact}": wrench
-            for name, posture in height.postures.items()
-            for contact, wrench in _wrenches(posture).items()
-        }
+        shown["wrenches"] = _contacts(height.postures)
+        if height.disturbed:
+            shown["disturbed"] = {name: _borne(postures) for name, postures in height.disturbed.items()}
         shown["residuals"] = dict(height.residuals)
         posture = detail_of(height, scene).agents[HUMAN]
         shown["ergonomics"] = ergonomics_json(ergonomics(scene.human, posture))
     return shown
+
+
+def _borne(postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
+    """What agents bear in a posture that is shown elsewhere."""
+    strained = {
+        name: {"torque_norm": posture.torque_norm, "torques": dict(posture.torques)}
+        for name, posture in postures.items()
+    }
+    return {**strained, "wrenches": _contacts(postures)}
+
+
+def _contacts(postures: Mapping[str, AgentPosture]) -> dict[str, list[float]]:
+    return {
+        f"{name}.{contact}": wrench
+        for name, posture in postures.items()
+        for contact, wrench in _wrenches(posture).items()
+    }
 
 
 def _agent(posture: AgentPosture) -> dict[str, Any]:

@@ -22,7 +22,22 @@ from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
-__all__ = ["Baseline", "BaselineFactory"]
+__all__ = ["Baseline", "BaselineFactory", "refuse_unsuited"]
+
+
+def refuse_unsuited(problem: Problem) -> None:
+    """Refuse a problem that the joint problem cannot tell.
+
+    Raises:
+        InputError: several people or loads, or disturbances.
+    """
+    if len(problem.scenes) > 1:
+        found = f"{len(problem.scenes)} pairs of a person and a load"
+        wanted = "one person and one load in the joint problem"
+        raise InputError(problem.source.path, "human", wanted, found)
+    if problem.scene.disturbances:
+        found = f"{len(problem.scene.disturbances.cases)}"
+        raise InputError(problem.source.path, "disturbance", "none in the joint problem", found)
 
 
 class Baseline:
@@ -34,11 +49,8 @@ class Baseline:
     """
 
     def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
+        refuse_unsuited(problem)
         self._problem = problem
-        if len(problem.scenes) > 1:
-            found = f"{len(problem.scenes)} pairs of a person and a load"
-            wanted = "one person and one load in the joint problem"
-            raise InputError(problem.source.path, "human", wanted, found)
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:

@@ -15,6 +15,7 @@ from evodesign.posture.program import IpoptOptions
 from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
+from evodesign.problem.disturbances import scene_disturbances
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
@@ -102,9 +103,10 @@ def build_problem(source: ProblemSource) -> Problem:
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
     robot, ground, stance = robot_agent(tables, source), _ground(tables), _stance(tables, source)
-    loads = payloads(tables, source)
+    people, loads = human_agents(tables, source), payloads(tables, source)
+    disturbances = scene_disturbances(tables, source, (robot, *people), loads)
     scenes = tuple(
-        Scene(robot, human, load, ground, stance) for human in human_agents(tables, source) for load in loads
+        Scene(robot, human, load, ground, stance, disturbances) for human in people for load in loads
     )
     space = _space(tables, source, robot.tree)
     symmetry = _symmetry(tables, source, scenes, space)

@@ -1,15 +1,15 @@
 """From values of single cases to one value of a design.
 
-A case is a person with a load at a height. A quantity has a value in every case; an objective is its mean
-over the cases, its largest value, or a quantile, so that a front may be asked to hold for everyone and not
-only on average. The way stands before the quantity's name: `human_torque` is the mean, and there are
-`worst_human_torque` and `q90_human_torque`.
+A case is a person with a load at a height, undisturbed or under one of the problem's disturbances. A
+quantity has a value in every case; an objective is its mean over the cases, its largest value, or a quantile,
+so that a front may be asked to hold for everyone and not only on average. The way stands before the
+quantity's name: `human_torque` is the mean, and there are `worst_human_torque` and `q90_human_torque`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,7 +17,15 @@ from evodesign.posture.solution import AgentPosture
 from evodesign.problem.result import DesignResult
 from evodesign.statics.scene import Scene
 
-__all__ = ["WORST", "CaseQuantity", "CaseValue", "ObjectiveKind", "over_cases", "values_over_cases"]
+__all__ = [
+    "WORST",
+    "CaseQuantity",
+    "CaseValue",
+    "ObjectiveKind",
+    "over_cases",
+    "undisturbed",
+    "values_over_cases",
+]
 
 WORST = "worst_"
 """What stands before the name of a quantity whose largest value counts."""
@@ -43,10 +51,22 @@ class ObjectiveKind:
 
 
 def values_over_cases(value: CaseValue, result: DesignResult) -> list[float] | None:
-    """A quantity in every case, in the order of the results; None unless all are solved."""
+    """A quantity in every case, in the order of the results; None unless all are solved.
+
+    A height's undisturbed case is followed by its disturbed ones.
+    """
     if not all(height.solved for height in result.heights):
         return None
-    return [value(result.scenes[height.scene], height.postures) for height in result.heights]
+    return [
+        value(result.scenes[height.scene], postures)
+        for height in result.heights
+        for postures in (height.postures, *height.disturbed.values())
+    ]
+
+
+def undisturbed(result: DesignResult) -> DesignResult:
+    """A design's results without what is borne under disturbances."""
+    return replace(result, heights=tuple(replace(height, disturbed={}) for height in result.heights))
 
 
 def over_cases(quantity: CaseQuantity, way: str) -> ObjectiveKind:

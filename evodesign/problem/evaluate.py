@@ -14,7 +14,7 @@ from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem, common_reach
 from evodesign.posture.shelf import Shelf
-from evodesign.posture.solution import AgentPosture, HeightSolution
+from evodesign.posture.solution import AgentPosture, Array, HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -22,6 +22,7 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
+    BorneDetail,
     Genome,
     HeightDetail,
     HeightOutcome,
@@ -163,6 +164,10 @@ def outcome_of(height: HeightSolution, scene: Scene) -> HeightOutcome:
         residual=max(height.residuals.values()) if height.solved else None,
         human_name=scene.human.label,
         payload_name=scene.payload.label,
+        disturbed={
+            disturbance: {name: posture.torque_norm for name, posture in postures.items()}
+            for disturbance, postures in height.disturbed.items()
+        },
     )
 
 
@@ -174,17 +179,34 @@ def detail_of(height: HeightSolution, scene: Scene) -> HeightDetail:
             base_rpy_rad=tuple(posture.base_angles.tolist()),
             joints_rad=dict(posture.joints),
             torques_n_m=dict(posture.torques),
-            hand_wrenches={side: tuple(wrench.tolist()) for side, wrench in posture.hand_wrenches.items()},
-            foot_wrenches={side: tuple(wrench.tolist()) for side, wrench in posture.foot_wrenches.items()},
+            hand_wrenches=_numbers(posture.hand_wrenches),
+            foot_wrenches=_numbers(posture.foot_wrenches),
         )
         for name, posture in height.postures.items()
+    }
+    disturbed = {
+        disturbance: {name: _borne(posture) for name, posture in postures.items()}
+        for disturbance, postures in height.disturbed.items()
     }
     return HeightDetail(
         height_m=height.height,
         agents=agents,
         human_name=scene.human.label,
         payload_name=scene.payload.label,
+        disturbed=disturbed,
     )
+
+
+def _borne(posture: AgentPosture) -> BorneDetail:
+    return BorneDetail(
+        torques_n_m=dict(posture.torques),
+        hand_wrenches=_numbers(posture.hand_wrenches),
+        foot_wrenches=_numbers(posture.foot_wrenches),
+    )
+
+
+def _numbers(wrenches: Mapping[str, Array]) -> dict[str, tuple[float, ...]]:
+    return {side: tuple(wrench.tolist()) for side, wrench in wrenches.items()}
 
 
 @dataclass(frozen=True, slots=True)

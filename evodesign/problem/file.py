@@ -12,11 +12,12 @@ import msgspec
 from msgspec import Meta
 
 from evodesign.posture.posture import Symmetry
+from evodesign.statics.disturbance import OverCases, PushedAt
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 from evodesign.tree.population import PopulationSex
 
-__all__ = ["BaselineTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
+__all__ = ["BaselineTable", "DisturbanceTable", "HumanTable", "ProblemFile", "RobotTable", "SearchTable"]
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
@@ -123,6 +124,22 @@ class TaskTable(Table, frozen=True):
 
     heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)]
     effort_weights: WeightsTable = WeightsTable()
+    disturbed_effort: OverCases = OverCases.WORST
+
+
+class DisturbanceTable(Table, frozen=True):
+    """`[[disturbance]]`: what a posture must bear besides, with wrenches and torques of its own.
+
+    `load_mass_share` adds to the load's mass, `center_of_mass_m` to its centre of mass; `push_n` is a force
+    in the world's axes (x from the robot to the person, z up) on the load's centre or on the last frame of
+    an agent's trunk.
+    """
+
+    name: Name | None = None
+    load_mass_share: Annotated[float, Meta(gt=-1.0)] = 0.0
+    center_of_mass_m: Point = (0.0, 0.0, 0.0)
+    push_n: Point = (0.0, 0.0, 0.0)
+    at: PushedAt = PushedAt.LOAD
 
 
 class LimitsTable(Table, frozen=True):
@@ -243,6 +260,7 @@ class ProblemFile(Table, frozen=True):
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()
     baseline: BaselineTable = BaselineTable()
+    disturbance: tuple[DisturbanceTable, ...] = ()
 
     @property
     def people(self) -> dict[str, HumanTable]:

@@ -1,8 +1,8 @@
 """Objectives: pure functions of a design's results.
 
 Adding one is a function here and a line in `QUANTITIES`, for a value of every case (a person with a load at
-a height), or in `WHOLE`, for one of the design; the problem file then knows its name. What does not exist (no
-posture, no reach) is absent, never large.
+a height, undisturbed or not), or in `WHOLE`, for one of the design; the problem file then knows its name.
+What does not exist (no posture, no reach) is absent, never large.
 """
 
 from __future__ import annotations
@@ -12,10 +12,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from evodesign.posture.agent import TORQUE_UNIT
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.solution import AgentPosture
 from evodesign.posture.tasks import pressure_task
-from evodesign.problem.cases import WORST, CaseQuantity, ObjectiveKind, over_cases, values_over_cases
+from evodesign.problem.cases import (
+    WORST,
+    CaseQuantity,
+    ObjectiveKind,
+    over_cases,
+    undisturbed,
+    values_over_cases,
+)
 from evodesign.problem.result import DesignResult
 from evodesign.records import Objective
 from evodesign.statics.balance import standing_height_of_mass
@@ -58,6 +65,7 @@ def com_height(result: DesignResult) -> float:
 
 def paper_cost(result: DesignResult) -> float | None:
     """W1 t1 + W3 t3 of all heights + W2 t2 + W4 t4 [(10 N m)^2], the paper's scalar cost (Eq. 14)."""
+    result = undisturbed(result)
     robot, human = values_over_cases(robot_torque, result), values_over_cases(human_torque, result)
     if robot is None or human is None:
         return None

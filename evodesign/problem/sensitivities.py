@@ -78,7 +78,11 @@ class DesignTangent:
         tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
         heights = tuple(
-            replace(height, postures=tangent.postures(step))
+            replace(
+                height,
+                postures=tangent.postures(step),
+                disturbed=tangent.disturbed(self.result.scenes[height.scene], step),
+            )
             if isinstance(tangent, PostureTangent)
             else _without(height)
             for height, tangent in zip(self.result.heights, self.heights, strict=True)
@@ -174,7 +178,7 @@ def _end(tangent: HeightTangent | Kink, step: Array) -> float | None:
 
 def _without(height: HeightSolution) -> HeightSolution:
     """A height without its posture."""
-    return replace(height, status=Status.NUMERICAL_FAILURE, postures={}, residuals={})
+    return replace(height, status=Status.NUMERICAL_FAILURE, postures={}, residuals={}, disturbed={})
 
 
 def _slope(values: Sequence[float], step: float) -> float:

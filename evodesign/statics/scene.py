@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.statics.contact import Ground, SoleSize
+from evodesign.statics.disturbance import Disturbance, Disturbances
 from evodesign.tree.model import Tree
 from evodesign.tree.strength import JointStrength
 
@@ -58,6 +59,12 @@ class Payload:
         """Inertia in the load's frame, that of a uniform box moved to the centre of mass."""
         a, b, c = Box(*self.size).moments(self.mass)
         return Inertia(self.mass, self.center_of_mass, ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c)))
+
+    def disturbed(self, disturbance: Disturbance) -> Payload:
+        """The load as a disturbance makes it."""
+        moved = [c + shift for c, shift in zip(self.center_of_mass, disturbance.center_of_mass, strict=True)]
+        mass = self.mass * (1.0 + disturbance.mass_share)
+        return replace(self, mass=mass, center_of_mass=(moved[0], moved[1], moved[2]))
 
     def grasp_point(self, agent: Agent, side: str) -> Vector:
         """Grasp point of an agent's hand, from the box's centre, in that agent's frame [m]."""
@@ -128,13 +135,14 @@ class Agent:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Robot, person and load, and the limits under which they stand."""
+    """Robot, person and load, the limits under which they stand, and what they must bear besides."""
 
     robot: Agent
     human: Agent
     payload: Payload
     ground: Ground = field(default_factory=Ground)
     stance: StanceLimits = field(default_factory=StanceLimits)
+    disturbances: Disturbances = field(default_factory=Disturbances)
 
     @property
     def label(self) -> str:

@@ -12,10 +12,11 @@ import pytest
 from benchmarks.paper_formulation import measure_ours
 from benchmarks.paper_posture import PaperProgram, paper_program
 from benchmarks.projected_graph import agent_matrices
-from evodesign.posture.agent import COMFORT, TORQUE_UNIT
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.preparation import Preparation
 from evodesign.posture.program import RawSolution
 from evodesign.posture.solution import AgentPosture
+from evodesign.posture.stand import COMFORT
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status

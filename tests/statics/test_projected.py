@@ -14,7 +14,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from evodesign.posture.agent import TORQUE_UNIT, agent_block
+from evodesign.posture.agent import agent_block
+from evodesign.posture.bearing import TORQUE_UNIT
 from evodesign.posture.form import whole
 from evodesign.posture.load import load_constraints
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Solver

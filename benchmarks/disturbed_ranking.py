@@ -1,0 +1,225 @@
+"""Who is good when something happens? Random designs ranked with and without disturbances.
+
+Random designs of the default problem hold a load quietly, and under disturbances of 20 % more load and of
+20 N on the load, away from the robot and towards it. They are ranked by the robot's torque: quietly by its
+mean over the heights; under disturbances by the mean over the heights of its worst case, in postures that are
+chosen for it. All solves begin at the same starts: the program's own and some random ones. Results go to
+benchmarks/results/disturbed_ranking.json, a figure to docs/pictures/disturbed_ranking.png, and tables are
+printed.
+
+    python -m benchmarks.disturbed_ranking [--designs 50] [--starts 6] [--jobs 2]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+from joblib import Parallel, delayed
+from scipy.stats import kendalltau, rankdata
+
+from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.portfolio import Coverage, Portfolio, random_start
+from evodesign.posture.posture import PostureProblem
+from evodesign.posture.preparation import Preparation
+from evodesign.posture.reach import ReachProblem
+from evodesign.posture.solution import HeightSolution
+from evodesign.problem.build import Problem
+from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure
+from evodesign.statics.disturbance import Disturbance, Disturbances
+from evodesign.statics.scene import HUMAN, ROBOT, Grasp, Scene
+
+HEIGHTS = (0.8, 1.0, 1.2)
+DISTURBANCES = Disturbances(
+    (
+        Disturbance("20 % more load", mass_share=0.2),
+        Disturbance("pushed to the person", push=(20.0, 0.0, 0.0)),
+        Disturbance("pushed to the robot", push=(-20.0, 0.0, 0.0)),
+    )
+)
+LOADS = {"point grasps, 5 kg": (Grasp.POINT, 5.0), "rigid grasps, 10 kg": (Grasp.RIGID, 10.0)}
+PICTURES = HERE.parent / "docs" / "pictures"
+FALLEN = 3
+"""Designs that are told one by one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One design; torque norms are means over the heights [N m].
+
+    Args:
+        quiet_robot, quiet_human: without disturbances.
+        robot, human: of the worst case, in postures chosen for it.
+        calm_robot: without anything happening, in those postures.
+        case: what strains the robot most.
+    """
+
+    quiet_robot: float
+    quiet_human: float
+    robot: float
+    human: float
+    calm_robot: float
+    case: str
+
+
+class Judge:
+    """A problem with one load, quiet and disturbed."""
+
+    def __init__(self, problem: Problem, load: str, starts: int) -> None:
+        grasp, mass = LOADS[load]
+        payload = replace(problem.scene.payload, grasp=grasp, mass=mass)
+        quiet = replace(problem.scene, payload=payload)
+        self._problem = problem
+        self._scenes = (quiet, replace(quiet, disturbances=DISTURBANCES))
+        self._reach = ReachProblem(self._scenes[1], problem.space, problem.options, symmetric=True)
+        self._postures = [_with_starts(problem, scene, starts) for scene in self._scenes]
+        self._human = AgentModel.of(quiet.human, quiet.human.tree)
+
+    def row(self, design: Design) -> Row | None:
+        """What a design bears; None if it does not reach every height."""
+        reach = self._reach.solve(design)
+        if any(reach.distance(height) != 0.0 for height in HEIGHTS):
+            return None
+        tree = self._problem.space.resized(self._scenes[0].robot.tree, design)
+        found = []
+        for scene, postures in zip(self._scenes, self._postures, strict=True):
+            checker = Checker(scene, tree, self._human)
+            found.append([postures.solve(design, height, checker) for height in HEIGHTS])
+        if not all(solution.solved for solutions in found for solution in solutions):
+            return None
+        quiet, shaken = found
+        worst = [max(_norms(solution, ROBOT).items(), key=lambda item: item[1]) for solution in shaken]
+        return Row(
+            quiet_robot=float(np.mean([s.postures[ROBOT].torque_norm for s in quiet])),
+            quiet_human=float(np.mean([s.postures[HUMAN].torque_norm for s in quiet])),
+            robot=float(np.mean([norm for _, norm in worst])),
+            human=float(np.mean([max(_norms(s, HUMAN).values()) for s in shaken])),
+            calm_robot=float(np.mean([s.postures[ROBOT].torque_norm for s in shaken])),
+            case=max(worst, key=lambda item: item[1])[0],
+        )
+
+
+def _norms(solution: HeightSolution, agent: str) -> dict[str, float]:
+    """Torque norms of an agent [N m], by case."""
+    cases = {"nothing": solution.postures, **solution.disturbed}
+    return {name: postures[agent].torque_norm for name, postures in cases.items()}
+
+
+def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
+    """A posture problem whose solves begin at the program's own starts and at some random ones."""
+    ingredients = (scene, problem.space, problem.weights, problem.options, problem.symmetry)
+    landscape = PostureProblem(*ingredients).landscape(HEIGHTS[0])
+    rng = np.random.default_rng(0)
+    starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
+    seeds = Portfolio(starts, Coverage(0, 0, 0.0))
+    return PostureProblem(*ingredients, Preparation(postures=dict.fromkeys(HEIGHTS, seeds)))
+
+
+def judge(load: str, designs: list[Design], starts: int) -> list[Row | None]:
+    """The rows of some designs."""
+    here = Judge(problem_at(HEIGHTS), load, starts)
+    return [here.row(design) for design in designs]
+
+
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """How alike two rankings of the same designs are.
+
+    Args:
+        tau: Kendall's, 1 for the same order.
+        kept: share of the best tenth of the quiet ranking that is in that of the other one.
+        rise: largest ratio of a robot's torque in the worst case to the quiet one.
+        quiet, disturbed: rank of each design, from 1.
+        rows: the designs.
+    """
+
+    tau: float
+    kept: float
+    rise: float
+    quiet: list[float]
+    disturbed: list[float]
+    rows: list[Row]
+
+    @classmethod
+    def of(cls, rows: list[Row]) -> Ranking:
+        """The rankings of some designs by the robot's torque."""
+        quiet, disturbed = (
+            rankdata([getattr(row, name) for row in rows]) for name in ("quiet_robot", "robot")
+        )
+        tenth = max(1, len(rows) // 10)
+        best, still = (set(np.argsort(ranks)[:tenth].tolist()) for ranks in (quiet, disturbed))
+        return cls(
+            tau=float(kendalltau(quiet, disturbed).statistic),
+            kept=len(best & still) / tenth,
+            rise=max(row.robot / row.quiet_robot for row in rows),
+            quiet=quiet.tolist(),
+            disturbed=disturbed.tolist(),
+            rows=rows,
+        )
+
+    @property
+    def fallen(self) -> list[int]:
+        """Places of the designs that fall furthest."""
+        fall = np.array(self.disturbed) - np.array(self.quiet)
+        return np.argsort(-fall, kind="stable")[:FALLEN].tolist()
+
+
+def table(rankings: dict[str, Ranking]) -> str:
+    """How alike the rankings are, and the designs that fall furthest."""
+    lines = ["| load | designs | Kendall's tau | best tenth kept | largest rise |", "|---|---|---|---|---|"]
+    lines += [
+        f"| {load} | {len(found.rows)} | {found.tau:.2f} | {found.kept:.0%} | {found.rise:.1f} x |"
+        for load, found in rankings.items()
+    ]
+    columns = "load | rank | robot quiet | robot worst | robot calm | human quiet | human worst | worst case"
+    lines += ["", f"| {columns} |", "|---" * 8 + "|"]
+    for load, found in rankings.items():
+        for place in found.fallen:
+            row, ranks = found.rows[place], f"{found.quiet[place]:.0f} to {found.disturbed[place]:.0f}"
+            robot = f"{row.quiet_robot:.1f} | {row.robot:.1f} | {row.calm_robot:.1f}"
+            lines.append(
+                f"| {load} | {ranks} | {robot} | {row.quiet_human:.1f} | {row.human:.1f} | {row.case} |"
+            )
+    return "\n".join(lines)
+
+
+def draw(rankings: dict[str, Ranking]) -> None:
+    """Rank against rank, the fallen ones marked."""
+    figure = new_figure(9.0, 4.4, "rank of a design by its robot's torque")
+    for axes, (load, found) in zip(figure.subplots(1, len(rankings)), rankings.items(), strict=True):
+        clean(axes)
+        fallen = [place in found.fallen for place in range(len(found.rows))]
+        axes.plot([1, len(found.rows)], [1, len(found.rows)], color="#8a9097", linewidth=0.8)
+        axes.scatter(found.quiet, found.disturbed, s=18, c=[SEQUENCE[int(fell)] for fell in fallen])
+        axes.set(title=f"{load}: tau {found.tau:.2f}", xlabel="quiet", ylabel="with disturbances")
+    write_figure(figure, PICTURES, "disturbed_ranking")[0].unlink()
+
+
+def main() -> None:
+    """Judge all designs, write, draw and print."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--designs", type=int, default=50)
+    parser.add_argument("--starts", type=int, default=6)
+    parser.add_argument("--jobs", type=int, default=2)
+    options = parser.parse_args()
+    designs = random_designs(problem_at(HEIGHTS), options.designs)
+    chunks = [designs[first : first + 5] for first in range(0, len(designs), 5)]
+    rankings = {}
+    for load in LOADS:
+        judge(load, [], options.starts)  # compiles what the others then find
+        parts = Parallel(options.jobs)(delayed(judge)(load, chunk, options.starts) for chunk in chunks)
+        rankings[load] = Ranking.of([row for part in parts for row in part if row is not None])
+    target = HERE / "results" / "disturbed_ranking.json"
+    figures = {load: asdict(ranking) for load, ranking in rankings.items()}
+    target.write_text(json.dumps({**vars(options), "figures": figures}, indent=2) + "\n")
+    draw(rankings)
+    print(table(rankings))
+
+
+if __name__ == "__main__":
+    main()

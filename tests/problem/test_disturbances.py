@@ -1,0 +1,205 @@
+"""Disturbances from a problem file to objectives, records, gradients and the JSON of a design."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from evodesign.errors import InputError
+from evodesign.posture.prepare import Subject, key_of, stages
+from evodesign.problem.answer import answer
+from evodesign.problem.baseline import Baseline
+from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.evaluate import Evaluator, detail_of, outcome_of
+from evodesign.problem.objectives import value_of
+from evodesign.problem.prepare import setting_of
+from evodesign.problem.result import DesignResult
+from evodesign.problem.sensitivities import Sensitivities
+from evodesign.records import HeightDetail, HeightOutcome, ProblemSource
+from evodesign.statics.disturbance import Disturbance, OverCases, PushedAt
+from evodesign.statics.scene import HUMAN, ROBOT
+
+TABLES = """
+[[disturbance]]
+name = "heavier"
+load_mass_share = 0.2
+
+[[disturbance]]
+push_n = [-20.0, 0.0, 0.0]
+at = "robot"
+"""
+DESIGN_SEED = 5
+
+
+def source_with(problem: Problem, tables: str, task: str = "") -> ProblemSource:
+    """The default problem at one height, without seeds, and with more tables."""
+    text = problem.source.text.replace("heights_m = [0.8, 1.0, 1.2]", f"heights_m = [1.0]\n{task}")
+    text = f"{text}\n[solver]\ncompile = false\nseeds = false\n{tables}"
+    return ProblemSource(path="p.toml", text=text, files=problem.source.files)
+
+
+@pytest.fixture(scope="module")
+def shaken(problem: Problem) -> Problem:
+    return build_problem(source_with(problem, TABLES))
+
+
+@pytest.fixture(scope="module")
+def values(shaken: Problem) -> tuple[float, ...]:
+    rng = np.random.default_rng(DESIGN_SEED)
+    return shaken.space.values(tuple(rng.uniform(size=len(shaken.space.parameters))))
+
+
+@pytest.fixture(scope="module")
+def exact(shaken: Problem) -> Evaluator:
+    """Solved more exactly, so that differences show derivatives."""
+    return Evaluator(replace(shaken, options=replace(shaken.options, tolerance=1e-10)))
+
+
+@pytest.fixture(scope="module")
+def result(exact: Evaluator, values: tuple[float, ...]) -> DesignResult:
+    return exact.solve(values)
+
+
+def test_tables_are_read_as_written(shaken: Problem) -> None:
+    found = shaken.scene.disturbances
+    assert found.effort is OverCases.WORST
+    assert found.cases == (
+        Disturbance("heavier", mass_share=0.2),
+        Disturbance("disturbance_2", push=(-20.0, 0.0, 0.0), at=PushedAt.ROBOT),
+    )
+
+
+def test_efforts_may_count_on_average(problem: Problem) -> None:
+    source = source_with(problem, TABLES, 'disturbed_effort = "mean"')
+    assert build_problem(source).scene.disturbances.effort is OverCases.MEAN
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("load_mass_share = -1.0", r"disturbance\[0\].load_mass_share: wanted float > -1"),
+        ("load_mass_share = nan", r"disturbance\[0\].load_mass_share: wanted a finite number"),
+        ("center_of_mass_m = [0.3, 0.0, 0.0]", r"center_of_mass_m\[0\]: wanted a shift that leaves"),
+        ("push_n = [20.0, 0.0]", r"disturbance\[0\].push_n: wanted"),
+        ('at = "chest"', r"disturbance\[0\].at: wanted"),
+        ("push = [1.0, 0.0, 0.0]", "did you mean 'push_n'"),
+        ('name = "a"\n[[disturbance]]\nname = "a"', r"disturbance\[1\].name: wanted a unique name"),
+        ("push_n = [0.0, 1.0, 0.0]", "solver.symmetry: wanted 'off'.*disturbance 'disturbance_1'"),
+    ],
+)
+def test_impossible_disturbances_are_refused_in_one_sentence(
+    table: str, words: str, problem: Problem
+) -> None:
+    with pytest.raises(InputError, match=words) as caught:
+        build_problem(source_with(problem, f"[[disturbance]]\n{table}\n"))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_way_to_count_efforts_that_does_not_exist_is_refused(problem: Problem) -> None:
+    with pytest.raises(InputError, match=r"task.disturbed_effort"):
+        build_problem(source_with(problem, TABLES, 'disturbed_effort = "median"'))
+
+
+def test_a_push_needs_a_trunk(problem: Problem) -> None:
+    source = source_with(problem, TABLES)
+    text = source.text.replace("[robot]\n", "[robot]\ntrunk = []\n", 1)
+    with pytest.raises(InputError, match=r"disturbance\[1\].at: wanted a trunk to push"):
+        build_problem(msgspec.structs.replace(source, text=text))
+
+
+def test_the_joint_problem_refuses_disturbances(shaken: Problem) -> None:
+    with pytest.raises(InputError, match="disturbance: wanted none in the joint problem, found 2"):
+        Baseline(shaken)
+
+
+def test_disturbed_cases_count_as_cases(result: DesignResult) -> None:
+    (height,) = result.heights
+    cases = (height.postures, *height.disturbed.values())
+    norms = {agent: [postures[agent].torque_norm for postures in cases] for agent in (ROBOT, HUMAN)}
+    assert len(norms[ROBOT]) == 3
+    assert value_of("robot_torque", result) == pytest.approx(sum(norms[ROBOT]) / 3.0)
+    assert value_of("worst_human_torque", result) == max(norms[HUMAN])
+    assert value_of("q50_robot_torque", result) == pytest.approx(sorted(norms[ROBOT])[1])
+    quiet = norms[ROBOT][0] ** 2 + norms[HUMAN][0] ** 2
+    assert value_of("paper_cost", result) == pytest.approx(quiet / 100.0), "the paper knows no disturbances"
+
+
+def test_records_hold_what_is_borne_and_nothing_where_nothing_is(result: DesignResult) -> None:
+    (height,) = result.heights
+    scene = result.scenes[0]
+    outcome, detail = outcome_of(height, scene), detail_of(height, scene)
+    posture = height.disturbed["heavier"][ROBOT]
+    assert outcome.disturbed["heavier"][ROBOT] == posture.torque_norm
+    assert detail.disturbed["heavier"][ROBOT].torques_n_m == posture.torques
+    for record, kind in ((outcome, HeightOutcome), (detail, HeightDetail)):
+        assert msgspec.json.decode(msgspec.json.encode(record), type=kind) == record
+    quiet = replace(height, disturbed={})
+    for record in (outcome_of(quiet, scene), detail_of(quiet, scene)):
+        assert b"disturbed" not in msgspec.json.encode(record)
+
+
+def test_the_answer_shows_torques_and_wrenches_of_every_case(
+    shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
+) -> None:
+    (told,) = answer(shaken, values, result, exact.assessment(values, result), {})["heights"]
+    (height,) = result.heights
+    assert list(told["disturbed"]) == ["heavier", "disturbance_2"]
+    shown = told["disturbed"]["disturbance_2"]
+    assert shown["human"]["torque_norm"] == height.disturbed["disturbance_2"][HUMAN].torque_norm
+    wrench = height.disturbed["disturbance_2"][ROBOT].foot_wrenches["left"]
+    assert shown["wrenches"]["robot.left_foot"] == wrench.tolist()
+    assert "heavier: load.force_balance" in told["residuals"]
+
+
+def test_gradients_are_differences_of_disturbed_evaluations(
+    shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
+) -> None:
+    wanted = ("robot_torque", "reach_height")
+    found = Sensitivities(exact.problem).at(values, result).sensitivities()
+    for place in (0, 5):
+        parameter = shaken.space.parameters[place]
+        step = 1e-5 * (parameter.upper - parameter.lower)
+        ends = []
+        for sign in (1.0, -1.0):
+            moved = list(values)
+            moved[place] += sign * step
+            ends.append(exact.solve(moved))
+        for name in wanted:
+            gradient = found[name].gradient
+            assert gradient is not None, found[name].kinks
+            above, below = (value_of(name, end) for end in ends)
+            assert above is not None
+            assert below is not None
+            slope = (above - below) / (2.0 * step)
+            assert gradient[parameter.name] == pytest.approx(slope, rel=1e-4, abs=1e-6)
+
+
+def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
+    problem: Problem, shaken: Problem
+) -> None:
+    subjects = {piece.subject for stage in stages(setting_of(shaken), (1.0,), seeds=True) for piece in stage}
+    assert Subject.PERSON not in subjects
+    quiet = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
+    for stage in stages(setting_of(shaken), (1.0,), seeds=True):
+        for piece in stage:
+            same = key_of(setting_of(shaken), piece) == key_of(setting_of(quiet), piece)
+            assert same is (piece.subject is not Subject.POSTURE), "quiet seeds of reach do"
+
+
+def test_check_names_disturbances(
+    problem: Problem, tmp_path: Path, repository: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from evodesign.cli.designs import check_problem
+
+    text = source_with(problem, TABLES).text.replace("robots/", f"{repository}/problems/robots/")
+    text = text.replace("../populations", f"{repository}/populations")
+    path = tmp_path / "shaken.toml"
+    path.write_text(text)
+    check_problem(path, json=False)
+    shown = capsys.readouterr().out
+    assert "heavier: load +20%" in shown
+    assert "N on the robot" in shown
