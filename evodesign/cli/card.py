@@ -11,11 +11,11 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from evodesign.analysis.cases import case_name, named_people_or_loads
+from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
-from evodesign.cli.person_table import TITLE, person_table
+from evodesign.cli.person_table import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables import heading
 from evodesign.cli.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
@@ -54,8 +54,8 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
         sections["largest joint torques [N m]"] = _torques(opened.heights)
         sections["contact forces [N]"] = _contacts(opened.heights)
     if asked:
-        cases = zip(map(case_name, opened.heights), asked, strict=True)
-        sections[TITLE] = person_table(list(cases), title="")
+        cases = [*zip(opened.heights, asked, strict=True)]
+        sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)
     parts: list[RenderableType] = [_title(opened)]
     for title, table in sections.items():
         parts += [Text(f"\n{title}", style="italic"), table]

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.cases import case_name, named_people_or_loads
+from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
-from evodesign.cli.person_table import person_table
+from evodesign.cli.person_table import people_table
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics
@@ -20,7 +20,7 @@ from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
 from evodesign.statics.scene import HUMAN
 
-__all__ = ["assessment_tables", "people_table", "sensitivity_table"]
+__all__ = ["asked_table", "assessment_tables", "sensitivity_table"]
 
 STRONGEST = 4
 """Parameters shown per objective."""
@@ -47,15 +47,15 @@ def assessment_tables(
     )
 
 
-def people_table(result: DesignResult) -> Table:
+def asked_table(result: DesignResult) -> Table:
     """What the solved postures of a design ask of the people."""
     cases = []
     for height in result.heights:
         if height.solved:
             scene = result.scenes[height.scene]
             detail = detail_of(height, scene)
-            cases.append((case_name(detail), ergonomics(scene.human, detail.agents[HUMAN])))
-    return person_table(cases)
+            cases.append((detail, ergonomics(scene.human, detail.agents[HUMAN])))
+    return people_table(cases, titled=True)
 
 
 def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:

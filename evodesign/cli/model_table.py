@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.body.shape import Box, Cylinder, Shape
-from evodesign.cli.output import figure, visible
+from evodesign.cli.output import figure, shown, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.problem.build import Problem
 from evodesign.problem.decode import decode_toml
@@ -71,25 +71,25 @@ def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
     """Robot and people; of several people, also who each is and how tall."""
     several = any("who" in agent for agent in agents)
     table = Table(title=escape(name), title_justify="left")
-    for column in ("agent", *(("person", "sex, stature") if several else ()), "model"):
+    for column in ("agent", *(("person",) if several else ()), "model"):
         table.add_column(escape(column), overflow="fold")
     for column in ("links", "joints", "that move", "mass [kg]"):
         table.add_column(escape(column), justify="right")
     for agent in agents:
-        who = (visible(agent["who"]), _figures(agent)) if "who" in agent else ("", "")
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
         table.add_row(
             agent["name"],
-            *(map(escape, who) if several else ()),
-            escape(agent["model"]),
+            *([shown(agent.get("who", ""))] if several else []),
+            escape(_model(agent)),
             *map(str, counts),
             figure(agent["mass_kg"]),
         )
     return table
 
 
-def _figures(person: dict[str, Any]) -> str:
-    return f"{person['sex']}, {figure(person['stature_m'])} m" if person["sex"] else "as its URDF"
+def _model(agent: dict[str, Any]) -> str:
+    """The model's name, or what a generated person is, where that tells it from others."""
+    return f"{agent['sex']}, {figure(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
 
 
 def _task_table(shown: dict[str, Any]) -> Table:

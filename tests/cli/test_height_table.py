@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from io import StringIO
 
+from msgspec import structs
 from rich.console import Console
 from rich.table import Table
 
-from evodesign.cli.height_table import cases_table, heights_table
+from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.records import Assessment, HeightOutcome, Status
 
 
@@ -44,3 +45,17 @@ def test_who_holds_what_is_named_where_there_are_several() -> None:
 
 def test_one_person_with_one_load_needs_no_name() -> None:
     assert "person" not in printed(heights_table, outcome())
+
+
+def test_torques_under_disturbances_stand_below_their_case_and_count_in_the_summary() -> None:
+    pushed = structs.replace(outcome("tall", "5 kg"), disturbed={"push": {"robot": 4.0, "human": 8.0}})
+    short = outcome("short", "5 kg")
+    text = printed(cases_table, pushed, short)
+    assert [line.split() for line in text.splitlines() if "under 'push'" in line] == [
+        ["│", "│", "│", "│", "4", "│", "8", "│", "│", "under", "'push'", "│"]
+    ]
+    summary = printed(summary_table, pushed, short)
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in summary.splitlines()]
+    assert ["all", "2 of 2", "2", "4", "4", "8"] in rows
+    assert ["tall", "1 of 1", "2.5", "4", "5", "8"] in rows
+    assert ["short", "1 of 1", "1", "1", "2", "2"] in rows

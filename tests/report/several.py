@@ -64,12 +64,12 @@ def outcome(detail: HeightDetail) -> HeightOutcome:
     )
 
 
-def write_several(problem: Problem, place: Path, designs: int = 2) -> Run:
+def write_several(problem: Problem, place: Path, designs: int = 2, cases: int = len(CASES)) -> Run:
     """A run of random designs in random postures, all of them on the front."""
     with RunWriter(place, header_of(problem, problem.settings("random", 4, 1), budget=4)) as log:
         for number in range(designs):
             values = random_values(problem, number)
-            detail = random_detail(problem, number, HEIGHTS)
+            heights = random_detail(problem, number, HEIGHTS).heights[:cases]
             assessment = Assessment(
                 design=dict(problem.space.named(values)),
                 objectives={"robot_torque": 1.0 + number, "human_torque": 9.0 - number, "reach_height": 1.25},
@@ -77,7 +77,7 @@ def write_several(problem: Problem, place: Path, designs: int = 2) -> Run:
                 status=Status.SOLVED,
                 reason="solved",
                 reach=ReachOutcome(lowest_m=0.1, highest_m=1.25, status=Status.SOLVED, reason=""),
-                heights=tuple(map(outcome, detail.heights)),
+                heights=tuple(map(outcome, heights)),
             )
             evaluation = Evaluation(
                 number=number,
@@ -87,6 +87,6 @@ def write_several(problem: Problem, place: Path, designs: int = 2) -> Run:
                 seconds=0.1,
                 worker="here",
             )
-            log.detail(Detail(evaluation=number, heights=detail.heights))
+            log.detail(Detail(evaluation=number, heights=heights))
             log.evaluation(evaluation)
     return read_run(place)
