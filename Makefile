@@ -46,6 +46,9 @@ bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python -m benchmarks.inner_quality
 	$(BIN)/python -m benchmarks.paper_formulation
 	$(BIN)/python benchmarks/gradients.py
+	$(BIN)/python -m benchmarks.disturbed_growth
+	$(BIN)/python -m benchmarks.disturbed_ranking
+	$(BIN)/python -m benchmarks.disturbed_speed
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
 

@@ -32,8 +32,13 @@ TOLERANCE = 1e-5
 """Largest residual of a posture that counts as solved, in SI units."""
 
 QUIET = Disturbance("none")
+"""Nothing happens."""
+
 STILL = np.zeros(3)
+"""No force from outside [N]."""
+
 NOTHING: Mapping[str, Mapping[str, AgentPosture]] = MappingProxyType({})
+"""What is borne under disturbances where there are none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +142,7 @@ def _statics(
     push = np.array(disturbance.push_on(PushedAt(agent.name)))
     if push.any():
         in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ push
-        rows -= instant.twist_in_world(agent.trunk[-1])[0][:3].T @ in_agent
+        rows -= instant.twist_in_world(agent.pushed_frame)[0][:3].T @ in_agent
     for side in SIDES:
         rows -= instant.twist_in_world(agent.hands[side])[0].T @ posture.hand_wrenches[side]
         rows -= instant.twist_in_frame(agent.soles[side])[0].T @ posture.foot_wrenches[side]

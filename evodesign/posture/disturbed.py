@@ -32,7 +32,7 @@ from evodesign.posture.stand import Stand
 from evodesign.posture.start import Start
 from evodesign.statics.balance import AppliedWrench
 from evodesign.statics.disturbance import Disturbance, OverCases, PushedAt
-from evodesign.statics.scene import Agent, Scene
+from evodesign.statics.scene import Scene
 from evodesign.tree.kinematics import vector
 
 __all__ = [
@@ -42,7 +42,6 @@ __all__ = [
     "over_cases",
     "postures_in_cases",
     "prefix_of",
-    "pushed_frame",
     "with_cases",
     "with_worst",
 ]
@@ -114,14 +113,9 @@ def _pushes(stand: Stand, disturbance: Disturbance) -> list[AppliedWrench]:
     push = disturbance.push_on(PushedAt(agent.name))
     if not any(push):
         return []
-    frame = pushed_frame(agent)
     force = turned_to_world(agent, vector(push))  # by 0 or 180 degrees, so there as back
-    return [AppliedWrench(frame, stand.poses[frame].position, force, ca.DM.zeros(3))]
-
-
-def pushed_frame(agent: Agent) -> str:
-    """The frame of an agent that a push meets: the last of its trunk."""
-    return agent.trunk[-1]
+    at = stand.poses[agent.pushed_frame].position
+    return [AppliedWrench(agent.pushed_frame, at, force, ca.DM.zeros(3))]
 
 
 def with_cases(program: Program, cases: Sequence[Case]) -> Program:

@@ -14,6 +14,7 @@ import numpy as np
 
 from evodesign.errors import ModelError
 from evodesign.posture.solution import AgentPosture, Array
+from evodesign.statics.disturbance import Disturbance, PushedAt
 from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.model import Tree
 from evodesign.tree.symmetry import Mirror, left_half, mirror_of
@@ -141,7 +142,7 @@ def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
     """The halves of robot and person in a scene that is its own mirror image.
 
     Raises:
-        ModelError: naming what differs.
+        ModelError: naming what differs, or the disturbance that pushes to a side.
     """
     payload = scene.payload
     if payload.center_of_mass[1] != 0.0:
@@ -152,11 +153,22 @@ def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
         if tuple(left) != (right[0], -right[1], right[2]):
             key = f"{agent.name}_grasps_m"
             raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")
+    forms = half(scene.robot), half(scene.human)
     for disturbance in scene.disturbances.cases:
-        if disturbance.sideways:
-            where = f"disturbance '{disturbance.name}'"
-            raise ModelError(where, "", "y = 0 everywhere in a symmetric scene", "a part along y")
-    return half(scene.robot), half(scene.human)
+        _refuse_lopsided(disturbance, forms)
+    return forms
+
+
+def _refuse_lopsided(disturbance: Disturbance, forms: tuple[Form, Form]) -> None:
+    """Refuse what symmetric agents do not answer symmetrically."""
+    where = f"disturbance '{disturbance.name}'"
+    if disturbance.sideways:
+        raise ModelError(where, "", "y = 0 everywhere in a symmetric scene", "a part along y")
+    for form in forms:
+        pushed = any(disturbance.push_on(PushedAt(form.agent.name)))
+        if pushed and form.mirror and not form.mirror.is_middle(form.agent.pushed_frame):
+            found = f"'{form.agent.pushed_frame}'"
+            raise ModelError(where, "", "a push on the middle line in a symmetric scene", found)
 
 
 def padded(free: Array) -> Array:

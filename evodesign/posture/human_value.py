@@ -30,6 +30,7 @@ from evodesign.posture.load import any_load, load_constraints, push_of
 from evodesign.posture.partner import free_hands
 from evodesign.posture.program import IpoptOptions, Program, RawSolution
 from evodesign.posture.shelf import Shelf, likeness
+from evodesign.posture.start import person_starts
 from evodesign.records import Status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
@@ -39,9 +40,6 @@ Array = Any
 
 DEGREE = 8
 TERMS = DEGREE + 1
-SHARES = (0.1, 0.5, 1.0)
-RANDOM_STARTS = 9
-SPREAD = 0.3  # [rad], of random starts about the shares
 PUSH_UNIT = 10.0  # [N] per unit of the row that fixes the push
 NODES_TRIED = 4
 LARGEST_ERROR = 0.02
@@ -139,20 +137,9 @@ class HumanProblem:
 
     def _best(self, height: float, push: float) -> RawSolution | None:
         """The best of many starts, the same ones every time."""
-        solutions = [self.solve(height, push, start) for start in self._starts()]
+        solutions = [self.solve(height, push, start) for start in person_starts(self._solver)]
         solved = [solution for solution in solutions if solution.status is Status.SOLVED]
         return min(solved, key=lambda solution: solution.cost, default=None)
-
-    def _starts(self) -> Sequence[dict[str, Array]]:
-        rng = np.random.default_rng(0)
-        block = next(v for v in self._solver.program.variables if v.name == f"{HUMAN}.joints")
-        middle = (block.lower + block.upper) / 2.0
-        noise = [np.zeros(len(middle))] * len(SHARES)
-        noise += [SPREAD * rng.standard_normal(len(middle)) for _ in range(RANDOM_STARTS)]
-        return [
-            {block.name: np.clip(SHARES[i % len(SHARES)] * middle + n, block.lower, block.upper)}
-            for i, n in enumerate(noise)
-        ]
 
 
 def human_program(form: Form, scene: Scene, weight: float) -> Program:

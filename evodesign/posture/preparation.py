@@ -12,10 +12,24 @@ from evodesign.posture.human_value import HumanValue
 from evodesign.posture.portfolio import Coverage, Portfolio
 from evodesign.posture.start import Start
 
-__all__ = ["NOTHING_KNOWN", "NO_SEEDS", "Preparation"]
+__all__ = ["NOTHING_KNOWN", "NO_SEEDS", "Preparation", "Stretch"]
 
 NO_SEEDS = Portfolio((), Coverage(0, 0, 0.0))
 """A portfolio of none: solves begin at the fixed starts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """The interval of heights at which a person can hold a load.
+
+    Args:
+        lowest, highest: of the load's centre [m].
+        scene: which of the problem's scenes it is of, from zero.
+    """
+
+    lowest: float
+    highest: float
+    scene: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,12 +42,14 @@ class Preparation:
         values: the people's value functions, for the scenes and heights that have one.
         highest, lowest: seeds of the reach problem.
         postures: seeds of the posture problem, by height [m].
+        stretches: the people's own reach, for the scenes in which it was asked for.
     """
 
     values: tuple[HumanValue, ...] = ()
     highest: Portfolio = NO_SEEDS
     lowest: Portfolio = NO_SEEDS
     postures: Mapping[float, Portfolio] = field(default_factory=dict)
+    stretches: tuple[Stretch, ...] = ()
 
     def of_scene(self, scene: int) -> Preparation:
         """What is known of one of the problem's scenes."""

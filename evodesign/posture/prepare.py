@@ -24,12 +24,16 @@ from evodesign.posture.program import IpoptOptions
 from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.stored import (
     StoredPortfolio,
+    StoredStretch,
     StoredValue,
     portfolio_of,
     stored_portfolio,
+    stored_stretch,
     stored_value,
+    stretch_of_stored,
     value_of,
 )
+from evodesign.posture.stretch import stretch_of
 from evodesign.statics.disturbance import Disturbances
 from evodesign.statics.scene import Agent, Grasp, Scene
 from evodesign.tree.urdf_write import urdf_text
@@ -55,6 +59,7 @@ class Subject(StrEnum):
     """What a piece is about; the value is how it is told."""
 
     PERSON = "the person's part"
+    STRETCH = "the person's reach"
     HIGHEST = "seeds of the highest load"
     LOWEST = "seeds of the lowest load"
     POSTURE = "seeds of postures"
@@ -103,15 +108,21 @@ class Setting:
         return self.symmetry is not Symmetry.OFF
 
 
-def stages(setting: Setting, heights: Sequence[float], *, seeds: bool) -> list[list[Piece]]:
+def stages(setting: Setting, heights: Sequence[float], *, seeds: bool, stretches: bool) -> list[list[Piece]]:
     """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
     Args:
         setting: of the problem.
         heights: of the load's centre [m].
         seeds: whether solves begin at seeds.
+        stretches: whether the people's own reach is asked for.
     """
     people = [
+        Piece(Subject.STRETCH, scene=number, label=scene.label)
+        for number, scene in enumerate(setting.scenes)
+        if stretches
+    ]
+    people += [
         Piece(Subject.PERSON, height, number, scene.label)
         for number, scene in enumerate(setting.scenes)
         for height in heights
@@ -150,7 +161,9 @@ def key_of(setting: Setting, piece: Piece) -> str:
     ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
     if scene.disturbances:
         ingredients.append(repr(scene.disturbances).encode())
-    if piece.subject is not Subject.PERSON:
+    if piece.subject is Subject.STRETCH:
+        ingredients.append(repr(setting.symmetric).encode())
+    elif piece.subject is not Subject.PERSON:
         ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]
     return digest_of(*ingredients)
 
@@ -165,6 +178,10 @@ def work_out(setting: Setting, piece: Piece, known: Preparation) -> bytes:
     """
     if piece.subject is Subject.PERSON:
         return msgspec.json.encode(stored_value(_person(setting, piece)))
+    if piece.subject is Subject.STRETCH:
+        scene = setting.scenes[piece.scene]
+        found = stretch_of(scene, setting.options, symmetric=setting.symmetric)
+        return msgspec.json.encode(stored_stretch(found))
     return msgspec.json.encode(stored_portfolio(_seeds(setting, piece, known)))
 
 
@@ -175,6 +192,10 @@ def with_piece(known: Preparation, piece: Piece, content: bytes) -> Preparation 
             value = value_of(msgspec.json.decode(content, type=StoredValue))
             others = (*known.values, *([replace(value, scene=piece.scene)] if value else []))
             return replace(known, values=tuple(sorted(others, key=lambda value: (value.scene, value.height))))
+        if piece.subject is Subject.STRETCH:
+            stretch = stretch_of_stored(msgspec.json.decode(content, type=StoredStretch))
+            several = (*known.stretches, *([replace(stretch, scene=piece.scene)] if stretch else []))
+            return replace(known, stretches=tuple(sorted(several, key=lambda stretch: stretch.scene)))
         found = portfolio_of(msgspec.json.decode(content, type=StoredPortfolio))
     except msgspec.DecodeError:
         return None

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 
@@ -29,8 +30,11 @@ from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
+from evodesign.tree.model import Tree
 
-__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem", "common_reach"]
+__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem", "common_reach", "reach_program"]
+
+Expression = Any
 
 COMFORT = 1e-4
 """Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
@@ -99,7 +103,7 @@ class ReachProblem:
         self.mass = scene.payload.mass
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         key = ("reach", likeness(scene))
-        self._solver = (shelf or Shelf()).solver(key, lambda: _program(self.form, scene, space), options)
+        self._solver = (shelf or Shelf()).solver(key, lambda: _robot(self.form, scene, space), options)
         self._seeds = {HIGHEST: known.highest.seeds, LOWEST: known.lowest.seeds}
 
     @property
@@ -137,22 +141,35 @@ class ReachProblem:
         return float(best.values["height"][0]), best
 
 
-def _program(form: Form, scene: Scene, space: DesignSpace) -> Program:
-    scene, mass = any_load(scene)
+def _robot(form: Form, scene: Scene, space: DesignSpace) -> Program:
+    """The robot's program; its parameters are the design's, then the load's mass and the sense."""
     design = ca.SX.sym("design", len(space.parameters))
+    return reach_program(form, space.resized(scene.robot.tree, ca.vertsplit(design)), scene, design)
+
+
+def reach_program(form: Form, tree: Tree, scene: Scene, given: Expression) -> Program:
+    """The program of an agent's extreme heights; the other agent is a pair of free hands.
+
+    Args:
+        form: of the agent.
+        tree: of the agent.
+        scene: load, ground and stance.
+        given: parameters that the tree depends on; the program's are these, the load's mass and the sense.
+    """
+    scene, mass = any_load(scene)
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
     height = Variable.column("height", [floor], [5.0], [1.0], 1.0)
-    tree = space.resized(scene.robot.tree, ca.vertsplit(design))
-    robot = agent_block(form, tree, scene, height.value)
+    body = agent_block(form, tree, scene, height.value)
     partner = free_hands(form, scene)
-    hands = {ROBOT: robot.hand_wrenches, HUMAN: partner.wrenches}
+    other = HUMAN if form.agent.name == ROBOT else ROBOT
+    hands = {form.agent.name: body.hand_wrenches, other: partner.wrenches}
     load = load_constraints(scene, hands, symmetric=form.mirror is not None)
     program = Program(
         name="reach",
-        variables=(height, *robot.variables, *partner.variables),
-        constraints=(*robot.constraints, *load),
-        cost=sense * height.value + COMFORT * robot.comfort,
-        parameters=ca.vertcat(design, mass, sense),
+        variables=(height, *body.variables, *partner.variables),
+        constraints=(*body.constraints, *load),
+        cost=sense * height.value + COMFORT * body.comfort,
+        parameters=ca.vertcat(given, mass, sense),
     )
-    return with_cases(program, cases_of(scene, robot.stand))
+    return with_cases(program, cases_of(scene, body.stand))

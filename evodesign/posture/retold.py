@@ -15,6 +15,7 @@ __all__ = ["start_from"]
 
 
 NOTHING: Mapping[str, Mapping[str, AgentPosture]] = MappingProxyType({})
+"""What is borne under disturbances where there are none."""
 
 
 def start_from(

@@ -10,7 +10,7 @@ import numpy as np
 from evodesign.posture.program import Solver
 from evodesign.statics.scene import HUMAN, ROBOT
 
-__all__ = ["Start", "fixed_starts", "named_starts"]
+__all__ = ["Start", "fixed_starts", "named_starts", "person_starts"]
 
 Start = Mapping[str, Any]
 """Starting values by variable name; variables left out begin at the program's own."""
@@ -53,3 +53,22 @@ def _start(solver: Solver, shares: Mapping[str, float]) -> Start:
             middle = (variable.lower + variable.upper) / 2.0
             start[variable.name] = np.clip(shares[agent] * middle, variable.lower, variable.upper)
     return start
+
+
+PERSON_SHARES = (0.1, 0.5, 1.0)
+RANDOM_STARTS = 9
+SPREAD = 0.3  # [rad], of random starts about the shares
+
+
+def person_starts(solver: Solver) -> tuple[Start, ...]:
+    """Many starts for a person alone, always the same ones: shares of the way to mid-range, with noise."""
+    rng = np.random.default_rng(0)
+    block = next(v for v in solver.program.variables if v.name == f"{HUMAN}.joints")
+    middle = (block.lower + block.upper) / 2.0
+    noise = [np.zeros(len(middle))] * len(PERSON_SHARES)
+    noise += [SPREAD * rng.standard_normal(len(middle)) for _ in range(RANDOM_STARTS)]
+    shares = [PERSON_SHARES[i % len(PERSON_SHARES)] for i in range(len(noise))]
+    return tuple(
+        {block.name: np.clip(share * middle + n, block.lower, block.upper)}
+        for share, n in zip(shares, noise, strict=True)
+    )

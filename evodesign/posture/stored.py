@@ -9,14 +9,18 @@ import numpy as np
 
 from evodesign.posture.human_value import HumanValue
 from evodesign.posture.portfolio import Coverage, Portfolio
+from evodesign.posture.preparation import Stretch
 from evodesign.posture.start import Start
 
 __all__ = [
     "StoredPortfolio",
+    "StoredStretch",
     "StoredValue",
     "portfolio_of",
     "stored_portfolio",
+    "stored_stretch",
     "stored_value",
+    "stretch_of_stored",
     "value_of",
 ]
 
@@ -38,6 +42,25 @@ class StoredPortfolio(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     designs: int
     good: int
     worst: float
+
+
+class StoredStretch(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A person's reach on disk; None where no posture was found."""
+
+    lowest_m: float | None
+    highest_m: float | None
+
+
+def stored_stretch(stretch: Stretch | None) -> StoredStretch:
+    """A person's reach, or that there is none, to be kept."""
+    return StoredStretch(stretch.lowest, stretch.highest) if stretch else StoredStretch(None, None)
+
+
+def stretch_of_stored(stored: StoredStretch) -> Stretch | None:
+    """The reach that was kept, or that there is none."""
+    if stored.lowest_m is None or stored.highest_m is None:
+        return None
+    return Stretch(stored.lowest_m, stored.highest_m)
 
 
 def stored_value(value: HumanValue | None) -> StoredValue:

@@ -19,7 +19,7 @@ from evodesign.problem.disturbances import scene_disturbances
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
-from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, objective_kind
+from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
@@ -74,6 +74,12 @@ class Problem:
     def scene(self) -> Scene:
         """The first scene: all of them have its robot, ground and stance."""
         return self.scenes[0]
+
+    @property
+    def stretches(self) -> bool:
+        """Whether the people's own reach counts: it is an objective, or there are several of them."""
+        several = len({id(scene.human) for scene in self.scenes}) > 1
+        return several or any(objective.name == SHARED_REACH for objective in self.objectives)
 
     @property
     def middle(self) -> int:

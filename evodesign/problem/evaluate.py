@@ -83,6 +83,7 @@ class Evaluator:
             reach=reach,
             heights=tuple(heights),
             paper=problem.joint,
+            people_highest=min((stretch.highest for stretch in self.known.stretches), default=None),
         )
 
     def _scene(self, height: HeightSolution) -> Scene:

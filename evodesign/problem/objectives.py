@@ -29,7 +29,15 @@ from evodesign.statics.balance import standing_height_of_mass
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 from evodesign.tree.strength import largest_strain
 
-__all__ = ["HUMAN_EFFORT", "OBJECTIVES", "QUANTITIES", "objective_kind", "objective_values", "value_of"]
+__all__ = [
+    "HUMAN_EFFORT",
+    "OBJECTIVES",
+    "QUANTITIES",
+    "SHARED_REACH",
+    "objective_kind",
+    "objective_values",
+    "value_of",
+]
 
 
 def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
@@ -51,6 +59,13 @@ def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
 def reach_height(result: DesignResult) -> float | None:
     """Highest load that the robot can hold [m]."""
     return result.reach.highest
+
+
+def shared_reach_height(result: DesignResult) -> float | None:
+    """Highest load that the robot and all of the people can hold [m]."""
+    if result.reach.highest is None or result.people_highest is None:
+        return None
+    return min(result.reach.highest, result.people_highest)
 
 
 def mass(result: DesignResult) -> float:
@@ -89,8 +104,11 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
+SHARED_REACH = "shared_reach_height"
+
 WHOLE: Mapping[str, ObjectiveKind] = {
     "reach_height": ObjectiveKind("m", reach_height),
+    SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     "mass": ObjectiveKind("kg", mass),
     "com_height": ObjectiveKind("m", com_height),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from evodesign.errors import RunError
+from evodesign.errors import InputError, RunError
 from evodesign.pool.base import Pool
 from evodesign.posture.cache import Cache
 from evodesign.posture.preparation import Preparation
@@ -43,9 +43,10 @@ def prepared(problem: Problem, cache: Cache | None, pool: Pool, watcher: Watcher
         watcher: is shown what is worked out.
     Raises:
         RunError: a piece could not be worked out; it says which and why.
+        InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = setting_of(problem), Preparation()
-    for stage in stages(setting, problem.heights, seeds=problem.seeds):
+    for stage in stages(setting, problem.heights, seeds=problem.seeds, stretches=problem.stretches):
         missing = []
         for piece in stage:
             content = cache.read(key_of(setting, piece)) if cache else None
@@ -60,7 +61,22 @@ def prepared(problem: Problem, cache: Cache | None, pool: Pool, watcher: Watcher
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)
                 known = with_piece(known, piece, content) or known
+        refuse_heights(problem, known)
     return known
+
+
+def refuse_heights(problem: Problem, known: Preparation) -> None:
+    """Refuse a height at which one of the people cannot hold a load, whatever the robot.
+
+    Raises:
+        InputError: naming the height and the person.
+    """
+    for stretch in known.stretches:
+        for position, height in enumerate(problem.heights):
+            if not stretch.lowest <= height <= stretch.highest:
+                who = problem.scenes[stretch.scene].label or "the person"
+                wanted = f"a height that {who} can hold, from {stretch.lowest:.3f} to {stretch.highest:.3f} m"
+                raise InputError(problem.source.path, f"task.heights_m[{position}]", wanted, f"{height:g}")
 
 
 def _worked_out(

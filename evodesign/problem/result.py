@@ -25,6 +25,7 @@ class DesignResult:
         values: one number per design parameter.
         tree: the robot of the design.
         reach: interval of load heights that it can hold, whatever the load.
+        people_highest: highest load that all of the people can hold [m]; None where that was not asked for.
         heights: one solution per scene and required height.
         paper: the paper's tasks and their weights.
     """
@@ -36,6 +37,7 @@ class DesignResult:
     reach: Reach
     heights: tuple[HeightSolution, ...]
     paper: JointSettings
+    people_highest: float | None = None
 
     @property
     def robot(self) -> Agent:

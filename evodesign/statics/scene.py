@@ -123,6 +123,11 @@ class Agent:
     strengths: Mapping[str, JointStrength] = field(default_factory=dict)
 
     @property
+    def pushed_frame(self) -> str:
+        """The frame that a push on the agent meets: the last of its trunk."""
+        return self.trunk[-1]
+
+    @property
     def facing(self) -> float:
         """Rotation about z that takes the agent's frame to the world [rad]."""
         return math.pi if self.name == HUMAN else 0.0

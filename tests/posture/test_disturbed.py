@@ -232,6 +232,13 @@ def test_a_sideways_disturbance_is_refused_by_name_in_symmetric_postures(problem
         symmetric_forms(disturbed(problem, HEAVIER, aside))
 
 
+def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(problem: Problem) -> None:
+    scene = disturbed(problem, ROBOT_BACK)
+    beside = replace(scene, robot=replace(scene.robot, trunk=("chest", "l_upper_arm")))
+    with pytest.raises(ModelError, match=r"'robot pushed': wanted a push on the middle line.*'l_upper_arm'"):
+        symmetric_forms(beside)
+
+
 def test_free_postures_bear_a_sideways_push(problem: Problem, undisturbed: HeightSolution) -> None:
     aside = Disturbance("gust", push=(0.0, 10.0, 0.0))
     solution = solved(disturbed(problem, aside), problem, Symmetry.OFF, like=undisturbed)
