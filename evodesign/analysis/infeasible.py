@@ -1,7 +1,7 @@
 """Why designs of a run are not feasible, counted by cause.
 
-A cause is the log's own status with the heights that ended so: "infeasible at 1.2 m". A design counts
-once, whatever the number of heights that it misses.
+A cause is the log's own status with the heights that ended so: "infeasible at 1.2 m", and with whom, where
+others could hold their load there. A design counts once, whatever the number of cases that it misses.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from evodesign.analysis.cases import pair_name
 from evodesign.records import Assessment, Evaluation, Status
 
 __all__ = ["Cause", "causes_of_infeasibility"]
@@ -45,9 +46,15 @@ def causes_of_infeasibility(evaluations: Iterable[Evaluation]) -> tuple[Cause, .
 
 def _cause(assessment: Assessment) -> str:
     """A design's status, with the heights that ended in it if some heights ended well."""
-    heights = [height.height_m for height in assessment.heights if height.status is assessment.status]
-    if assessment.status is Status.SOLVED or not heights:
+    ended = [case for case in assessment.heights if case.status is assessment.status]
+    if assessment.status is Status.SOLVED or not ended:
         return str(assessment.status)
-    if len(heights) == len(assessment.heights) > 1:
+    if len(ended) == len(assessment.heights) > 1:
         return f"{assessment.status} at every height"
-    return f"{assessment.status} at {' and '.join(f'{height:g}' for height in heights)} m"
+    heights = dict.fromkeys(case.height_m for case in ended)
+    place = f"{assessment.status} at {' and '.join(f'{height:g}' for height in heights)} m"
+    there = [case for case in assessment.heights if case.height_m in heights]
+    if len(there) == len(ended):
+        return place
+    pairs = [*dict.fromkeys(pair_name(case) for case in ended)]
+    return f"{place} with {pairs[0] if len(pairs) == 1 else f'{len(pairs)} pairs of person and load'}"

@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from evodesign.bridge.design import Design
+from evodesign.design.policy import POLICIES
+from evodesign.design.space import ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.registry import make_pool
 from evodesign.posture.cache import Cache, user_cache
@@ -66,8 +68,9 @@ class OpenedProblem:
         Args:
             design: values by name, those left out as in the unscaled robot; or one value per parameter.
         Raises:
-            InputError: an unknown name, a wrong number of values, a value that is no positive number, or a
-                density that is neither a material's nor the unscaled robot's where there are materials.
+            InputError: an unknown name, a wrong number of values, a value that is no positive number, a
+                policy beyond its range, or a density that is neither a material's nor the unscaled robot's
+                where there are materials.
         """
         found = self._evaluator.assess_values(self._values(design))
         return Design(None, found.assessment, found.heights)
@@ -85,8 +88,13 @@ class OpenedProblem:
         else:
             raise InputError("design", "", f"{len(names)} values", f"{len(design)}")
         for name in names:
-            if not (math.isfinite(values[name]) and values[name] > 0.0):
-                raise InputError("design", name, "a positive number", f"{values[name]}")
+            kind, _, group = name.partition(".")
+            if kind == ParameterKind.POLICY:
+                wanted, sound = POLICIES[group].wanted, POLICIES[group].means(values[name])
+            else:
+                wanted, sound = "a positive number", math.isfinite(values[name]) and values[name] > 0.0
+            if not sound:
+                raise InputError("design", name, wanted, f"{values[name]}")
         for parameter, name in zip(self._evaluator.problem.space.parameters, names, strict=True):
             if values[name] != self.unscaled[name]:
                 refuse_no_choice(parameter, values[name], "design", name)

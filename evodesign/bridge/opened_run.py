@@ -133,7 +133,8 @@ class OpenedRun:
             designs: of this run; left out, all evaluations.
         Returns:
             Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
-            the reach [m], torque norms by height [N m], parameters; None where a value does not exist.
+            the reach [m], torque norms by height and by case [N m], parameters; None where a value does not
+            exist.
         """
         wanted = None if designs is None else [design.number for design in designs]
         by_number = {evaluation.number: evaluation for evaluation in self.run.evaluations}
@@ -149,6 +150,29 @@ class OpenedRun:
             "seconds": [row.seconds for row in rows],
         }
         return columns | {name: [value(row) for row in rows] for name, value in self._quantities.items()}
+
+    def cases(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
+        """Every case of designs as columns, a row per design, person, load and height.
+
+        Args:
+            designs: of this run; left out, all evaluations.
+        Returns:
+            Columns by name: number, human, payload (empty where the problem has one), height [m], status,
+            reason, robot_torque and human_torque [N m], residual; None where a value does not exist.
+        """
+        chosen = self.designs if designs is None else designs
+        rows = [(design.number, case) for design in chosen for case in design.heights]
+        return {
+            "number": [number for number, _ in rows],
+            "human": [case.human_name for _, case in rows],
+            "payload": [case.payload_name for _, case in rows],
+            "height": [case.height_m for _, case in rows],
+            "status": [str(case.status) for _, case in rows],
+            "reason": [case.reason for _, case in rows],
+            "robot_torque": [case.robot_torque_norm for _, case in rows],
+            "human_torque": [case.human_torque_norm for _, case in rows],
+            "residual": [case.residual for _, case in rows],
+        }
 
     def postures(self, number: int) -> tuple[HeightDetail, ...]:
         """How robot and person of a design stand at each height that was solved, with torques and wrenches.

@@ -11,11 +11,13 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from evodesign.cli.height_table import heights_table
+from evodesign.analysis.cases import named_people_or_loads
+from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.opening import OpenedDesign
-from evodesign.cli.output import figure, visible
-from evodesign.cli.person_table import TITLE, case_name, person_table
+from evodesign.cli.output import figure
+from evodesign.cli.person_table import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables import heading
+from evodesign.cli.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter, materials_of
 from evodesign.report.strain import most_strained
@@ -24,9 +26,6 @@ if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
 
 __all__ = ["card"]
-
-JOINTS_SHOWN = 6
-"""Rows of joints per agent; the others bear less."""
 
 BAR = 16
 """Columns of a parameter's bar."""
@@ -40,17 +39,23 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
         asked: of the people by each of its postures; none to leave it out.
     """
     assessment = opened.evaluation.assessment
-    sections: dict[str, Table] = {
-        "objectives": _objectives(opened),
-        "parameters": _parameters(opened),
-        f"the load at each height (reach: {_reach(assessment)})": heights_table(assessment, ""),
-    }
-    if opened.heights:
+    several = named_people_or_loads(assessment.heights)
+    reach = f"reach: {_reach(assessment)}"
+    sections: dict[str, Table] = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
+    if several:
+        sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
+        sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
+    else:
+        sections[f"the load at each height ({reach})"] = heights_table(assessment, "")
+    if opened.heights and several:
+        sections["largest joint torques [N m]"] = worst_torques(opened.heights)
+        sections["contact forces [N]"] = worst_forces(opened.heights)
+    elif opened.heights:
         sections["largest joint torques [N m]"] = _torques(opened.heights)
         sections["contact forces [N]"] = _contacts(opened.heights)
     if asked:
-        cases = zip(map(case_name, opened.heights), asked, strict=True)
-        sections[TITLE] = person_table(list(cases), title="")
+        cases = [*zip(opened.heights, asked, strict=True)]
+        sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)
     parts: list[RenderableType] = [_title(opened)]
     for title, table in sections.items():
         parts += [Text(f"\n{title}", style="italic"), table]
@@ -156,7 +161,7 @@ def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, 
 def _height_table(columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
     table = _table(*columns)
     for detail in heights:
-        table.add_column(escape(visible(case_name(detail))), justify="right")
+        table.add_column(f"{detail.height_m:g} m", justify="right")
     return table
 
 

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.cli.height_table import heights_table
+from evodesign.analysis.cases import named_people_or_loads
+from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
-from evodesign.cli.person_table import case_name, person_table
+from evodesign.cli.person_table import people_table
 from evodesign.cli.tables import heading
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics
@@ -19,7 +20,7 @@ from evodesign.problem.sensitivities import Sensitivity
 from evodesign.records import Assessment
 from evodesign.statics.scene import HUMAN
 
-__all__ = ["assessment_tables", "people_table", "sensitivity_table"]
+__all__ = ["asked_table", "assessment_tables", "sensitivity_table"]
 
 STRONGEST = 4
 """Parameters shown per objective."""
@@ -27,8 +28,8 @@ STRONGEST = 4
 
 def assessment_tables(
     problem: Problem, name: str, result: DesignResult, assessment: Assessment
-) -> tuple[Table, Table]:
-    """One design: its objectives, and its postures height by height."""
+) -> tuple[Table, ...]:
+    """One design: its objectives, its postures case by case, and a summary where there are many cases."""
     summary = Table(title=escape(f"{problem.name}: {name}"), title_justify="left")
     summary.add_column("objective")
     summary.add_column("value", justify="right")
@@ -37,18 +38,24 @@ def assessment_tables(
         summary.add_row(escape(heading(objective)), figure(value))
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
-    return summary, heights_table(assessment, "the load at each height")
+    if not named_people_or_loads(assessment.heights):
+        return summary, heights_table(assessment, "the load at each height")
+    return (
+        summary,
+        summary_table(assessment, "torque norms |tau| over the cases [N m]"),
+        cases_table(assessment, "the load in each case, torques in N m"),
+    )
 
 
-def people_table(result: DesignResult) -> Table:
+def asked_table(result: DesignResult) -> Table:
     """What the solved postures of a design ask of the people."""
     cases = []
     for height in result.heights:
         if height.solved:
             scene = result.scenes[height.scene]
             detail = detail_of(height, scene)
-            cases.append((case_name(detail), ergonomics(scene.human, detail.agents[HUMAN])))
-    return person_table(cases)
+            cases.append((detail, ergonomics(scene.human, detail.agents[HUMAN])))
+    return people_table(cases, titled=True)
 
 
 def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:

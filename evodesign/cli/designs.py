@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.cli.design_tables import assessment_tables, people_table, sensitivity_table
+from evodesign.cli.design_tables import asked_table, assessment_tables, sensitivity_table
 from evodesign.cli.model_table import model_json, model_tables
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.ready import evaluator_of
@@ -35,7 +35,7 @@ def evaluate_design(
         print_json(answer(built, values, result, assessment, moves))
         return
     tables = assessment_tables(built, chosen, result, assessment)
-    asked = [people_table(result)] if any(height.solved for height in result.heights) else []
+    asked = [asked_table(result)] if any(height.solved for height in result.heights) else []
     for table in (*tables, *asked, *([sensitivity_table(built, moves)] if moves else [])):
         console().print(table)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.cli.opening import cast_of, open_design
+from evodesign.cli.opening import company_of, open_design
 from evodesign.cli.output import console, show_notes
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design, refuse_full
@@ -17,7 +17,9 @@ def export_run_design(directory: Path, number: int, to: Path, jobs: int) -> None
     refuse_full(to)  # before anything takes time
     opened = open_design(directory, number, jobs)
     run, evaluation = opened.run, opened.evaluation
-    design = ExportedDesign(directory.resolve().name, run.header, evaluation, cast_of(opened), opened.heights)
+    design = ExportedDesign(
+        directory.resolve().name, run.header, evaluation, company_of(opened), opened.heights
+    )
     done = export_design(design, to, on_front=opened.on_front)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())
     for path in done.files:

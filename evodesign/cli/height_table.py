@@ -1,41 +1,38 @@
-"""One design's postures in short, as a table for people."""
+"""One design's postures in short, as tables for people."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
 
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.analysis.cases import pair_name
 from evodesign.cli.output import figure, shown
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightOutcome
 from evodesign.statics.scene import HUMAN, ROBOT
 
-__all__ = ["heights_table"]
+__all__ = ["cases_table", "heights_table", "summary_table"]
 
 
 def heights_table(assessment: Assessment, title: str) -> Table:
-    """A design's postures in short, case by case, under a title unless it is empty."""
+    """A design's postures in short, height by height, under a title unless it is empty."""
     table = Table(title=title or None, title_justify="left")
-    holders = [_holder(outcome) for outcome in assessment.heights]
-    if any(holders):
-        table.add_column("person, load", overflow="fold")
     for column in ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual"):
         table.add_column(escape(column), justify="right")
     table.add_column("status", overflow="fold")
-    for holder, outcome in zip(holders, assessment.heights, strict=True):
-        status = outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
+    for outcome in assessment.heights:
         table.add_row(
-            *([shown(holder)] if any(holders) else []),
             figure(outcome.height_m),
             figure(outcome.robot_torque_norm),
             figure(outcome.human_torque_norm),
             str(outcome.iterations),
-            "-" if outcome.residual is None else f"{outcome.residual:.1e}",
-            escape(on_one_line(status)),
+            _residual(outcome),
+            _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
             table.add_row(
-                *([""] if any(holders) else []),
                 "",
                 *(figure(norms[agent]) for agent in (ROBOT, HUMAN)),
                 "",
@@ -45,6 +42,101 @@ def heights_table(assessment: Assessment, title: str) -> Table:
     return table
 
 
-def _holder(outcome: HeightOutcome) -> str:
-    """Who holds what, where there are several people or loads."""
-    return ", ".join(name for name in (outcome.human_name, outcome.payload_name) if name)
+def cases_table(assessment: Assessment, title: str) -> Table:
+    """A design's postures in short, case by case: columns for people and loads where there are several."""
+    outcomes = assessment.heights
+    names = _name_columns(outcomes)
+    table = Table(title=title or None, title_justify="left")
+    for name in names:
+        table.add_column(name, overflow="fold")
+    for column in ("height", "robot |tau|", "human |tau|", "residual"):
+        table.add_column(column, justify="right")
+    table.add_column("status", overflow="fold")
+    for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=True):
+        table.add_row(
+            *(shown(name_of(outcome)) for name_of in names.values()),
+            _height(outcome),
+            figure(outcome.robot_torque_norm),
+            figure(outcome.human_torque_norm),
+            _residual(outcome),
+            _status(outcome),
+        )
+        for name, norms in outcome.disturbed.items():
+            bore = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
+            table.add_row(*("" for _ in names), "", *bore, "", shown(f"under '{name}'"))
+        if following is not None and pair_name(outcome) != pair_name(following):
+            table.add_section()
+    return table
+
+
+def _residual(outcome: HeightOutcome) -> str:
+    return "-" if outcome.residual is None else f"{outcome.residual:.1e}"
+
+
+def _status(outcome: HeightOutcome) -> str:
+    status = outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
+    return escape(on_one_line(status))
+
+
+def summary_table(assessment: Assessment, title: str) -> Table:
+    """Torque norms [N m] over all cases, and over those with each person or load, or at each height.
+
+    Torques under disturbances count as the objectives count them, each beside the undisturbed one.
+    """
+    table = Table(title=title or None, title_justify="left")
+    table.add_column("cases", overflow="fold")
+    table.add_column("solved", justify="right")
+    for column in ("robot mean", "worst", "human mean", "worst"):
+        table.add_column(column, justify="right")
+    outcomes = assessment.heights
+    _add_summary(table, "all", outcomes, last=True)
+    groups = [*_name_columns(outcomes).values(), _height]
+    for name_of in groups:
+        found = [*dict.fromkeys(name_of(outcome) for outcome in outcomes)]
+        for name in found:
+            same = [outcome for outcome in outcomes if name_of(outcome) == name]
+            _add_summary(table, name, same, last=name == found[-1])
+    return table
+
+
+def _add_summary(table: Table, name: str, outcomes: Sequence[HeightOutcome], *, last: bool) -> None:
+    solved = [outcome for outcome in outcomes if outcome.robot_torque_norm is not None]
+    numbers = [
+        number
+        for agent in (ROBOT, HUMAN)
+        for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, agent)])
+    ]
+    share = f"{len(solved)} of {len(outcomes)}"
+    table.add_row(shown(name), share, *map(figure, numbers), end_section=last)
+
+
+def _norms(outcome: HeightOutcome, agent: str) -> Iterator[float]:
+    """An agent's torque norms in a case, quiet and disturbed."""
+    quiet = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
+    if quiet is not None:
+        yield quiet
+    for norms in outcome.disturbed.values():
+        yield norms[agent]
+
+
+def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:
+    yield sum(norms) / len(norms) if norms else None
+    yield max(norms, default=None)
+
+
+def _name_columns(outcomes: Sequence[HeightOutcome]) -> dict[str, Callable[[HeightOutcome], str]]:
+    """Columns of names that tell cases apart, with what stands in them."""
+    columns = {"person": _human, "load": _payload}
+    return {column: name for column, name in columns.items() if any(map(name, outcomes))}
+
+
+def _human(outcome: HeightOutcome) -> str:
+    return outcome.human_name
+
+
+def _payload(outcome: HeightOutcome) -> str:
+    return outcome.payload_name
+
+
+def _height(outcome: HeightOutcome) -> str:
+    return f"{outcome.height_m:g} m"

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
 
 from evodesign.body.shape import Box, Cylinder, Shape
-from evodesign.cli.output import figure, visible
+from evodesign.cli.output import figure, shown, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.errors import on_one_line
 from evodesign.problem.build import Problem
+from evodesign.problem.decode import decode_toml
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.people import everyone
 from evodesign.statics.disturbance import Disturbance
-from evodesign.statics.scene import Agent
+from evodesign.statics.scene import Agent, Payload
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
 
@@ -29,12 +32,13 @@ CAPTION = (
 def model_json(problem: Problem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
     scene = problem.scene
+    loads = {each.payload.label: each.payload for each in problem.scenes}
+    told = [_load(load) for load in loads.values()]
     disturbed = scene.disturbances
-    people = {one.human.label: one.human for one in problem.scenes}.values()
     return {
         "problem": problem.name,
-        "agents": [_agent(agent) for agent in (scene.robot, *people)],
-        "payload": {"size_m": list(scene.payload.size), "mass_kg": scene.payload.mass},
+        "agents": [_agent(scene.robot), *_people(problem)],
+        **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
         "heights_m": list(problem.heights),
         **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
@@ -76,24 +80,38 @@ def model_tables(problem: Problem) -> tuple[Table, ...]:
     )
 
 
-def _agents_table(name: str, agents: Iterable[dict[str, Any]]) -> Table:
+def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
+    """Robot and people; of several people, also who each is and how tall."""
+    several = any("who" in agent for agent in agents)
     table = Table(title=escape(name), title_justify="left")
-    for column in ("agent", "model", "links", "joints", "that move", "mass [kg]"):
-        table.add_column(escape(column), justify="left" if column in ("agent", "model") else "right")
+    for column in ("agent", *(("person",) if several else ()), "model"):
+        table.add_column(escape(column), overflow="fold")
+    for column in ("links", "joints", "that move", "mass [kg]"):
+        table.add_column(escape(column), justify="right")
     for agent in agents:
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
-        name = f"{agent['name']} {agent['who']}" if "who" in agent else agent["name"]
         table.add_row(
-            escape(visible(name)), escape(agent["model"]), *map(str, counts), figure(agent["mass_kg"])
+            agent["name"],
+            *([shown(agent.get("who", ""))] if several else []),
+            escape(_model(agent)),
+            *map(str, counts),
+            figure(agent["mass_kg"]),
         )
     return table
 
 
+def _model(agent: dict[str, Any]) -> str:
+    """The model's name, or what a generated person is, where that tells it from others."""
+    return f"{agent['sex']}, {figure(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
+
+
 def _task_table(shown: dict[str, Any]) -> Table:
     table = Table(show_header=False)
-    table.add_row(
-        "load", f"{shown['payload']['mass_kg']:g} kg, {' x '.join(map(figure, shown['payload']['size_m']))} m"
-    )
+    for load in shown["payloads"] if "payloads" in shown else [shown["payload"]]:
+        mass, size = f"{load['mass_kg']:g} kg", f"{' x '.join(map(figure, load['size_m']))} m"
+        name = load.get("payload_name", mass)
+        told = mass if name == mass else f"{visible(name)}: {mass}"
+        table.add_row("load", escape(f"{told}, {size}"))
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
     for disturbance in shown.get("disturbances", ()):
         table.add_row("disturbance", escape(_told(disturbance)))
@@ -159,10 +177,27 @@ def _materials_table(materials: Iterable[dict[str, Any]]) -> Table:
     return table
 
 
+def _load(load: Payload) -> dict[str, Any]:
+    name = {"payload_name": load.label} if load.label else {}
+    return {**name, "size_m": list(load.size), "mass_kg": load.mass}
+
+
+def _people(problem: Problem) -> list[dict[str, Any]]:
+    """The people in short; of several, also who each is, with sex and stature unless a URDF describes it."""
+    people = {scene.human.label: scene.human for scene in problem.scenes}
+    if len(people) == 1:
+        return [_agent(problem.scene.human)]
+    tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
+    given = [table for _, table in everyone(tables, problem.source)]
+    return [
+        {**_agent(person), "who": label, "sex": table.sex, "stature_m": table.stature_m}
+        for (label, person), table in zip(people.items(), given, strict=True)
+    ]
+
+
 def _agent(agent: Agent) -> dict[str, Any]:
     return {
         "name": agent.name,
-        **({"who": agent.label} if agent.label else {}),
         "model": agent.tree.name,
         "links": len(agent.tree.links),
         "joints": len(agent.tree.joints),

@@ -12,7 +12,7 @@ from evodesign.analysis.front import front
 from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
 from evodesign.records import Evaluation, HeightDetail, RunHeader
-from evodesign.report.stage import Cast
+from evodesign.report.company import Company
 from evodesign.runlog.run import Run, read_run
 from evodesign.search.base import JOINT_STARTS
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
     from evodesign.statics.scene import Agent
 
-__all__ = ["OpenedDesign", "RebuiltProblem", "asked_of_people", "cast_of", "open_design"]
+__all__ = ["OpenedDesign", "RebuiltProblem", "asked_of_people", "company_of", "open_design"]
 
 
 class RebuiltProblem:
@@ -110,12 +110,12 @@ def _heights(
     return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
 
 
-def cast_of(opened: OpenedDesign) -> Cast:
-    """Robot of the design, person and load, built from the problem in the run's header."""
+def company_of(opened: OpenedDesign) -> Company:
+    """Robot of the design, people and loads, built from the problem in the run's header."""
     problem = opened.rebuilt.problem
     design = opened.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
     values = [design[parameter.name] for parameter in problem.space.parameters]
-    return Cast.of(problem.scene, problem.space.resized(problem.scene.robot.tree, values))
+    return Company.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
 
 
 def asked_of_people(opened: OpenedDesign) -> tuple[Ergonomics, ...]:

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.analysis.cases import Case, case_name, named_people_or_loads
 from evodesign.cli.output import shown
-from evodesign.records import HeightDetail
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
 
-__all__ = ["TITLE", "case_name", "person_table"]
+__all__ = ["TITLE", "TITLE_OF_SEVERAL", "Asked", "hardest_cases", "people_table", "person_table"]
+
+Asked = tuple[Case, "Ergonomics"]
+"""A case, and what its posture asks of the person."""
 
 TITLE = "what each posture asks of the person"
+TITLE_OF_SEVERAL = "what the hardest postures ask of each person, of all loads and heights"
 
 CAPTION = (
     "effort: the hardest joint's torque as a share of a person's strength there\n"
@@ -25,10 +30,37 @@ CAPTION = (
 )
 
 
-def case_name(detail: HeightDetail) -> str:
-    """Who holds what how high."""
-    parts = (detail.human_name, detail.payload_name, f"{detail.height_m:g} m")
-    return ", ".join(part for part in parts if part)
+def people_table(asked: Sequence[Asked], *, titled: bool) -> Table:
+    """A row for each case; of several people or loads, each person's hardest ones."""
+    several = named_people_or_loads(case for case, _ in asked)
+    rows = [
+        (case_name(case), ergonomics) for case, ergonomics in (hardest_cases(asked) if several else asked)
+    ]
+    title = TITLE_OF_SEVERAL if several else TITLE
+    return person_table(rows, title if titled else "")
+
+
+def hardest_cases(asked: Sequence[Asked]) -> list[Asked]:
+    """Of each person the case of largest effort and that of the largest lifting index, often the same."""
+    chosen: list[Asked] = []
+    for name in dict.fromkeys(case.human_name for case, _ in asked):
+        own = [one for one in asked if one[0].human_name == name]
+        for size in (_effort, _index):
+            hardest = max(own, key=size)
+            if hardest not in chosen:
+                chosen.append(hardest)
+    return chosen
+
+
+def _effort(asked: Asked) -> float:
+    strain = asked[1].strain
+    return 0.0 if strain is None else strain.share
+
+
+def _index(asked: Asked) -> float:
+    """The lifting index; beyond any where nothing is recommended."""
+    index = asked[1].lifting_index
+    return math.inf if index is None else index
 
 
 def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) -> Table:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.card import card
-from evodesign.cli.opening import OpenedDesign, asked_of_people, cast_of, open_design
+from evodesign.cli.opening import OpenedDesign, asked_of_people, company_of, open_design
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.errors import InputError
 from evodesign.report.export.design import design_json
@@ -43,21 +45,33 @@ def _write_figures(opened: OpenedDesign, directory: Path) -> None:
     from evodesign.report.figures.paint import write_figure
     from evodesign.report.figures.posture_figure import posture_figure
     from evodesign.report.figures.torque_boxes import torque_boxes
-    from evodesign.report.stage import stage_of
 
     name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
-    cast = cast_of(opened)
+    company = company_of(opened)
     torques = {
-        agent: {detail.height_m: detail.agents[agent].torques_n_m for detail in opened.heights}
-        for agent in cast.trees
+        agent: [(detail.height_m, detail.agents[agent].torques_n_m) for detail in opened.heights]
+        for agent in company.casts[0].trees
     }
-    boxes = {agent: {h: [*by.values()] for h, by in heights.items()} for agent, heights in torques.items()}
-    stages = [stage_of(cast, detail) for detail in opened.heights]
+    several = named_people_or_loads(opened.heights)
+    whom = " with all people and loads" if several else ""
+    stages = [company.stage_of(detail) for detail in opened.heights]
     figures = {
-        "torques": torque_boxes(boxes, f"{name}: joint torques"),
-        "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint"),
+        "torques": torque_boxes(_by_height(torques), f"{name}: joint torques{whom}"),
+        "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint{whom}"),
         "postures": posture_figure(stages, f"{name}: postures"),
     }
     for stem, figure in figures.items():
         written = write_figure(figure, directory, stem)
         show_notes(f"written: {path}" for path in written)
+
+
+def _by_height(
+    torques: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
+) -> dict[str, dict[float, list[float]]]:
+    """Of each agent, all joint torques [N m] at a height, whoever holds whichever load."""
+    boxes: dict[str, dict[float, list[float]]] = {}
+    for agent, cases in torques.items():
+        boxes[agent] = {}
+        for height, by_joint in cases:
+            boxes[agent].setdefault(height, []).extend(by_joint.values())
+    return boxes

@@ -1,4 +1,4 @@
-"""The hardware that may change: length multipliers and densities of groups of links.
+"""What may change: length multipliers and densities of groups of links, and policies.
 
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
@@ -14,6 +14,7 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
+from evodesign.design.policy import POLICIES
 from evodesign.errors import ModelError
 from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
@@ -28,19 +29,20 @@ class ParameterKind(StrEnum):
 
     LENGTH = "length"
     DENSITY = "density"
+    POLICY = "policy"
 
 
-UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3"}
+UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.POLICY: "1"}
 
 
 @dataclass(frozen=True, slots=True)
 class DesignParameter:
-    """One number that a design chooses, for a group of links.
+    """One number that a design chooses, for a group of links or, as a policy, for none.
 
     Args:
-        kind: length multiplier [-] or density [kg/m^3].
-        group: name of the group, unique among the parameters of its kind.
-        links: names of the links that share the value.
+        kind: length multiplier [-], density [kg/m^3] or policy [-].
+        group: name of the group, unique among the parameters of its kind; of a policy, its own.
+        links: names of the links that share the value; none for a policy.
         lower, upper: bounds.
         materials: of which a density must be one's, the lightest first; none if every value within the
             bounds will do.
@@ -135,18 +137,30 @@ class DesignSpace:
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
         return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
 
+    def policies(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
+        """The policies among a design's values, by their own names."""
+        pairs = zip(self.parameters, values, strict=True)
+        return {p.group: value for p, value in pairs if p.kind is ParameterKind.POLICY}
+
+    @property
+    def policy_names(self) -> frozenset[str]:
+        """Names of the policies that a design chooses."""
+        return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
+
     @property
     def counts(self) -> tuple[int, ...]:
         """How many choices each coordinate of a genome has, 0 for a continuous one."""
         return tuple(len(parameter.materials) for parameter in self.parameters)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
-        """The file's robot as a design: multipliers one, densities averaged over each group."""
+        """The file's robot as a design: multipliers one, densities averaged over groups, usual policies."""
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
         if parameter.kind is ParameterKind.LENGTH:
             return 1.0
+        if parameter.kind is ParameterKind.POLICY:
+            return POLICIES[parameter.group].usual
         solids = [
             solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids
         ]

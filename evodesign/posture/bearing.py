@@ -19,15 +19,25 @@ from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Constraint, Variable
 from evodesign.posture.stand import COMFORT, Stand
 from evodesign.statics.balance import AppliedWrench, cut
-from evodesign.statics.scene import Agent, Grasp, Scene
+from evodesign.statics.scene import Agent, Grasp, Payload, Scene
 from evodesign.tree.kinematics import Pose
 
-__all__ = ["FORCE_UNIT", "GRASP_ROWS", "HAND_UNIT", "TORQUE_UNIT", "Bearing", "bear", "hand_wrench"]
+__all__ = [
+    "FORCE_UNIT",
+    "GRASP_ROWS",
+    "HAND_UNIT",
+    "TORQUE_UNIT",
+    "Bearing",
+    "bear",
+    "hand_limits",
+    "hand_wrench",
+]
 
 Expression = Any
 
 TORQUE_UNIT = 10.0  # [N m] per unit of a lifted torque
 FORCE_UNIT = 100.0  # [N] per unit of a foot wrench
+STRONGEST = 300.0  # [N] and [N m] of a hand, beyond any holding posture
 HAND_UNIT = 10.0  # [N] per unit of a hand force, [N m] per unit of a hand moment
 LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit
 
@@ -95,7 +105,7 @@ def bear(stand: Stand, scene: Scene, prefix: str = "", pushes: Sequence[AppliedW
 
 def _variables(form: Form, scene: Scene, name: str) -> tuple[Variable, ...]:
     """Wrenches on hands and feet, and torques."""
-    hand, foot, torque = [300.0] * GRASP_ROWS[scene.payload.grasp], [5000.0] * 6, _torque_bounds(form)
+    hand, foot, torque = hand_limits(scene.payload), [5000.0] * 6, _torque_bounds(form)
     rest = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
     bounded = [
         *((f"{side}_hand", hand, [0.0] * len(hand), HAND_UNIT) for side in form.sides),
@@ -106,6 +116,12 @@ def _variables(form: Form, scene: Scene, name: str) -> tuple[Variable, ...]:
         Variable.column(f"{name}.{part}", [-x for x in limit], limit, begin, unit)
         for part, limit, begin, unit in bounded
     )
+
+
+def hand_limits(payload: Payload) -> list[float]:
+    """Largest size of each free number of a hand's wrench [N, N m]."""
+    moment = min(STRONGEST, payload.hand_moment)
+    return ([STRONGEST] * 3 + [moment] * 3)[: GRASP_ROWS[payload.grasp]]
 
 
 def _torque_bounds(form: Form) -> list[float]:

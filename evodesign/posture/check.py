@@ -213,7 +213,7 @@ def _load(scene: Scene, postures: Mapping[str, AgentPosture], outside: Array = S
     """Balance of the load, of which a force from outside [N] meets the box's centre, and bounds on hands."""
     weight = np.array([0.0, 0.0, -GRAVITY * scene.payload.mass])
     force, moment = weight + outside, np.cross(scene.payload.center_of_mass, weight)
-    squeeze, passed = float(outside[0]) / 2.0, 0.0
+    squeeze, passed, carried = float(outside[0]) / 2.0, 0.0, 0.0
     for agent in (scene.robot, scene.human):
         world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
         for side in SIDES:
@@ -222,11 +222,21 @@ def _load(scene: Scene, postures: Mapping[str, AgentPosture], outside: Array = S
             point = world_from_agent @ np.array(scene.payload.grasp_point(agent, side))
             force = force + on_load
             moment = moment + np.cross(point, on_load) - world_from_agent @ wrench[3:]
-            squeeze += float(on_load[0]) if agent is scene.robot else 0.0
+            if agent is scene.robot:
+                squeeze += float(on_load[0])
+                carried += float(on_load[2])
             passed = max(passed, float(np.abs(wrench[3:]).max()))
-    return {
+    found = {
         "load.force_balance": float(np.abs(force).max()),
         "load.moment_balance": float(np.abs(moment).max()),
         "load.push": max(0.0, abs(squeeze) - scene.stance.push),
         "load.grasp": passed if scene.payload.grasp is Grasp.POINT else 0.0,
     }
+    if scene.payload.hand_moment < np.inf:
+        found["load.hand_moment"] = max(0.0, passed - scene.payload.hand_moment)
+    whole = -float(weight[2] + outside[2])
+    if scene.robot_share is not None:
+        found["load.share"] = abs(carried - scene.robot_share * whole)
+    elif scene.payload.grasp is Grasp.RIGID:
+        found["load.share"] = max(0.0, -carried, carried - whole)
+    return found

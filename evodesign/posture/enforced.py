@@ -38,7 +38,7 @@ class Enforced:
     def covers(self, name: str) -> bool:
         """Whether a constraint, or a residual of the check, is enforced."""
         word = name.rsplit(".", 1)[1]
-        if word.endswith("foot_contact"):
+        if word.endswith(("foot_contact", "hand_moment")):
             return self.contact
         if word == "joint_limits":
             return self.joint_limits

@@ -32,8 +32,8 @@ from evodesign.posture.enforced import Enforced
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.joint_start import drawn_postures, standard_postures
 from evodesign.posture.load import load_constraints
-from evodesign.posture.posture import EffortWeights
 from evodesign.posture.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.posture.sharing import EffortWeights, shared_scene
 from evodesign.posture.solution import AgentPosture, Attempt, HeightSolution
 from evodesign.posture.tasks import Tasks, pressure_task
 from evodesign.records import Genome, Status
@@ -168,7 +168,7 @@ class JointProblem:
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
-        checker = Checker(self._scene, tree, self._human)
+        checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
         postures = [self._postures(raw, index) for index in range(len(self._heights))]
         found = [checker.residuals(p, h) for p, h in zip(postures, self._heights, strict=True)]
         kept = [self._enforced.kept(residuals) for residuals in found]
@@ -228,6 +228,7 @@ def _program(
     settings: JointSettings,
 ) -> Program:
     values = _values(space, ca.vertsplit(design.value))
+    scene = shared_scene(scene, space, values)
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
     variables, constraints = [design], list[Constraint]()

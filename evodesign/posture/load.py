@@ -3,7 +3,9 @@
     sum_i f_i + (0, 0, -m g) = 0        sum_i (r_i x f_i + n_i) + c x (0, 0, -m g) = 0
 
 with f_i and n_i the force and moment of hand i on the load (no moment with `point` grasps, as in the paper),
-r_i its grasp point and c the centre of mass, both from the box's centre.
+r_i its grasp point and c the centre of mass, both from the box's centre. Where the robot's share s is given,
+its hands carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best
+posture lifts the partner by the load with hundreds of newtons.
 
 Source: Sartore et al. 2022, Eq. 8, third row at rest.
 """
@@ -15,11 +17,12 @@ from dataclasses import replace
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from evodesign.posture.program import Constraint
 from evodesign.statics.balance import GRAVITY
 from evodesign.statics.disturbance import Disturbance, PushedAt
-from evodesign.statics.scene import SIDES, Agent, Scene
+from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.kinematics import vector
 
 __all__ = ["any_load", "disturbed_load_constraints", "load_constraints", "push_of", "turned_to_world"]
@@ -69,7 +72,7 @@ def squeeze_of(scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression
 def load_constraints(
     scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]], *, symmetric: bool
 ) -> tuple[Constraint, ...]:
-    """Balance of the load and the bound on the push between the agents.
+    """Balance of the load, the bound on the push between the agents, and the robot's share where it is given.
 
     Args:
         scene: agents and load.
@@ -79,7 +82,8 @@ def load_constraints(
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
     rows = _unbalanced(scene, hand_wrenches, weight, weight, symmetric=symmetric)
     push = push_of(scene.robot, hand_wrenches[scene.robot.name])
-    return _constraints(scene, rows, push, "")
+    carried = _carried(hand_wrenches[scene.robot.name])
+    return _constraints(scene, rows, push, carried, -weight[2], "")
 
 
 def disturbed_load_constraints(
@@ -103,7 +107,13 @@ def disturbed_load_constraints(
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
     push = vector(disturbance.push_on(PushedAt.LOAD))
     rows = _unbalanced(scene, hand_wrenches, weight + push, weight, symmetric=symmetric)
-    return _constraints(scene, rows, squeeze_of(scene, hand_wrenches), prefix)
+    squeeze, carried = squeeze_of(scene, hand_wrenches), _carried(hand_wrenches[scene.robot.name])
+    return _constraints(scene, rows, squeeze, carried, -(weight + push)[2], prefix)
+
+
+def _carried(hand_wrenches: Mapping[str, Expression]) -> Expression:
+    """Upward force of an agent's hands on the load [N]."""
+    return -sum(wrench[2] for wrench in hand_wrenches.values())
 
 
 def _unbalanced(
@@ -134,9 +144,28 @@ def _unbalanced(
     return ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
 
 
-def _constraints(scene: Scene, rows: Expression, push: Expression, prefix: str) -> tuple[Constraint, ...]:
+def _constraints(
+    scene: Scene, rows: Expression, push: Expression, carried: Expression, whole: Expression, prefix: str
+) -> tuple[Constraint, ...]:
+    """The constraints of a load.
+
+    Args:
+        scene: limits and shares.
+        rows: what must vanish, [N] and [N m].
+        push: between the agents [N].
+        carried: by the robot, upwards [N].
+        whole: what both must carry [N].
+        prefix: begins the constraints' names.
+    """
     limit = scene.stance.push / LOAD_UNIT
-    return (
+    balanced = (
         Constraint(f"{prefix}load.balance", rows / LOAD_UNIT, 0.0, 0.0),
         Constraint(f"{prefix}load.push", push / LOAD_UNIT, -limit, limit),
     )
+    if scene.robot_share is not None:
+        missing = (carried - scene.robot_share * whole) / LOAD_UNIT
+        return (*balanced, Constraint(f"{prefix}load.share", missing, 0.0, 0.0))
+    if scene.payload.grasp is Grasp.RIGID:
+        parts = ca.vertcat(carried, whole - carried) / LOAD_UNIT
+        return (*balanced, Constraint(f"{prefix}load.share", parts, 0.0, np.inf))
+    return balanced

@@ -12,16 +12,15 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.bearing import GRASP_ROWS, HAND_UNIT, hand_wrench
+from evodesign.posture.bearing import HAND_UNIT, hand_limits, hand_wrench
 from evodesign.posture.form import WRENCH, Form
 from evodesign.posture.program import Variable
-from evodesign.statics.scene import Scene
+from evodesign.posture.stand import COMFORT
+from evodesign.statics.scene import Grasp, Scene
 
 __all__ = ["Hands", "free_hands"]
 
 Expression = Any
-
-STRONGEST = 300.0  # [N] and [N m], beyond any holding posture
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +30,12 @@ class Hands:
     Args:
         variables: what they pass, for the sides of the form.
         wrenches: force [N] and moment [N m] on both hands by side, in their agent's frame.
+        comfort: small convex cost of their moments, so that rigid hands are unique; zero for point grasps.
     """
 
     variables: tuple[Variable, ...]
     wrenches: Mapping[str, Expression]
+    comfort: Expression
 
 
 def free_hands(form: Form, scene: Scene, prefix: str = "") -> Hands:
@@ -45,7 +46,7 @@ def free_hands(form: Form, scene: Scene, prefix: str = "") -> Hands:
         scene: for what a hand can pass.
         prefix: begins the names of variables, where there is more than one thing to bear.
     """
-    limit = [STRONGEST] * GRASP_ROWS[scene.payload.grasp]
+    limit = hand_limits(scene.payload)
     variables = {
         side: Variable.column(
             f"{prefix}partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
@@ -55,4 +56,7 @@ def free_hands(form: Form, scene: Scene, prefix: str = "") -> Hands:
     wrenches = {side: hand_wrench(variable.value) for side, variable in variables.items()}
     if form.mirror is not None:
         wrenches["right"] = wrenches["left"] * ca.DM(WRENCH)
-    return Hands(tuple(variables.values()), wrenches)
+    moments = [wrench[3:] / HAND_UNIT for wrench in wrenches.values()]
+    comfort = COMFORT * sum(ca.sumsqr(moment) for moment in moments)
+    rigid = scene.payload.grasp is Grasp.RIGID
+    return Hands(tuple(variables.values()), wrenches, comfort if rigid else ca.SX(0.0))

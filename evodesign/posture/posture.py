@@ -18,7 +18,7 @@ Source: Sartore et al. 2022, Eq. 14 with pi fixed; DESIGN 3.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from functools import cached_property, partial
 
@@ -36,13 +36,14 @@ from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.program import IpoptOptions, Program, RawSolution
 from evodesign.posture.retold import start_from
+from evodesign.posture.sharing import EffortWeights, shared_scene, shared_weights
 from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import SplitPostures
 from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["SYMMETRIC", "EffortWeights", "PostureProblem", "Symmetry", "posture_program"]
+__all__ = ["SYMMETRIC", "PostureProblem", "Symmetry", "posture_program"]
 
 SYMMETRIC = "symmetric"
 """Name in results of the symmetric program over both agents."""
@@ -54,14 +55,6 @@ class Symmetry(StrEnum):
     ON = "on"
     OFF = "off"
     POLISH = "polish"
-
-
-@dataclass(frozen=True, slots=True)
-class EffortWeights:
-    """Weights w_r and w_h of the agents' squared torques."""
-
-    robot: float = 1.0
-    human: float = 1.0
 
 
 class PostureProblem:
@@ -227,7 +220,9 @@ def posture_program(
     scene, mass = any_load(scene)
     design = ca.SX.sym("design", len(space.parameters))
     height = ca.SX.sym("height")
-    tree = space.resized(scene.robot.tree, ca.vertsplit(design))
+    values = ca.vertsplit(design)
+    scene, weights = shared_scene(scene, space, values), shared_weights(weights, space, values)
+    tree = space.resized(scene.robot.tree, values)
     robot = agent_block(forms[0], tree, scene, height)
     human = agent_block(forms[1], scene.human.tree, scene, height)
     hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}

@@ -18,10 +18,11 @@ from evodesign.posture.cache import digest_of
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.human_value import HumanProblem, HumanValue
 from evodesign.posture.portfolio import Portfolio, Training, portfolio, spread_designs
-from evodesign.posture.posture import EffortWeights, PostureProblem, Symmetry
+from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import Preparation
 from evodesign.posture.program import IpoptOptions
 from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.sharing import EffortWeights
 from evodesign.posture.stored import (
     StoredPortfolio,
     StoredStretch,
@@ -126,7 +127,7 @@ def stages(setting: Setting, heights: Sequence[float], *, seeds: bool, stretches
         Piece(Subject.PERSON, height, number, scene.label)
         for number, scene in enumerate(setting.scenes)
         for height in heights
-        if setting.symmetric and _has_value(scene)
+        if setting.symmetric and _push_alone(scene, setting.space)
     ]
     if not seeds:
         return [people]
@@ -137,9 +138,11 @@ def stages(setting: Setting, heights: Sequence[float], *, seeds: bool, stretches
     ]
 
 
-def _has_value(scene: Scene) -> bool:
-    """Whether robot and person are coupled by nothing but the push between them."""
-    return scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0 and not scene.disturbances
+def _push_alone(scene: Scene, space: DesignSpace) -> bool:
+    """Whether the push is all that the load passes on, and no design weighs the person's effort anew."""
+    shared = scene.robot_share is not None or space.policy_names
+    alone = scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0
+    return alone and not shared and not scene.disturbances
 
 
 def _scene_of(setting: Setting, piece: Piece) -> Scene:
@@ -157,7 +160,8 @@ def key_of(setting: Setting, piece: Piece) -> str:
     """The digest under which a piece is kept."""
     scene, options = _scene_of(setting, piece), replace(setting.options, compiled=False)
     load = replace(scene.payload, label="")
-    numbers = (piece.subject, piece.height, load, scene.ground, scene.stance, setting.weights, options)
+    limits = (scene.ground, scene.stance, scene.robot_share)
+    numbers = (piece.subject, piece.height, load, *limits, setting.weights, options)
     ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
     if scene.disturbances:
         ingredients.append(repr(scene.disturbances).encode())

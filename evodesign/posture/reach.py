@@ -2,9 +2,10 @@
 
     maximise (minimise) h subject to the robot's constraints and the load's balance,
 
-with the person's hands free to push as they must: the robot's side alone decides. It is cheaper than a
-posture, so it is solved first and spares the heights that are out of reach. It has several optima (arms
-forward, arms raised sideways over the head), so it begins at seeds as a posture does.
+with the person's hands free to push as they must: the robot's side alone decides. A share of the load that is
+given binds here too; where it is free, a robot with rigid grasps may leave the load to the person. A reach
+problem is cheaper than a posture, so it is solved first and spares the heights that are out of reach. It has
+several optima (arms forward, arms raised sideways over the head), so it begins at seeds as a posture does.
 
 Source: DESIGN 3 (reach); feasibility constraints of Sartore et al. 2022, Eq. 14.
 """
@@ -26,6 +27,7 @@ from evodesign.posture.partner import free_hands
 from evodesign.posture.portfolio import Landscape
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.program import IpoptOptions, Program, RawSolution, Variable
+from evodesign.posture.sharing import shared_scene
 from evodesign.posture.shelf import Shelf, likeness
 from evodesign.posture.start import Start
 from evodesign.records import Status, worst_status
@@ -144,7 +146,9 @@ class ReachProblem:
 def _robot(form: Form, scene: Scene, space: DesignSpace) -> Program:
     """The robot's program; its parameters are the design's, then the load's mass and the sense."""
     design = ca.SX.sym("design", len(space.parameters))
-    return reach_program(form, space.resized(scene.robot.tree, ca.vertsplit(design)), scene, design)
+    values = ca.vertsplit(design)
+    tree = space.resized(scene.robot.tree, values)
+    return reach_program(form, tree, shared_scene(scene, space, values), design)
 
 
 def reach_program(form: Form, tree: Tree, scene: Scene, given: Expression) -> Program:
@@ -169,7 +173,7 @@ def reach_program(form: Form, tree: Tree, scene: Scene, given: Expression) -> Pr
         name="reach",
         variables=(height, *body.variables, *partner.variables),
         constraints=(*body.constraints, *load),
-        cost=sense * height.value + COMFORT * body.comfort,
+        cost=sense * height.value + COMFORT * (body.comfort + partner.comfort),
         parameters=ca.vertcat(given, mass, sense),
     )
     return with_cases(program, cases_of(scene, body.stand))

@@ -44,4 +44,5 @@ def likeness(scene: Scene, *agents: Agent) -> str:
         agents: those with a body in the program; the same object is the same agent.
     """
     load = replace(scene.payload, mass=0.0, label="")
-    return repr((load, scene.ground, scene.stance, scene.disturbances, *(id(agent) for agent in agents)))
+    limits = (scene.ground, scene.stance, scene.robot_share, scene.disturbances)
+    return repr((load, *limits, *(id(agent) for agent in agents)))

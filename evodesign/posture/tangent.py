@@ -26,10 +26,11 @@ from evodesign.posture.disturbed import postures_in_cases, with_worst
 from evodesign.posture.form import Form, symmetric_forms, whole
 from evodesign.posture.human_value import HumanValue, human_program
 from evodesign.posture.kkt import Array, Kink
-from evodesign.posture.posture import SYMMETRIC, EffortWeights, posture_program
+from evodesign.posture.posture import SYMMETRIC, posture_program
 from evodesign.posture.program import IpoptOptions, values_under
 from evodesign.posture.retold import start_from
 from evodesign.posture.sensitivity import Limit, Optimum, Sensitivity
+from evodesign.posture.sharing import EffortWeights
 from evodesign.posture.solution import AgentPosture, HeightSolution
 from evodesign.posture.split import SPLIT, robot_program
 from evodesign.statics.scene import ROBOT, SIDES, Scene

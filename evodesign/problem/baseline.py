@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from evodesign.design.policy import EFFORT_RATIO
 from evodesign.errors import InputError
 from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
@@ -30,9 +31,13 @@ def refuse_unsuited(problem: Problem) -> None:
     """Refuse a problem that the joint problem cannot tell.
 
     Raises:
-        InputError: several people or loads, or disturbances, or a density of materials.
+        InputError: several people or loads, disturbances, weights that a design would choose for itself, or a
+            density of materials.
     """
     refuse_choices(problem.space, problem.source)
+    if EFFORT_RATIO in problem.space.policy_names:
+        wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"
+        raise InputError(problem.source.path, "design.policy", wanted, f"'{EFFORT_RATIO}'")
     if len(problem.scenes) > 1:
         found = f"{len(problem.scenes)} pairs of a person and a load"
         wanted = "one person and one load in the joint problem"

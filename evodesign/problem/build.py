@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import msgspec
 
@@ -12,8 +12,9 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Limits
 from evodesign.posture.form import symmetric_forms
 from evodesign.posture.joint import JointSettings
-from evodesign.posture.posture import EffortWeights, Symmetry
+from evodesign.posture.posture import Symmetry
 from evodesign.posture.program import IpoptOptions
+from evodesign.posture.sharing import EffortWeights
 from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
@@ -24,6 +25,7 @@ from evodesign.problem.loads import payloads
 from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
+from evodesign.problem.sharing import check_policies, effort_weights, robot_share
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
@@ -126,6 +128,8 @@ def build_problem(source: ProblemSource) -> Problem:
     scenes = tuple(
         Scene(robot, human, load, ground, stance, disturbances) for human in people for load in loads
     )
+    check_policies(tables, source)
+    scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = _space(tables, source, robot.tree)
     symmetry = _symmetry(tables, source, scenes, space)
     start: dict[str, Genome] = {}
@@ -133,7 +137,7 @@ def build_problem(source: ProblemSource) -> Problem:
         name = tables.search.start
         designs = read_designs(source.files[name], name, space, robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
-    weights = EffortWeights(tables.task.effort_weights.robot, tables.task.effort_weights.human)
+    weights = effort_weights(tables)
     return Problem(
         name=tables.name,
         source=source,
@@ -215,8 +219,11 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
     parameters += density_parameters(tables, source)
+    parameters += [
+        DesignParameter(ParameterKind.POLICY, t.name, (), t.lower, t.upper) for t in tables.design.policy
+    ]
     if not parameters:
-        raise InputError(source.path, "design", "a length or density parameter", "none")
+        raise InputError(source.path, "design", "a length, density or policy parameter", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
     for parameter in parameters:

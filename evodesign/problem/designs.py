@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
+from evodesign.design.policy import POLICIES
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
@@ -16,7 +17,11 @@ from evodesign.tree.model import Tree
 
 __all__ = ["designs_text", "read_designs", "start_genomes"]
 
-TABLES = {ParameterKind.LENGTH: "length", ParameterKind.DENSITY: "density_kg_per_m3"}
+TABLES = {
+    ParameterKind.LENGTH: "length",
+    ParameterKind.DENSITY: "density_kg_per_m3",
+    ParameterKind.POLICY: "policy",
+}
 """A design's table for each kind of parameter."""
 
 
@@ -50,6 +55,8 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
                 groups = [other.split(".", 1)[1] for other in known if other.startswith(f"{kind}.")]
                 found = f"'{group}'{nearest_name(group, groups)}"
                 raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
+            if kind is ParameterKind.POLICY and not POLICIES[group].means(value):
+                raise InputError(source, f"{key}.{table}.{group}", POLICIES[group].wanted, f"{value:g}")
             refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value
     for group, material in entry.material.items():

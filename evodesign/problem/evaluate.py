@@ -13,6 +13,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem, common_reach
+from evodesign.posture.sharing import shared_scene
 from evodesign.posture.shelf import Shelf
 from evodesign.posture.solution import AgentPosture, Array, HeightSolution
 from evodesign.problem.build import Problem
@@ -66,10 +67,11 @@ class Evaluator:
         """Reach and postures of a design given as one number per parameter."""
         problem = self.problem
         tree = problem.space.resized(problem.scene.robot.tree, values)
+        scenes = [shared_scene(scene, problem.space, values) for scene in problem.scenes]
         check = Checker(problem.scene, tree, self._people[id(problem.scene.human)])
         reach = common_reach([reach.solve(values) for reach in self._reaches.values()])
         heights: list[HeightSolution] = []
-        for number, scene in enumerate(problem.scenes):
+        for number, scene in enumerate(scenes):
             checker = check.elsewhere(scene, self._people[id(scene.human)])
             alike = {h.height: h.postures for h in heights if h.solved and self._same_load(h.scene, number)}
             for height in problem.heights:

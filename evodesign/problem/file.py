@@ -30,6 +30,7 @@ __all__ = [
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
+Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Point = tuple[float, float, float]
 Name = Annotated[str, Meta(min_length=1)]
 T = TypeVar("T")
@@ -119,13 +120,17 @@ class GraspsTable(Table, frozen=True):
 
 
 class PayloadTable(Table, frozen=True):
-    """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height."""
+    """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height.
+
+    `hand_moment_n_m` bounds each component of the moment that a rigid hand passes.
+    """
 
     size_m: tuple[Positive, Positive, Positive]
     mass_kg: Positive
     name: Name | None = None
     center_of_mass_m: Point = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
+    hand_moment_n_m: NotNegative | None = None
     robot_grasps_m: GraspsTable | None = None
     human_grasps_m: GraspsTable | None = None
 
@@ -138,10 +143,14 @@ class WeightsTable(Table, frozen=True):
 
 
 class TaskTable(Table, frozen=True):
-    """`[task]`: the heights at which the load must be held."""
+    """`[task]`: the heights at which the load must be held, and how robot and person divide the work.
+
+    `robot_share` is the part of the load's weight that the robot carries; left out: whatever strains least.
+    """
 
     heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)]
-    effort_weights: WeightsTable = WeightsTable()
+    effort_weights: WeightsTable | None = None
+    robot_share: Share | None = None
     disturbed_effort: OverCases = OverCases.WORST
 
 
@@ -201,11 +210,20 @@ class MaterialTable(Table, frozen=True):
     source: Name
 
 
+class PolicyTable(Table, frozen=True):
+    """`[[design.policy]]`: how a design divides the work; see `design.policy` for the names."""
+
+    name: Name
+    lower: float
+    upper: float
+
+
 class DesignTable(Table, frozen=True):
     """`[design]`: what may change."""
 
     length: tuple[LengthTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
+    policy: tuple[PolicyTable, ...] = ()
 
 
 class ObjectivesTable(Table, frozen=True):
@@ -317,6 +335,7 @@ class DesignEntry(Table, frozen=True):
     name: Name
     length: dict[str, Positive] = {}
     density_kg_per_m3: dict[str, Positive] = {}
+    policy: dict[str, float] = {}
     material: dict[str, Name] = {}
 
 

@@ -8,8 +8,9 @@ from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.posture.enforced import Enforced
 from evodesign.posture.joint import JointSettings
-from evodesign.posture.posture import EffortWeights, Symmetry
+from evodesign.posture.posture import Symmetry
 from evodesign.posture.program import IpoptOptions
+from evodesign.posture.sharing import EffortWeights
 from evodesign.posture.tasks import Tasks, TaskWeights
 from evodesign.problem.file import ProblemFile
 from evodesign.records import Genome, ProblemSource

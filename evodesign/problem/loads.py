@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from evodesign.errors import InputError
 from evodesign.problem.file import PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Payload
+from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 
 __all__ = ["payloads"]
 
@@ -16,7 +17,7 @@ def payloads(tables: ProblemFile, source: ProblemSource) -> tuple[Payload, ...]:
     """The loads of the `payload` tables; where there are several, each has a label of its own.
 
     Raises:
-        InputError: a centre of mass outside the box, or two loads of one name.
+        InputError: a centre of mass outside the box, a moment of point grasps, or two loads of one name.
     """
     loads = [_payload(key, table, source) for key, table in tables.loads.items()]
     if len(loads) == 1:
@@ -41,4 +42,15 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
         if grasps is not None
         for side in SIDES
     }
-    return Payload(table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, points)
+    moment = _hand_moment(key, table, source)
+    return Payload(table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, moment, points)
+
+
+def _hand_moment(key: str, table: PayloadTable, source: ProblemSource) -> float:
+    """What a rigid hand can bear [N m]; without a bound, infinite."""
+    if table.hand_moment_n_m is None:
+        return math.inf
+    if table.grasp is Grasp.POINT:
+        found = f"{table.hand_moment_n_m:g} for point grasps, which pass no moment"
+        raise InputError(source.path, f"{key}.hand_moment_n_m", "grasp = 'rigid' with it", found)
+    return table.hand_moment_n_m

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from evodesign.errors import InputError, RunError
-from evodesign.pool.base import Pool
+from evodesign.pool.base import Limits, Pool
 from evodesign.posture.cache import Cache
 from evodesign.posture.preparation import Preparation
 from evodesign.posture.prepare import Piece, Setting, key_of, stages, with_piece, work_out
@@ -95,6 +95,10 @@ def _worked_out(
     return {piece: contents[piece] for piece in missing}
 
 
+LIMITS = Limits(seconds=3600.0)
+"""What a piece may cost: seeds are thousands of solves, and rigid grasps or a busy machine make them long."""
+
+
 @dataclass(frozen=True, slots=True)
 class _PieceFactory:
     """Builds, in whichever process it is called, the function from a piece to its content."""
@@ -102,6 +106,11 @@ class _PieceFactory:
     name: str
     source: ProblemSource = field(compare=False)
     known: Preparation = field(compare=False)
+
+    @property
+    def limits(self) -> Limits:
+        """Those of a piece."""
+        return LIMITS
 
     def __call__(self) -> Callable[[Piece], bytes]:
         setting = setting_of(build_problem(self.source))

@@ -51,6 +51,16 @@ class Cast:
         trees = {ROBOT: robot_tree, HUMAN: scene.human.tree}
         return cls((scene.robot, scene.human), trees, scene.payload)
 
+    @property
+    def label(self) -> str:
+        """Who holds what, where there are several people or loads."""
+        labels = (self.agent(HUMAN).label, self.payload.label)
+        return ", ".join(label for label in labels if label)
+
+    def agent(self, name: str) -> Agent:
+        """The agent of a name."""
+        return next(agent for agent in self.agents if agent.name == name)
+
 
 @dataclass(frozen=True, slots=True)
 class ContactWrench:

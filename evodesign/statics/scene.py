@@ -42,6 +42,7 @@ class Payload:
         mass: [kg].
         center_of_mass: from the box's centre, in its frame [m].
         grasp: what every hand can pass to the load.
+        hand_moment: largest size of each component of the moment that a rigid hand passes [N m].
         grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
             it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
         label: what it is called where a problem has several loads.
@@ -51,6 +52,7 @@ class Payload:
     mass: float
     center_of_mass: Vector = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
+    hand_moment: float = math.inf
     grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
     label: str = ""
 
@@ -144,7 +146,17 @@ class Agent:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Robot, person and load, the limits under which they stand, and what they must bear besides."""
+    """Robot, person and load, and the limits under which they stand.
+
+    Args:
+        robot, human: the agents.
+        payload: the load.
+        ground: under all feet.
+        stance: limits of postures.
+        disturbances: what they must bear besides.
+        robot_share: part of what the hands carry that the robot carries, disturbed or not; None where statics
+            or the posture problem decides.
+    """
 
     robot: Agent
     human: Agent
@@ -152,6 +164,7 @@ class Scene:
     ground: Ground = field(default_factory=Ground)
     stance: StanceLimits = field(default_factory=StanceLimits)
     disturbances: Disturbances = field(default_factory=Disturbances)
+    robot_share: float | None = None
 
     @property
     def label(self) -> str:

@@ -55,6 +55,21 @@ def test_several_heights_are_one_cause() -> None:
     )
 
 
+def test_a_cause_names_a_height_once_and_with_whom_it_failed() -> None:
+    def case(human: str, status: Status) -> HeightOutcome:
+        return msgspec.structs.replace(height(1.2, status), human_name=human, payload_name="5 kg")
+
+    def cause(*statuses: Status) -> str:
+        cases = [case(human, status) for human, status in zip("abc", statuses, strict=True)]
+        worst = next(status for status in statuses if status is not Status.SOLVED)
+        return causes_of_infeasibility([failed(0, worst, LOW, *cases)])[0].cause
+
+    lost, solved = Status.NUMERICAL_FAILURE, Status.SOLVED
+    assert cause(lost, lost, lost) == f"{lost} at 1.2 m"
+    assert cause(solved, lost, solved) == f"{lost} at 1.2 m with b, 5 kg"
+    assert cause(lost, solved, lost) == f"{lost} at 1.2 m with 2 pairs of person and load"
+
+
 def test_feasible_designs_do_not_fail() -> None:
     evaluations = toy_evaluations(toy_header(), 40)
     found = causes_of_infeasibility(evaluations)

@@ -74,6 +74,8 @@ def crowd(percentiles: str, sex: str = "both") -> str:
         ),
         (PROBLEM, '"reach_height"', '"reach_hight"', ["objectives.maximise[0]", "did you mean"]),
         (PROBLEM, "icub_shapes.urdf", "icub.urdf", ["robot.urdf", "an existing file"]),
+        (PROBLEM, "[task]", "[task]\nrobot_share = 0.7", ["task.robot_share", "point grasps", "0.5", "0.7"]),
+        (PROBLEM, "[task]", "[task]\nrobot_share = 1.7", ["task.robot_share", "<= 1.0", "1.7"]),
         (PROBLEM, 'name = "icub-lifting"', "", ["name", "this key", "nothing"]),
         (
             PROBLEM,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from io import StringIO
 
+from msgspec import structs
 from rich.console import Console
+from rich.table import Table
 
-from evodesign.cli.height_table import heights_table
+from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.records import Assessment, HeightOutcome, Status
 
 
@@ -24,21 +27,35 @@ def outcome(human: str = "", payload: str = "") -> HeightOutcome:
     )
 
 
-def printed(*heights: HeightOutcome) -> str:
+def printed(table: Callable[[Assessment, str], Table], *heights: HeightOutcome) -> str:
     assessment = Assessment(
         design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", heights=heights
     )
     out = StringIO()
-    Console(file=out, width=110).print(heights_table(assessment, ""))
+    Console(file=out, width=110).print(table(assessment, ""))
     return out.getvalue()
 
 
 def test_who_holds_what_is_named_where_there_are_several() -> None:
-    text = printed(outcome("male P5", "5 kg"), outcome("[red]tall"))
-    assert "person, load" in text
-    assert "│ male P5, 5 kg │" in text
-    assert "│ [red]tall" in text
+    text = printed(cases_table, outcome("male P5", "5 kg"), outcome("[red]tall"))
+    assert "person" in text
+    assert "│ male P5   │ 5 kg │" in text
+    assert "│ [red]tall │" in text
 
 
 def test_one_person_with_one_load_needs_no_name() -> None:
-    assert "person, load" not in printed(outcome())
+    assert "person" not in printed(heights_table, outcome())
+
+
+def test_torques_under_disturbances_stand_below_their_case_and_count_in_the_summary() -> None:
+    pushed = structs.replace(outcome("tall", "5 kg"), disturbed={"push": {"robot": 4.0, "human": 8.0}})
+    short = outcome("short", "5 kg")
+    text = printed(cases_table, pushed, short)
+    assert [line.split() for line in text.splitlines() if "under 'push'" in line] == [
+        ["│", "│", "│", "│", "4", "│", "8", "│", "│", "under", "'push'", "│"]
+    ]
+    summary = printed(summary_table, pushed, short)
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in summary.splitlines()]
+    assert ["all", "2 of 2", "2", "4", "4", "8"] in rows
+    assert ["tall", "1 of 1", "2.5", "4", "5", "8"] in rows
+    assert ["short", "1 of 1", "1", "1", "2", "2"] in rows

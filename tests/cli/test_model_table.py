@@ -7,9 +7,13 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Sphere
 from evodesign.cli.model_table import model_json, model_tables
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import ProblemSource
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import Tree
 from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
 
 
@@ -40,6 +44,15 @@ def test_every_link_has_its_kind_solids_and_mass(small: Problem) -> None:
     assert (links["claw"]["axis"], links["claw"]["density_kg_per_m3"]) == (None, None)
 
 
+def stature(person: Tree) -> float:
+    """From the sole to the top of the head's sphere, standing with all joints at zero."""
+    frames = link_frames(person, Placement(), {})
+    (look,) = person.link_by_name["Head"].looks
+    assert isinstance(look.shape, Sphere)
+    top = frames["Head"].apply(look.link_from_look.translation)[2] + look.shape.radius
+    return float(top - frames["LeftSole"].translation[2])
+
+
 def test_everyone_of_a_population_is_listed(problem: Problem) -> None:
     person = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
     crowd = 'population = { sex = "both", percentiles = [5, 95] }'
@@ -49,10 +62,36 @@ def test_everyone_of_a_population_is_listed(problem: Problem) -> None:
     assert "who" not in robot
     assert [one["who"] for one in people] == ["female P5", "female P95", "male P5", "male P95"]
     assert [one["mass_kg"] for one in people] == pytest.approx([50.7, 119.2, 60.9, 131.8])
-    out = StringIO()
-    Console(file=out, width=110).print(model_tables(several)[0])
-    assert "human male P95" in out.getvalue()
+    assert [one["sex"] for one in people] == ["female", "female", "male", "male"]
+    for one in people:
+        tree = next(each.human.tree for each in several.scenes if each.human.label == one["who"])
+        assert one["stature_m"] == pytest.approx(stature(tree))
+    for width in (80, 110):
+        out = StringIO()
+        Console(file=out, width=width).print(model_tables(several)[0])
+        assert "│ human │ male P95" in out.getvalue()
+        assert max(map(len, out.getvalue().splitlines())) <= width
     assert "who" not in model_json(problem)["agents"][1]
+
+
+def test_every_load_is_listed(problem: Problem) -> None:
+    source = problem.source
+    one = "[payload]\nsize_m = [0.5, 0.5, 0.025]\nmass_kg = 5.0\n"
+    assert one in source.text
+    box = '[[payload]]\nname = "[box]"\nsize_m = [0.4, 0.3, 0.2]\nmass_kg = 12\n'
+    two = one.replace("[payload]", "[[payload]]") + box
+    several = build_problem(ProblemSource(source.path, source.text.replace(one, two), source.files))
+    told = model_json(several)
+    assert "payload" not in told
+    assert told["payloads"] == [
+        {"payload_name": "5 kg", "size_m": [0.5, 0.5, 0.025], "mass_kg": 5.0},
+        {"payload_name": "[box]", "size_m": [0.4, 0.3, 0.2], "mass_kg": 12.0},
+    ]
+    out = StringIO()
+    Console(file=out, width=110).print(model_tables(several)[1])
+    assert "│ 5 kg, 0.5 x 0.5 x 0.025 m" in out.getvalue()
+    assert "│ [box]: 12 kg, 0.4 x 0.3 x 0.2 m" in out.getvalue()
+    assert "payloads" not in model_json(problem)
 
 
 def test_a_density_parameter_does_not_grow(small: Problem) -> None:

@@ -16,8 +16,9 @@ from evodesign.posture.enforced import Enforced
 from evodesign.posture.form import symmetric_forms, whole
 from evodesign.posture.joint import JointProblem, JointSettings, JointSolution
 from evodesign.posture.joint_start import drawn_postures, standard_postures
-from evodesign.posture.posture import EffortWeights, PostureProblem, Symmetry
+from evodesign.posture.posture import PostureProblem, Symmetry
 from evodesign.posture.program import IpoptOptions
+from evodesign.posture.sharing import EffortWeights
 from evodesign.posture.tasks import Tasks, TaskWeights, density_task, mass_height_task
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.published import broken_limits, torque_difference

@@ -6,6 +6,7 @@ import numpy as np
 
 from evodesign.problem.build import Problem
 from evodesign.records import AgentDetail, Detail, HeightDetail
+from evodesign.report.company import Company
 from evodesign.report.stage import Cast, Stage, stage_of
 from evodesign.statics.scene import SIDES, Agent
 
@@ -15,16 +16,26 @@ def random_values(problem: Problem, seed: int) -> tuple[float, ...]:
     return problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters)).tolist()))
 
 
+def random_company(problem: Problem, seed: int) -> Company:
+    return Company.of(
+        problem.scenes, problem.space.resized(problem.scene.robot.tree, random_values(problem, seed))
+    )
+
+
 def random_cast(problem: Problem, seed: int) -> Cast:
-    tree = problem.space.resized(problem.scene.robot.tree, random_values(problem, seed))
-    return Cast.of(problem.scene, tree)
+    return random_company(problem, seed).casts[0]
 
 
 def random_detail(problem: Problem, seed: int, heights: tuple[float, ...] = (0.8, 1.0, 1.2)) -> Detail:
     rng = np.random.default_rng(seed)
-    agents = (problem.scene.robot, problem.scene.human)
     shown = tuple(
-        HeightDetail(height_m=height, agents={agent.name: random_posture(agent, rng) for agent in agents})
+        HeightDetail(
+            height_m=height,
+            agents={agent.name: random_posture(agent, rng) for agent in (scene.robot, scene.human)},
+            human_name=scene.human.label,
+            payload_name=scene.payload.label,
+        )
+        for scene in problem.scenes
         for height in heights
     )
     return Detail(evaluation=0, heights=shown)

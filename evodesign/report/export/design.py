@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 
 from evodesign.records import Evaluation, HeightDetail, RunHeader, materials_of
-from evodesign.report.stage import Cast
+from evodesign.report.company import Company
+from evodesign.tree.model import Tree
 
 __all__ = ["ExportedDesign", "design_json"]
 
@@ -21,15 +22,26 @@ class ExportedDesign:
         run: name of the run, for people.
         header: of the run.
         evaluation: the design.
-        cast: robot of the design, person and load.
-        heights: postures at the heights that were solved, in the problem's order.
+        company: robot of the design, people and loads.
+        heights: postures of the cases that were solved, in the problem's order.
     """
 
     run: str
     header: RunHeader
     evaluation: Evaluation
-    cast: Cast
+    company: Company
     heights: tuple[HeightDetail, ...]
+
+    @property
+    def people(self) -> dict[str, tuple[str, Tree]]:
+        """By file name: each person's label and tree. Several people are numbered, whatever their labels."""
+        people = self.company.people
+        if len(people) == 1:
+            ((person, tree),) = people
+            return {"human.urdf": (person.label, tree)}
+        return {
+            f"human_{number}.urdf": (person.label, tree) for number, (person, tree) in enumerate(people, 1)
+        }
 
 
 def design_json(

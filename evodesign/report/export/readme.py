@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+from evodesign.analysis.cases import named_people_or_loads
 from evodesign.errors import on_one_line
 from evodesign.records import Objective, materials_of
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
+from evodesign.report.replay.times import SECONDS_PER_CASE, timed
 
 __all__ = ["FILES", "readme_text"]
 
@@ -41,6 +43,9 @@ Panels for the recording. In Foxglove or Lichtblick: the layout menu, "Import fr
 }
 """What each file is."""
 
+HEIGHTS_AS_TIME: Final = "heights as time: ten seconds per metre, so a load at 1.2 m is at 12 s"
+CASES_AS_TIME: Final = f"one case after the other, {SECONDS_PER_CASE} seconds each"
+
 FRAMES: Final = """\
 SI units throughout. World: origin on the ground under the load, x from the robot towards the person, z up. An
 agent's own frame is the world turned about z so that it looks along +x at the load. Roll, pitch and yaw are
@@ -61,16 +66,50 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
     materials = materials_of(design.header.parameters, evaluation.assessment.design)
     made_of = (f"- {_code(name)}: {_code(material)}" for name, material in materials.items())
     missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
+    texts = _texts(design)
     parts = [
         f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
         f"From the run {_code(design.run)}, generation {evaluation.generation}; {_outcome(design)}.",
         "\n".join((*objectives, *made_of)),
         "## Files",
-        "\n".join((*(f"- `{name}`: {_indented(FILES[name])}" for name in files), *missing)),
+        "\n".join((*(f"- `{name}`: {_indented(texts[name])}" for name in files), *missing)),
+        *_cases(design),
         "## Frames and units",
         FRAMES + _scales(),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _texts(design: ExportedDesign) -> dict[str, str]:
+    """What each file is, also where there are several people or loads."""
+    texts = dict(FILES)
+    if len(design.people) > 1:
+        for name, (label, _) in design.people.items():
+            texts[name] = f"The person {_code(label)}, for kinematics and viewing."
+    if named_people_or_loads(design.heights):
+        texts["robot.xml"] = FILES["robot.xml"].replace("per load height", "per case")
+        replay = FILES["replay.mcap"].replace(HEIGHTS_AS_TIME, CASES_AS_TIME)
+        texts["replay.mcap"] = replay.replace("both URDF files", "all URDF files")
+    return texts
+
+
+def _cases(design: ExportedDesign) -> tuple[str, ...]:
+    """The cases that were solved with their times in the recording, of several people or loads."""
+    if not named_people_or_loads(design.heights):
+        return ()
+    files = {label: name for name, (label, _) in design.people.items()}
+    rows = [
+        f"| {time / 1e9:g} s | {_cell(each.human_name)} | `{files[each.human_name]}` "
+        f"| {_cell(each.payload_name)} | {each.height_m:g} m |"
+        for time, each in timed(design.heights)
+    ]
+    heads = ("| time in the recording | person | file | load | height |", "|---|---|---|---|---|")
+    return ("## Cases", "\n".join((*heads, *rows)))
+
+
+def _cell(name: str) -> str:
+    """A name in a table; a dash where there is only one."""
+    return _code(name).replace("|", "\\|") if name else "-"
 
 
 def _scales() -> str:

@@ -1,5 +1,7 @@
 """Postures and wrenches as CSV: one row per number, or per wrench, as the log has them.
 
+Where a problem has several people or loads, columns `human` and `payload` with their names come first.
+
 Numbers are written with as many digits as read back to the same double.
 """
 
@@ -9,7 +11,9 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
 
+from evodesign.analysis.cases import named_people_or_loads
 from evodesign.records import HeightDetail
+from evodesign.report.company import Company
 from evodesign.report.stage import Cast
 from evodesign.statics.scene import SIDES, Agent
 from evodesign.tree.model import JointKind, Tree
@@ -23,31 +27,31 @@ WRENCH_COLUMNS = (
     *("height_m", "agent", "contact", "frame"),
     *("force_x_n", "force_y_n", "force_z_n", "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"),
 )
+NAME_COLUMNS = ("human", "payload")
 BASE = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
 """Coordinates of the root link in its agent's frame."""
 
 
-def postures_csv(cast: Cast, heights: Iterable[HeightDetail]) -> str:
+def postures_csv(company: Company, heights: Sequence[HeightDetail]) -> str:
     """Base coordinates, joint positions and torques of robot and person."""
-    return _text(POSTURE_COLUMNS, _posture_rows(cast, heights))
+    return _text(POSTURE_COLUMNS, heights, [_posture_rows(company.cast_of(each), each) for each in heights])
 
 
-def wrenches_csv(cast: Cast, heights: Iterable[HeightDetail]) -> str:
+def wrenches_csv(company: Company, heights: Sequence[HeightDetail]) -> str:
     """Wrenches on hands (about the grasp point) and feet (about the sole's origin)."""
-    return _text(WRENCH_COLUMNS, _wrench_rows(cast, heights))
+    return _text(WRENCH_COLUMNS, heights, [_wrench_rows(company.cast_of(each), each) for each in heights])
 
 
-def _posture_rows(cast: Cast, heights: Iterable[HeightDetail]) -> Iterator[Row]:
-    for detail in heights:
-        for name, tree in cast.trees.items():
-            posture = detail.agents[name]
-            base = (*posture.base_position_m, *posture.base_rpy_rad)
-            for (coordinate, unit), value in zip(BASE, base, strict=True):
-                yield detail.height_m, name, "base", coordinate, value, unit, "", ""
-            for joint, position in posture.joints_rad.items():
-                kind, *units = _joint(tree, joint)
-                torque = posture.torques_n_m[joint]
-                yield detail.height_m, name, kind, joint, position, units[0], torque, units[1]
+def _posture_rows(cast: Cast, detail: HeightDetail) -> Iterator[Row]:
+    for name, tree in cast.trees.items():
+        posture = detail.agents[name]
+        base = (*posture.base_position_m, *posture.base_rpy_rad)
+        for (coordinate, unit), value in zip(BASE, base, strict=True):
+            yield detail.height_m, name, "base", coordinate, value, unit, "", ""
+        for joint, position in posture.joints_rad.items():
+            kind, *units = _joint(tree, joint)
+            torque = posture.torques_n_m[joint]
+            yield detail.height_m, name, kind, joint, position, units[0], torque, units[1]
 
 
 def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
@@ -56,10 +60,9 @@ def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
     return (kind, "m", "N") if kind is JointKind.PRISMATIC else (kind, "rad", "N m")
 
 
-def _wrench_rows(cast: Cast, heights: Iterable[HeightDetail]) -> Iterator[Row]:
-    for detail in heights:
-        for agent in cast.agents:
-            yield from _wrenches_of(agent, detail)
+def _wrench_rows(cast: Cast, detail: HeightDetail) -> Iterator[Row]:
+    for agent in cast.agents:
+        yield from _wrenches_of(agent, detail)
 
 
 def _wrenches_of(agent: Agent, detail: HeightDetail) -> Iterator[Row]:
@@ -71,9 +74,13 @@ def _wrenches_of(agent: Agent, detail: HeightDetail) -> Iterator[Row]:
         yield detail.height_m, agent.name, f"{side}_foot", agent.soles[side], *posture.foot_wrenches[side]
 
 
-def _text(columns: Sequence[str], rows: Iterable[Row]) -> str:
+def _text(columns: Row, heights: Sequence[HeightDetail], rows_of: Iterable[Iterable[Row]]) -> str:
+    """The rows of each case under their columns, with names of people and loads where they are needed."""
+    named = named_people_or_loads(heights)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(rows)
+    writer.writerow((*NAME_COLUMNS, *columns) if named else columns)
+    for detail, rows in zip(heights, rows_of, strict=True):
+        names = (detail.human_name, detail.payload_name) if named else ()
+        writer.writerows((*names, *row) for row in rows)
     return stream.getvalue()

@@ -1,5 +1,7 @@
 """Postures side by side, one panel per height: robot, person, load, and the contact forces as arrows.
 
+Several people or loads have a row of panels each.
+
 Faces are painted from far to near, shaded by their slope to a light above the camera's left shoulder. Ground
 forces begin at the centre of pressure and are orange as in the paper, hand forces are violet; the two have
 scales of their own, equal in all panels.
@@ -34,6 +36,9 @@ FLOOR = ((-1.05, -0.55), (1.05, -0.55), (1.05, 0.55), (-1.05, 0.55))
 PANEL = 3.1
 """Width of a panel [inches]."""
 
+BETWEEN = 0.4
+"""Room above each of several rows [inches]."""
+
 HEAD = "-|>,head_width=0.22,head_length=0.45"
 
 COLORS = {True: GROUND_FORCE, False: HAND_FORCE}
@@ -50,24 +55,44 @@ def posture_figure(stages: Sequence[Stage], title: str, camera: Camera | None = 
     """
     view = camera or Camera()
     low, high = _limits(stages, view)
-    panels, (across, up) = max(len(stages), 1), high - low
-    figure = new_figure(max(PANEL * panels, 4.2), PANEL * up / across + 1.1, title)
-    axes = figure.subplots(1, panels, squeeze=False)[0]
+    rows, (across, up) = _rows(stages), high - low
+    panels = max(len(rows[0]), 1)
+    row = PANEL * up / across + (BETWEEN if len(rows) > 1 else 0.0)
+    figure = new_figure(max(PANEL * panels, 4.2), row * len(rows) + 1.1, title)
+    axes = figure.subplots(len(rows), panels, squeeze=False)
     longest = {by_ground: _longest(stages, by_ground) for by_ground in COLORS}
-    for panel, stage in zip(axes, stages, strict=False):
-        _paint(panel, stage, view)
-        for wrench in stage.wrenches:
-            if longest[wrench.by_ground]:
-                _arrow(panel, wrench, view, LONGEST / longest[wrench.by_ground])
-        panel.set_title(f"load at {stage.height:g} m", fontsize=10, color=INK)
-    for panel in axes:
+    for of_row, in_row in zip(axes, rows, strict=True):
+        for panel, stage in zip(of_row, in_row, strict=False):
+            if stage is None:
+                continue
+            _paint(panel, stage, view)
+            for wrench in stage.wrenches:
+                if longest[wrench.by_ground]:
+                    _arrow(panel, wrench, view, LONGEST / longest[wrench.by_ground])
+            panel.set_title(_heading(stage), fontsize=10, color=INK, parse_math=False)
+    for panel in axes.flat:
         panel.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         panel.set_axis_off()
     if stages:
-        _key(figure, axes[0], longest)
+        _key(figure, axes[0][0], longest)
     else:
-        axes[0].text(0.5, 0.5, "no posture", ha="center", color=INK, transform=axes[0].transAxes)
+        axes[0][0].text(0.5, 0.5, "no posture", ha="center", color=INK, transform=axes[0][0].transAxes)
     return figure
+
+
+def _rows(stages: Sequence[Stage]) -> list[list[Stage | None]]:
+    """The stages of each person and load, at the same place those of a height; at least one row."""
+    pairs = [*dict.fromkeys(stage.cast.label for stage in stages)]
+    if len(pairs) < 2:
+        return [[*stages]]
+    heights = sorted({stage.height for stage in stages})
+    found = {(stage.cast.label, stage.height): stage for stage in stages}
+    return [[found.get((pair, height)) for height in heights] for pair in pairs]
+
+
+def _heading(stage: Stage) -> str:
+    height = f"load at {stage.height:g} m"
+    return f"{stage.cast.label}\n{height}" if stage.cast.label else height
 
 
 def _paint(axes: Axes, stage: Stage, view: Camera) -> None:

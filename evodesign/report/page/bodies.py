@@ -1,4 +1,4 @@
-"""Robot, person and load as the page's scripts draw them.
+"""Robot, people and loads as the page's scripts draw them.
 
 The page gets the trees and the logged joint positions; it computes the link poses itself, by the same
 formula as `tree.kinematics`. A design's robot is told by what differs from the unscaled one.
@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.problem.build import Problem
-from evodesign.report.page.content import Bodies, JointBody, LinkBody, ShapeBody, TreeBody
+from evodesign.report.page.content import Bodies, JointBody, LinkBody, LoadBody, ShapeBody, TreeBody
 from evodesign.statics.scene import Agent
 from evodesign.tree.model import Joint, Link, Tree
 
@@ -19,14 +19,19 @@ __all__ = ["agent_body", "bodies", "changes"]
 
 
 def bodies(problem: Problem) -> Bodies:
-    """Everything that stands in the problem's scene, the robot unscaled."""
-    scene = problem.scene
-    position = _positions(scene.robot.tree)
+    """Everything that stands in the problem's scenes, the robot unscaled."""
+    robot = problem.scene.robot
+    people = {scene.human.label: scene.human for scene in problem.scenes}
+    payloads = {scene.payload.label: scene.payload for scene in problem.scenes}
+    position = _positions(robot.tree)
     changing = {position[name] for parameter in problem.space.parameters for name in parameter.links}
     return Bodies(
-        agents={agent.name: agent_body(agent) for agent in (scene.robot, scene.human)},
-        payload_size_m=scene.payload.size,
-        payload_mass_kg=scene.payload.mass,
+        robot=agent_body(robot),
+        people={name: agent_body(person) for name, person in people.items()},
+        payloads={
+            name: LoadBody(size_m=_three(load.size), mass_kg=float(load.mass))
+            for name, load in payloads.items()
+        },
         changing=tuple(sorted(changing)),
     )
 

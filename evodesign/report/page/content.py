@@ -17,6 +17,7 @@ __all__ = [
     "Facts",
     "JointBody",
     "LinkBody",
+    "LoadBody",
     "Mark",
     "Points",
     "ShapeBody",
@@ -127,17 +128,25 @@ class TreeBody(Part, frozen=True):
     soles: dict[str, int]
 
 
+class LoadBody(Part, frozen=True):
+    """A load; its size is depth (robot to person), width, height."""
+
+    size_m: tuple[float, ...]
+    mass_kg: float
+
+
 class Bodies(Part, frozen=True):
-    """Both agents by name, the load, and which robot links some parameter changes.
+    """The robot, people and loads by name, and which robot links some parameter changes.
 
     Attributes:
-        payload_size_m: depth (robot to person), width, height.
+        people: by the name that the log gives them, which is empty where there is one.
+        payloads: likewise.
         changing: indices of robot links.
     """
 
-    agents: dict[str, TreeBody]
-    payload_size_m: tuple[float, ...]
-    payload_mass_kg: float
+    robot: TreeBody
+    people: dict[str, TreeBody]
+    payloads: dict[str, LoadBody]
     changing: tuple[int, ...]
 
 
@@ -145,8 +154,8 @@ class Design(Part, frozen=True):
     """A design that can be opened.
 
     Attributes:
-        heights: how each height ended.
-        postures: one per solved height; empty when the log or the page's limit leaves them out.
+        heights: how each case ended.
+        postures: one per solved case; empty when the log or the page's limit leaves them out.
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
     """
@@ -159,11 +168,13 @@ class Design(Part, frozen=True):
 
 
 class Content(Part, frozen=True):
-    """The whole page."""
+    """The whole page; people and loads have an empty name where there is one of them."""
 
     facts: Facts
     objectives: tuple[Objective, ...]
     parameters: tuple[Parameter, ...]
+    people: tuple[str, ...]
+    payloads: tuple[str, ...]
     heights_m: tuple[float, ...]
     points: Points
     marks: tuple[Mark, ...]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
+from evodesign.analysis.cases import pair_name
 from evodesign.analysis.front import front
 from evodesign.analysis.infeasible import causes_of_infeasibility
 from evodesign.errors import EvodesignError
 from evodesign.problem.build import Problem, build_problem
-from evodesign.records import Detail, Evaluation
+from evodesign.records import Detail, Evaluation, HeightOutcome
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
 from evodesign.report.page.content import Cause, Content, Design, Facts, Mark
@@ -41,6 +42,8 @@ def page_content(run: Run, asked: Collection[int] = ()) -> Content:
         facts=_facts(run, len(best)),
         objectives=run.header.objectives,
         parameters=run.header.parameters,
+        people=_names(run, _human_name),
+        payloads=_names(run, _payload_name),
         heights_m=_heights(run, problem),
         points=points(run.header, shown, on_front),
         marks=marked,
@@ -98,6 +101,20 @@ def _heights(run: Run, problem: Problem | None) -> tuple[float, ...]:
     return tuple(sorted({height.height_m for each in run.evaluations for height in each.assessment.heights}))
 
 
+def _names(run: Run, name_of: Callable[[HeightOutcome], str]) -> tuple[str, ...]:
+    """Who or what is named in the cases of the run, in their order; one empty name where nobody is."""
+    cases = (case for evaluation in run.evaluations for case in evaluation.assessment.heights)
+    return tuple(dict.fromkeys(map(name_of, cases))) or ("",)
+
+
+def _human_name(case: HeightOutcome) -> str:
+    return case.human_name
+
+
+def _payload_name(case: HeightOutcome) -> str:
+    return case.payload_name
+
+
 def _thinned_note(run: Run, shown: Sequence[Evaluation]) -> tuple[str, ...]:
     if len(shown) == len(run.evaluations):
         return ()
@@ -114,7 +131,7 @@ def _opened(
     known = {detail.evaluation: detail for detail in run.details}
     first = list(dict.fromkeys(mark.number for mark in marked if mark.number in known))
     others = [e.number for e in shown if e.number in on_front and e.number in known and e.number not in first]
-    kept = thinned(others, max(0, MOST_POSTURES - len(first)))
+    kept = thinned(others, max(0, _most_designs(known.values()) - len(first)))
     opened = {number: known[number] for number in (*first, *kept)}
     if len(kept) == len(others):
         return opened, ()
@@ -122,6 +139,12 @@ def _opened(
         f"postures of {len(opened)} of {len(first) + len(others)} designs are in this page; "
         "evodesign report RUN --designs NUMBER,NUMBER puts in those that you name",
     )
+
+
+def _most_designs(details: Iterable[Detail]) -> int:
+    """How many designs have their postures in the page: fewer of many people and loads, whose pages grow."""
+    pairs = max((len({pair_name(case) for case in detail.heights}) for detail in details), default=1)
+    return MOST_POSTURES if pairs < 2 else max(MOST_POSTURES // pairs, MOST_POSTURES // 5)
 
 
 def _designs(

@@ -38,6 +38,7 @@ SCRIPTS = (
     "viewer.js",
     "steering.js",
     "scene.js",
+    "cases.js",
     "stage.js",
     "torques.js",
     "ingredients.js",

@@ -11,9 +11,12 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from evodesign.analysis.cases import named_people_or_loads
 from evodesign.records import HeightDetail
+from evodesign.report.company import Company
 from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
-from evodesign.report.stage import LOAD, Cast
+from evodesign.report.replay.times import time_scale
+from evodesign.report.stage import LOAD
 from evodesign.report.strain import most_strained
 from evodesign.statics.scene import HUMAN, ROBOT
 
@@ -54,14 +57,14 @@ GRID: Final = {
 }
 
 
-def layout_text(cast: Cast, heights: Sequence[HeightDetail]) -> str:
+def layout_text(company: Company, heights: Sequence[HeightDetail]) -> str:
     """The layout as JSON text.
 
     Args:
-        cast: who stands there.
+        company: who stands there.
         heights: postures, whose torques choose the joints that are plotted.
     """
-    panels = {SCENE: _scene(cast), **{PLOTS[name]: _plot(name, heights) for name in cast.trees}}
+    panels = {SCENE: _scene(company, heights), **{PLOTS[name]: _plot(name, heights) for name in PLOTS}}
     plots = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
     layout = {"first": SCENE, "second": plots, "direction": "row", "splitPercentage": 64}
     whole = {
@@ -74,16 +77,16 @@ def layout_text(cast: Cast, heights: Sequence[HeightDetail]) -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def _scene(cast: Cast) -> dict[str, Any]:
-    frames = [
-        LOAD,
-        *(frame_id(name, link) for name, tree in cast.trees.items() for link in tree.link_by_name),
-    ]
+def _scene(company: Company, heights: Sequence[HeightDetail]) -> dict[str, Any]:
+    trees = [(name, tree) for cast in company.casts for name, tree in cast.trees.items()]
+    links = [frame_id(name, link) for name, tree in trees for link in tree.link_by_name]
+    frames = [LOAD, *dict.fromkeys(links)]
+    letters = 1.0 if named_people_or_loads(heights) else 0.0
     return {
         "cameraState": CAMERA,
         "followMode": "follow-none",
         "followTf": WORLD,
-        "scene": {"backgroundColor": "#f4f5f6", "labelScaleFactor": 0.0},
+        "scene": {"backgroundColor": "#f4f5f6", "labelScaleFactor": letters},
         "transforms": {f"frame:{frame}": {"visible": False} for frame in (WORLD, *frames)},
         "topics": {topic: {"visible": True} for topic in TOPICS if topic.startswith("/scene/")},
         "layers": {"ground": GRID},
@@ -95,7 +98,7 @@ def _scene(cast: Cast) -> dict[str, Any]:
 def _plot(agent: str, heights: Sequence[HeightDetail]) -> dict[str, Any]:
     torques = [detail.agents[agent].torques_n_m for detail in heights]
     return {
-        "title": f"{agent}: joint torques [N m]; time [s] = 10 x height [m]",
+        "title": f"{agent}: joint torques [N m]; {_meaning_of_time(heights)}",
         "paths": [_path(agent, joint) for joint in _plotted(torques)],
         "showLegend": True,
         "legendDisplay": "floating",
@@ -106,6 +109,10 @@ def _plot(agent: str, heights: Sequence[HeightDetail]) -> dict[str, Any]:
         "xAxisVal": "timestamp",
         "sidebarDimension": 240,
     }
+
+
+def _meaning_of_time(heights: Sequence[HeightDetail]) -> str:
+    return time_scale(heights) if named_people_or_loads(heights) else "time [s] = 10 x height [m]"
 
 
 def _path(agent: str, joint: str) -> dict[str, Any]:

@@ -1,7 +1,9 @@
-"""One height as messages: transforms, scenes of robot, person, load and wrenches, and joint states.
+"""One case as messages: transforms, scenes of robot, person, load and wrenches, and joint states.
 
 Frames: `world`; `load`; `robot/LINK` and `human/LINK`, each a child of its parent link as in the tree, the
 root a child of `world`. Shapes are given in their link's frame, so that a scene stands where its frames do.
+Where a problem has several people or loads, each case first clears the person of the one before, whose links
+may be others, and its name stands above the load.
 """
 
 from __future__ import annotations
@@ -14,13 +16,15 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.JointState_pb2 import JointState
 from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
 from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
+from foxglove_schemas_protobuf.SceneEntityDeletion_pb2 import SceneEntityDeletion
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from google.protobuf.timestamp_pb2 import Timestamp
 
+from evodesign.analysis.cases import case_name, pair_name
 from evodesign.body.placement import Placement, scale
 from evodesign.body.shape import Box
 from evodesign.records import AgentDetail, HeightDetail
-from evodesign.report.replay.shapes import add_arrow, add_shape, orientation, vector
+from evodesign.report.replay.shapes import add_arrow, add_shape, add_text, orientation, vector
 from evodesign.report.stage import LOAD, Stage, looks_of
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Tree
@@ -31,6 +35,9 @@ WORLD: Final = "world"
 
 METRES_PER_NEWTON: Final = {True: 0.001, False: 0.02}
 """Length of a force's arrow: of the ground's (True) and of the load's (False), which are far smaller."""
+
+ABOVE_LOAD: Final = (0.0, 0.0, 0.25)
+"""Where a case's name stands, in the load's frame [m]."""
 
 METRES_PER_NEWTON_METRE: Final = 0.02
 """Length of a moment's arrow."""
@@ -53,22 +60,31 @@ def frame_id(agent: str, link: str) -> str:
 
 
 def messages(stage: Stage, detail: HeightDetail, nanoseconds: int) -> Iterator[tuple[str, Any]]:
-    """Topic and message of everything that is to be seen at one height.
+    """Topic and message of everything that is to be seen in one case.
 
     Args:
-        stage: of that height.
+        stage: of that case.
         detail: its postures, as logged.
         nanoseconds: time of the messages.
     """
     now = Timestamp()
     now.FromNanoseconds(nanoseconds)
+    case = pair_name(detail)
     yield "/tf", FrameTransforms(transforms=list(_transforms(stage, detail, now)))
     for name, tree in stage.cast.trees.items():
         entities = [_entity(name, tree, link, now) for link in tree.link_by_name]
-        yield f"/scene/{name}", SceneUpdate(entities=[entity for entity in entities if entity is not None])
+        yield (
+            f"/scene/{name}",
+            SceneUpdate(
+                deletions=[SceneEntityDeletion(timestamp=now, type=SceneEntityDeletion.ALL)] if case else [],
+                entities=[entity for entity in entities if entity is not None],
+            ),
+        )
         yield f"/joint_states/{name}", _joint_states(detail.agents[name], now)
     load = SceneEntity(timestamp=now, frame_id=LOAD, id=LOAD, frame_locked=True)
     add_shape(load, Box(*stage.cast.payload.size), Placement(), LOAD)
+    if case:
+        add_text(load, ABOVE_LOAD, case_name(detail))
     yield "/scene/load", SceneUpdate(entities=[load])
     yield "/scene/wrenches", SceneUpdate(entities=list(_wrenches(stage, now)))
 

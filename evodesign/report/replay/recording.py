@@ -1,4 +1,4 @@
-"""The replay as an MCAP file: heights as time, ten seconds per metre, the models attached as URDF.
+"""The replay as an MCAP file: heights or cases as time, the models attached as URDF.
 
 The last posture comes once more a second later, so that a recording of one height has a length, too.
 """
@@ -11,25 +11,20 @@ from typing import IO, Final
 from mcap.writer import CompressionType, Writer
 
 from evodesign.records import HeightDetail
+from evodesign.report.company import Company
 from evodesign.report.replay.messages import TOPICS, messages
 from evodesign.report.replay.schemas import descriptor_set
-from evodesign.report.stage import Cast, stage_of
+from evodesign.report.replay.times import timed
 
-__all__ = ["NANOSECONDS_PER_METRE", "nanoseconds_at", "write_replay"]
+__all__ = ["write_replay"]
 
-NANOSECONDS_PER_METRE: Final = 10_000_000_000
 HOLD: Final = 1_000_000_000
 """How long the last posture stays [ns]."""
 
 
-def nanoseconds_at(height: float) -> int:
-    """Time of a height's messages."""
-    return round(height * NANOSECONDS_PER_METRE)
-
-
 def write_replay(
     stream: IO[bytes],
-    cast: Cast,
+    company: Company,
     heights: Sequence[HeightDetail],
     attachments: Mapping[str, str],
     about: Mapping[str, str],
@@ -38,8 +33,8 @@ def write_replay(
 
     Args:
         stream: to an empty file.
-        cast: who stands there.
-        heights: postures, in any order.
+        company: who stands there.
+        heights: postures, in any order; of several people or loads, in that of the cases.
         attachments: URDF texts by file name.
         about: what the recording is of, kept as the metadata record `evodesign`.
     """
@@ -49,11 +44,10 @@ def write_replay(
     for name, text in attachments.items():
         writer.add_attachment(0, 0, name, "application/xml", text.encode())
     channels = _channels(writer)
-    ordered = sorted(heights, key=lambda detail: detail.height_m)
-    times = [nanoseconds_at(detail.height_m) for detail in ordered]
-    timed = [*zip(times, ordered, strict=True), *((times[-1] + HOLD, last) for last in ordered[-1:])]
-    for sequence, (time, detail) in enumerate(timed):
-        for topic, message in messages(stage_of(cast, detail), detail, time):
+    shown = timed(heights)
+    held = [(time + HOLD, last) for time, last in shown[-1:]]
+    for sequence, (time, detail) in enumerate((*shown, *held)):
+        for topic, message in messages(company.stage_of(detail), detail, time):
             writer.add_message(
                 channel_id=channels[topic],
                 log_time=time,

@@ -14,13 +14,14 @@ from foxglove_schemas_protobuf.Pose_pb2 import Pose
 from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
 from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
+from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 
 from evodesign.body.placement import Matrix, Placement, Vector, dot, scale
 from evodesign.body.quaternion import quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 
-__all__ = ["COLORS", "add_arrow", "add_shape", "orientation", "vector"]
+__all__ = ["COLORS", "add_arrow", "add_shape", "add_text", "orientation", "vector"]
 
 Rgba = tuple[float, float, float, float]
 
@@ -31,10 +32,14 @@ COLORS: Final[Mapping[str, Rgba]] = {
     "ground force": (0.88, 0.48, 0.00, 1.0),
     "hand force": (0.48, 0.18, 0.55, 1.0),
     "moment": (0.10, 0.55, 0.45, 1.0),
+    "text": (0.13, 0.15, 0.18, 1.0),
 }
 
 SHAFT, HEAD = 0.015, 0.04
 """Diameters of an arrow [m]; its head is as long as it is wide, or a third of a short arrow."""
+
+LETTERS = 0.07
+"""Height of letters [m]."""
 
 
 def vector(triple: Vector) -> Any:
@@ -77,6 +82,18 @@ def add_arrow(entity: SceneEntity, tail: Vector, way: Vector, color: str) -> Non
         color=_color(color),
     )
     entity.arrows.append(arrow)
+
+
+def add_text(entity: SceneEntity, place: Vector, text: str) -> None:
+    """Add words that face the viewer, at a point of the entity's frame."""
+    words = TextPrimitive(
+        pose=_pose(Placement(translation=place)),
+        billboard=True,
+        font_size=LETTERS,
+        color=_color("text"),
+        text=text,
+    )
+    entity.texts.append(words)
 
 
 def _towards(way: Vector) -> Matrix:

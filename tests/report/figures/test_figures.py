@@ -44,7 +44,7 @@ def test_boxes_span_the_quartiles_and_show_the_median() -> None:
 
 
 def test_joint_figure_puts_each_torque_on_its_row() -> None:
-    by_joint = {"robot": {0.8: {"knee": -3.0, "hip": 2.0}, 1.0: {"knee": 1.5, "hip": 0.0}}}
+    by_joint = {"robot": [(0.8, {"knee": -3.0, "hip": 2.0}), (1.0, {"knee": 1.5, "hip": 0.0})]}
     axes = joint_torques(by_joint, "torques").axes[0]
     assert [label.get_text() for label in axes.get_yticklabels()] == ["knee", "hip"]
     assert [cloud.get_offsets().tolist() for cloud in axes.collections] == [

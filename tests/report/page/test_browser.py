@@ -212,7 +212,7 @@ def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem,
             script = (
                 f"(() => {{ const e = window.evodesign, d = e.content.designs[{detail.evaluation}];"
                 f"const posture = d.postures[{place}].agents.{name};"
-                f"return e.linkPoses('{name}', e.treeOf('{name}', d), posture); }})()"
+                f"return e.linkPoses('{name}', e.treeOf('{name}', d, ''), posture); }})()"
             )
             check_poses(page, script, tree, height.agents[name], turn)
 

@@ -70,7 +70,7 @@ def test_masses_are_the_resized_robots(real_run: Run, content: Content, problem:
         if design.postures:
             values = list(real_run.evaluations[number].assessment.design.values())
             tree = problem.space.resized(problem.scene.robot.tree, values)
-            links = content.bodies.agents["robot"].links
+            links = content.bodies.robot.links
             masses = {link.name: design.links.get(index, link).mass_kg for index, link in enumerate(links)}
             assert masses == {link.name: float(link.inertia.mass) for link in tree.links}
 

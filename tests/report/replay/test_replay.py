@@ -21,11 +21,12 @@ from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import Problem
 from evodesign.records import Detail
+from evodesign.report.company import Company
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 from evodesign.report.replay.recording import write_replay
 from evodesign.report.stage import Cast, looks_of, stage_of
-from tests.report.stages import random_cast, random_detail
+from tests.report.stages import random_cast, random_company, random_detail
 from tests.report.test_stage import posture_of
 
 CLASSES = {
@@ -62,7 +63,9 @@ class Replay:
 def replay(problem: Problem) -> Replay:
     cast, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
     stream = io.BytesIO()
-    write_replay(stream, cast, detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"})
+    write_replay(
+        stream, Company((cast,)), detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
+    )
     content = stream.getvalue()
     messages = {}
     for schema, channel, message in make_reader(io.BytesIO(content), validate_crcs=True).iter_messages():
@@ -219,13 +222,13 @@ def test_models_are_attached_and_the_recording_says_of_what_it_is(replay: Replay
 
 def test_one_height_gives_a_recording_with_a_length(problem: Problem) -> None:
     stream = io.BytesIO()
-    write_replay(stream, random_cast(problem, 1), random_detail(problem, 1, (1.0,)).heights, {}, {})
+    write_replay(stream, random_company(problem, 1), random_detail(problem, 1, (1.0,)).heights, {}, {})
     times = {message.log_time for _, _, message in make_reader(io.BytesIO(stream.getvalue())).iter_messages()}
     assert times == {10_000_000_000, 11_000_000_000}
 
 
 def test_layout_shows_topics_frames_and_joints_that_exist(replay: Replay) -> None:
-    layout = json.loads(layout_text(replay.cast, replay.detail.heights))
+    layout = json.loads(layout_text(Company((replay.cast,)), replay.detail.heights))
     panels = layout["configById"]
     assert panels_of(layout["layout"]) == set(panels)
     scene = panels["3D!scene"]

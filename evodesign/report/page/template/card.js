@@ -76,7 +76,7 @@ const whyNoPosture = (row) => {
 
 const NOTHING_KNOWN = { heights: [], postures: [], gradients: {}, links: {}, joints: {} };
 
-// What the card shows now: how to draw it again, and how to show another height.
+// What the card shows now: how to draw it again, and how to show another height or case.
 const shown = { redraw: () => {}, height: () => {} };
 
 const titleOf = (details) => details.querySelector("summary").firstChild.textContent;
@@ -102,12 +102,14 @@ const drawWithoutPostures = (row) => {
 const drawWithPostures = (row, design) => {
   const height = heightControl(design);
   const torques = torqueSection(state.selected, design);
+  const cases = caseSection(design);
   const wrenches = element("div");
   const mass = massOf(treeOf("robot", design));
   fillCard([
     cardHead(row),
     hasWebgl ? theStage() : withoutStage(),
     height.box,
+    cases?.section,
     fold("Parameters", `${parameters.length}`, parameterTable(row)),
     torques.section,
     fold("Masses", `robot ${figure(mass)} kg`, massTable(design)),
@@ -117,8 +119,10 @@ const drawWithPostures = (row, design) => {
   torques.draw();
   const showHeight = (moving) => {
     height.show();
-    const posture = postureAt(design, content.heights_m[state.height]);
-    const missing = () => element("p", { class: "plain", text: "No posture at this height." });
+    cases?.draw();
+    const posture = postureAt(design, shownCase());
+    const missing = () =>
+      element("p", { class: "plain", text: `No posture ${severalPairs ? "in this case" : "at this height"}.` });
     wrenches.replaceChildren(posture ? wrenchTable(posture) : missing());
     if (hasWebgl) showPosture(state.selected, design, moving);
   };
@@ -142,8 +146,14 @@ const startCard = () => {
     return;
   }
   state.height = content.heights_m.length > 1 ? 1 : 0;
+  state.person = Math.floor(content.people.length / 2);
+  state.payload = Math.floor(content.payloads.length / 2);
   on("selected", drawCard);
   on("height", () => shown.height(true));
+  on("pair", () => {
+    shown.redraw();
+    shown.height(true);
+  });
   on("theme", () => {
     shown.redraw();
     shown.height(false);

@@ -56,7 +56,7 @@ const parameterTable = (row) => {
 const massOf = (tree) => tree.links.reduce((sum, link) => sum + link.mass_kg, 0);
 
 const massTable = (design) => {
-  const [tree, before] = [treeOf("robot", design), content.bodies.agents.robot];
+  const [tree, before] = [treeOf("robot", design), content.bodies.robot];
   const changing = content.bodies.changing;
   const most = Math.max(
     ...changing.map((index) => Math.max(tree.links[index].mass_kg, before.links[index].mass_kg)),

@@ -8,10 +8,10 @@
 const HALF_ROUND = [-1, 0, 0, 0, -1, 0, 0, 0, 1];
 const facing = (agent) => (agent === "human" ? HALF_ROUND : IDENTITY);
 
-// An agent's tree; the robot's with what the design changes.
-const treeOf = (agent, design) => {
-  const tree = content.bodies.agents[agent];
-  if (agent !== "robot") return tree;
+// An agent's tree: the robot's with what the design changes, or that of the person of a name.
+const treeOf = (agent, design, human) => {
+  if (agent !== "robot") return content.bodies.people[human];
+  const tree = content.bodies.robot;
   return {
     ...tree,
     links: tree.links.map((link, index) => design.links[index] ?? link),

@@ -2,8 +2,8 @@
 
 const NEWTONS_PER_METRE = 1000;
 
-// What is drawn of a posture at a load height [m].
-const sceneItems = (design, agents, height) => {
+// What is drawn of a case's posture; the load stands at a height [m].
+const sceneItems = (design, agents, at, height = at.height) => {
   const items = [];
   const solid = (mesh, rotation, position, size, tint, over = false) =>
     items.push({ mesh, model: placed(rotation, position, size), size, tint, over });
@@ -13,7 +13,7 @@ const sceneItems = (design, agents, height) => {
     human: [mixed(rgb("second"), neutral, 0.35), mixed(rgb("second"), neutral, 0.35)],
   };
   for (const [agent, posture] of Object.entries(agents)) {
-    const tree = treeOf(agent, design);
+    const tree = treeOf(agent, design, at.human);
     const poses = linkPoses(agent, tree, posture);
     tree.links.forEach((link, index) => {
       const tint = tints[agent][agent === "robot" && !content.bodies.changing.includes(index) ? 1 : 0];
@@ -56,7 +56,7 @@ const sceneItems = (design, agents, height) => {
     "box",
     IDENTITY,
     [0, 0, height],
-    content.bodies.payload_size_m,
+    content.bodies.payloads[at.payload].size_m,
     mixed(rgb("soft"), rgb("surface"), 0.15),
   );
   return items;

@@ -53,8 +53,6 @@ const withoutStage = () =>
     text: "This browser offers no WebGL, so postures are not drawn; their figures are below.",
   });
 
-const postureAt = (design, height) => design.postures.find((one) => one.height_m === height);
-
 const heightControl = (design) => {
   const last = content.heights_m.length - 1;
   const slider = element("input", {
@@ -66,20 +64,22 @@ const heightControl = (design) => {
     value: state.height,
     disabled: last === 0,
   });
+  const pair = pairControl();
   const output = element("output", { for: "height" });
   const detail = element("p", { id: "height-detail" });
   const show = () => {
-    const height = content.heights_m[state.height];
-    const outcome = design.heights.find((one) => one.height_m === height);
-    output.textContent = heightText(height);
+    const at = shownCase();
+    const outcome = outcomeAt(design, at);
+    output.textContent = heightText(at.height);
+    pair.show();
     const solved = outcome?.status === "solved";
     detail.textContent = outcome
       ? solved
         ? `Solved: robot |torque| ${exact(outcome.robot_torque_norm)} N m, person ${exact(outcome.human_torque_norm)} N m; largest residual ${figure(outcome.residual, 2)}`
         : `${capital(outcome.status)}: ${outcome.reason}`
-      : "The log holds no outcome for this height.";
+      : `The log holds no outcome for this ${severalPairs ? "case" : "height"}.`;
     slider.value = state.height;
-    slider.setAttribute("aria-valuetext", `${heightText(height)}, ${outcome?.status ?? "unknown"}`);
+    slider.setAttribute("aria-valuetext", `${heightText(at.height)}, ${outcome?.status ?? "unknown"}`);
   };
   slider.addEventListener("input", () => {
     state.height = Number(slider.value);
@@ -88,6 +88,7 @@ const heightControl = (design) => {
   const box = element(
     "div",
     { class: "height" },
+    ...[pair.box].filter(Boolean),
     element("label", { for: "height", text: "Height of the load" }),
     slider,
     output,
@@ -97,29 +98,29 @@ const heightControl = (design) => {
 };
 
 const showPosture = (number, design, moving) => {
-  const height = content.heights_m[state.height];
-  const posture = postureAt(design, height);
+  const at = shownCase();
+  const posture = postureAt(design, at);
   const missing = stageBox.querySelector(".missing");
   missing.hidden = Boolean(posture);
-  missing.textContent = posture ? "" : `No posture at ${heightText(height)}.`;
+  missing.textContent = posture ? "" : `No posture ${severalPairs ? "of" : "at"} ${caseText(at)}.`;
   stageBox
     .querySelector("canvas")
     .setAttribute(
       "aria-label",
       posture
-        ? `Design ${number} and the person holding the load at ${heightText(height)}. Arrow keys turn the view.`
+        ? `Design ${number} and the person holding the load${severalPairs ? ":" : " at"} ${caseText(at)}. Arrow keys turn the view.`
         : missing.textContent,
     );
   const from = shownScene?.number === number ? shownScene : null;
   if (!posture) {
     shownScene = null;
-    viewer.show(sceneItems(design, {}, height));
+    viewer.show(sceneItems(design, {}, at));
     return;
   }
-  const target = { number, height, agents: posture.agents };
+  const target = { number, height: at.height, agents: posture.agents };
   if (!moving || !from || stillness.matches) {
     shownScene = target;
-    viewer.show(sceneItems(design, target.agents, height));
+    viewer.show(sceneItems(design, target.agents, at));
     return;
   }
   const begun = performance.now();
@@ -134,7 +135,7 @@ const showPosture = (number, design, moving) => {
         : Object.fromEntries(
             Object.entries(target.agents).map(([name, to]) => [name, between(from.agents[name], to, share)]),
           );
-    viewer.show(sceneItems(design, agents, from.height + share * (height - from.height)));
+    viewer.show(sceneItems(design, agents, at, from.height + share * (at.height - from.height)));
     if (linear < 1) requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);

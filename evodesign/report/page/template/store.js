@@ -35,8 +35,8 @@ const decimals = Math.max(
 );
 const heightText = (height) => `${height.toFixed(decimals)} m`;
 
-const state = { selected: null, height: 0, brushes: new Map(), lasso: null };
-const listeners = { selected: [], filter: [], height: [], theme: [] };
+const state = { selected: null, person: 0, payload: 0, height: 0, brushes: new Map(), lasso: null };
+const listeners = { selected: [], filter: [], height: [], pair: [], theme: [] };
 const on = (event, listener) => listeners[event].push(listener);
 const tell = (event) => listeners[event].forEach((listener) => listener());
 

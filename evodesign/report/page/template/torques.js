@@ -1,10 +1,10 @@
-// Joint torques of a design: boxes over the joints at each height, beside the unscaled robot's (the paper's
-// figure), and every joint at every height.
+// Joint torques of a design with the person and load that are shown: boxes over the joints at each height,
+// beside the unscaled robot's (the paper's figure), and every joint at every height.
 
 const AGENT_NAMES = { robot: "Robot", human: "Person" };
 
 const torquesAt = (design, agent, height) => {
-  const posture = postureAt(design, height);
+  const posture = postureAt(design, { ...shownCase(), height });
   return posture ? posture.agents[agent].torques_n_m : null;
 };
 
@@ -111,11 +111,35 @@ const drawJoints = (place, design, agent) => {
   );
 };
 
+// Whose torques: the robot's first, then the person's.
+const agentSegments = (name, choose) =>
+  element(
+    "span",
+    { class: "segments", role: "radiogroup", "aria-label": "Whose torques" },
+    ...["robot", "human"].map((agent) =>
+      element(
+        "label",
+        {},
+        element("input", {
+          type: "radio",
+          name,
+          checked: agent === "robot",
+          onchange: () => choose(agent),
+        }),
+        AGENT_NAMES[agent],
+      ),
+    ),
+  );
+
 const torqueSection = (number, design) => {
+  let whose = "robot";
   const boxes = element("div", { class: "joint-plot", role: "img" });
   const dots = element("div", { class: "joint-plot", role: "img" });
-  const segments = element("span", { class: "segments", role: "radiogroup", "aria-label": "Whose torques" });
+  const hint = element("p", { class: "hint" });
   const draw = (agent) => {
+    whose = agent;
+    const pair = pairText(shownCase());
+    hint.textContent = `Sizes over all joints that move, one point per joint, at each height${pair ? `: ${pair}` : ""}.`;
     boxes.setAttribute(
       "aria-label",
       `Box plot of the ${AGENT_NAMES[agent].toLowerCase()}'s joint torques at each height`,
@@ -127,33 +151,15 @@ const torqueSection = (number, design) => {
     drawBoxes(boxes, number, design, agent);
     drawJoints(dots, design, agent);
   };
-  for (const agent of ["robot", "human"]) {
-    segments.append(
-      element(
-        "label",
-        {},
-        element("input", {
-          type: "radio",
-          name: "torques",
-          checked: agent === "robot",
-          onchange: () => draw(agent),
-        }),
-        AGENT_NAMES[agent],
-      ),
-    );
-  }
   const section = element(
     "details",
     { open: true },
     element("summary", { text: "Joint torques" }),
-    element("div", { class: "choices", style: "margin-top:10px" }, segments),
-    element("p", {
-      class: "hint",
-      text: "Sizes over all joints that move, one point per joint, at each height.",
-    }),
+    element("div", { class: "choices", style: "margin-top:10px" }, agentSegments("torques", draw)),
+    hint,
     boxes,
     element("p", { class: "hint", text: "Each joint with its sign, the most loaded first." }),
     dots,
   );
-  return { section, draw: () => draw("robot") };
+  return { section, draw: () => draw(whose) };
 };

@@ -1,0 +1,110 @@
+"""The page of a run with several people and loads, in a real browser."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from evodesign.problem.build import Problem
+from evodesign.report.page import page_content, page_html
+from evodesign.runlog.run import Run
+from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.tree.human import human_tree
+from tests.report.page.chromium import Tab, browser, executable
+from tests.report.page.test_browser import CANVAS, check_poses, open_page, shown_as
+from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
+
+if executable() is None and not os.environ.get("CI"):
+    pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)", allow_module_level=True)
+
+
+@pytest.fixture(scope="module")
+def run(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return write_several(problem_of_several(problem), tmp_path_factory.mktemp("several") / "run")
+
+
+@pytest.fixture(scope="module")
+def page(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+    path = run.directory / "report.html"
+    path.write_text(page_html(page_content(run)), encoding="utf-8")
+    with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
+        open_page(tab, path)
+        yield tab
+        assert tab.complaints() == []
+        assert tab.requests() == [path.as_uri()]
+
+
+def choose(tab: Tab, control: str, option: int) -> None:
+    """Choose an option as a reader does."""
+    script = f"const s = document.getElementById('{control}'); s.value = {option};"
+    tab.value(f"(() => {{ {script} s.dispatchEvent(new Event('change')); }})()")
+
+
+def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: Tab, run: Run) -> None:
+    for place, (human, _, _) in enumerate(CASES):
+        script = (
+            f"(() => {{ const e = window.evodesign, d = e.content.designs[1], posture = d.postures[{place}];"
+            "const tree = e.treeOf('human', d, posture.human_name);"
+            "return e.linkPoses('human', tree, posture.agents.human); })()"
+        )
+        posture = run.details[1].heights[place].agents[HUMAN]
+        check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi)
+
+
+def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) -> None:
+    number = page.value("window.evodesign.state.selected")
+    pictures = set()
+    for place, (human, payload, height) in enumerate(CASES):
+        choose(page, "person", [*PEOPLE].index(human))
+        choose(page, "payload", [*LOADS].index(payload))
+        slider = "document.getElementById('height')"
+        index = HEIGHTS.index(height)
+        page.value(f"(() => {{ {slider}.value = {index}; {slider}.dispatchEvent(new Event('input')); }})()")
+        detail = run.details[number].heights[place]
+        outcome = run.evaluations[number].assessment.heights[place]
+        assert outcome.robot_torque_norm is not None
+        text = page.value("document.getElementById('height-detail').textContent")
+        assert f"robot |torque| {shown_as(outcome.robot_torque_norm)} N m" in text
+        cell = "document.querySelector('[data-agent=robot] tr:nth-child(2)').children[1].textContent"
+        force = detail.agents[ROBOT].foot_wrenches["left"][0]
+        assert page.value(cell) == f"{force:.1f}".replace("-", "\u2212")
+        label = f"{human}, {payload}, {height:.1f} m"
+        page.wait_for(f"{CANVAS}.getAttribute('aria-label').includes({json.dumps(label)})")
+        pressed = "document.querySelector('.cases [aria-pressed=true]').title"
+        assert page.value(pressed) == label
+        torques = page.value("document.querySelectorAll('.joint-plot')[0].data[0].y")
+        pair = [
+            one
+            for one in run.details[number].heights
+            if (one.human_name, one.payload_name) == (human, payload)
+        ]
+        sizes = [abs(torque) for one in pair for torque in one.agents[ROBOT].torques_n_m.values()]
+        assert torques == pytest.approx(sizes)
+        pictures.add(label)
+    assert len(pictures) == len(CASES)
+
+
+def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: Run) -> None:
+    number = page.value("window.evodesign.state.selected")
+    outcomes = run.evaluations[number].assessment.heights
+    page.value("document.querySelectorAll('input[name=cases]')[1].click()")
+    shown = page.value("[...document.querySelectorAll('.cases button')].map(b => [b.title, b.textContent])")
+    for (title, text), (human, payload, height), outcome in zip(shown, CASES, outcomes, strict=True):
+        assert title == f"{human}, {payload}, {height:.1f} m"
+        assert float(text) == pytest.approx(outcome.human_torque_norm, rel=5e-3)
+    page.value("document.querySelectorAll('.cases button')[0].click()")
+    case = page.value("window.evodesign.shownCase()")
+    assert (case["human"], case["payload"], case["height"]) == CASES[0]
+    assert page.value("document.getElementById('person').value") == "0"
+
+
+def test_controls_of_people_and_loads_have_names(page: Tab) -> None:
+    for control, name in (("person", "Person"), ("payload", "Load")):
+        label = f"document.getElementById('{control}').labels[0].firstChild.textContent"
+        assert page.value(label) == name
+    options = page.value("[...document.querySelectorAll('#person option')].map(o => o.textContent)")
+    assert options == [*PEOPLE]

@@ -1,0 +1,245 @@
+"""Several people and loads, seen from outside: every case has its own person, load, numbers and name."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pandas as pd
+import pinocchio
+import pytest
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from mcap.reader import make_reader
+
+import evodesign
+from evodesign.analysis.conditions import conditions, meeting
+from evodesign.analysis.quantities import quantities
+from evodesign.cli.exporting import export_run_design
+from evodesign.cli.output import figure
+from evodesign.cli.showing import show_design
+from evodesign.posture.check import AgentModel
+from evodesign.problem.build import Problem
+from evodesign.report.figures.posture_figure import posture_figure
+from evodesign.report.page import gather, page_content
+from evodesign.runlog.run import Run
+from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.tree.human import human_tree
+from evodesign.tree.urdf_write import urdf_text
+from tests.cli.test_show_and_export import cells
+from tests.report.replay.test_replay import frames
+from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
+from tests.report.stages import random_company
+from tests.report.test_stage import posture_of
+
+
+@pytest.fixture(scope="module")
+def several(problem: Problem) -> Problem:
+    return problem_of_several(problem)
+
+
+@pytest.fixture(scope="module")
+def run(several: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return write_several(several, tmp_path_factory.mktemp("several") / "run")
+
+
+@pytest.fixture(scope="module")
+def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("export") / "design"
+    export_run_design(run.directory, 1, place, jobs=1)
+    return place
+
+
+def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    show_design(run.directory, 1, jobs=1, json=False, plot=None)
+    rows = cells(capsys.readouterr().out)
+    outcomes = run.evaluations[1].assessment.heights
+    for (human, payload, height), outcome in zip(CASES, outcomes, strict=True):
+        norms = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
+        assert [row[3:5] for row in rows if row[:3] == [human, payload, f"{height:g} m"]] == [norms]
+    table = pd.DataFrame(
+        [
+            (*case, one.robot_torque_norm, one.human_torque_norm)
+            for case, one in zip(CASES, outcomes, strict=True)
+        ],
+        columns=["human", "payload", "height", "robot", "person"],
+    )
+    groups = {
+        "all": table,
+        **{human: table[table.human == human] for human in PEOPLE},
+        **{payload: table[table.payload == payload] for payload in LOADS},
+        **{f"{height:g} m": table[table.height == height] for height in HEIGHTS},
+    }
+    for name, group in groups.items():
+        numbers = (group.robot.mean(), group.robot.max(), group.person.mean(), group.person.max())
+        expected = [name, f"{len(group)} of {len(group)}", *map(figure, numbers)]
+        assert expected in rows
+
+
+def test_card_names_the_case_in_which_a_joint_or_contact_bears_most(
+    run: Run, capsys: pytest.CaptureFixture[str]
+) -> None:
+    show_design(run.directory, 1, jobs=1, json=False, plot=None)
+    rows = cells(capsys.readouterr().out)
+    names = [f"{human}, {payload}, {height:g} m" for human, payload, height in CASES]
+    for agent in (ROBOT, HUMAN):
+        postures = [detail.agents[agent] for detail in run.details[1].heights]
+        torques = pd.DataFrame([posture.torques_n_m for posture in postures], index=names)
+        sizes = torques.abs()
+        for joint in sizes.max().sort_values(ascending=False).index[:6]:
+            case = sizes[joint].idxmax()
+            numbers = [figure(sizes[joint].mean()), figure(torques[joint][case])]
+            assert [agent, joint, *numbers, case] in rows
+        forces = [float(np.linalg.norm(posture.hand_wrenches["left"][:3])) for posture in postures]
+        numbers = [figure(float(np.mean(forces))), figure(max(forces))]
+        assert [agent, "left hand", *numbers, names[int(np.argmax(forces))]] in rows
+
+
+def test_each_persons_file_has_the_persons_stature_and_mass(folder: Path) -> None:
+    assert not (folder / "human.urdf").exists()
+    for number, (name, person) in enumerate(PEOPLE.items(), 1):
+        path = folder / f"human_{number}.urdf"
+        model = pinocchio.buildModelFromUrdf(str(path), pinocchio.JointModelFreeFlyer())
+        assert pinocchio.computeTotalMass(model) == pytest.approx(person.mass)
+        data = model.createData()
+        pinocchio.framesForwardKinematics(model, data, pinocchio.neutral(model))
+        head, sole = (data.oMf[model.getFrameId(link)].translation[2] for link in ("Head", "LeftSole"))
+        sphere = ET.parse(path).find("./link[@name='Head']//sphere")
+        assert sphere is not None
+        assert head + 2.0 * float(sphere.attrib["radius"]) - sole == pytest.approx(person.stature)
+        assert f"- `human_{number}.urdf`: The person `{name}`" in (folder / "README.md").read_text()
+
+
+def test_tables_say_who_holds_what(folder: Path, run: Run) -> None:
+    for name in ("postures.csv", "wrenches.csv"):
+        rows = list(csv.DictReader(io.StringIO((folder / name).read_text())))
+        assert list(rows[0])[:3] == ["human", "payload", "height_m"]
+        found = dict.fromkeys((row["human"], row["payload"], float(row["height_m"])) for row in rows)
+        assert [*found] == CASES
+    table = pd.DataFrame(csv.DictReader(io.StringIO((folder / "postures.csv").read_text())))
+    for (human, payload, height), detail in zip(CASES, run.details[1].heights, strict=True):
+        own = table[(table.human == human) & (table.payload == payload) & (table.height_m == f"{height}")]
+        joints = own[(own.agent == HUMAN) & (own.kind != "base")]
+        told = {name: float(torque) for name, torque in zip(joints.name, joints.torque, strict=True)}
+        assert told == detail.agents[HUMAN].torques_n_m
+
+
+def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
+    model = mujoco.MjModel.from_xml_path(str(folder / "robot.xml"))
+    data = mujoco.MjData(model)
+    assert model.nkey == len(CASES)
+    for (human, payload, height), detail in zip(CASES, run.details[1].heights, strict=True):
+        key = model.key(f"{human}, {payload}, load at {height:g} m")
+        mujoco.mj_resetDataKeyframe(model, data, key.id)
+        for joint, position in detail.agents[ROBOT].joints_rad.items():
+            assert data.joint(joint).qpos[0] == position
+
+
+def test_recording_shows_each_case_with_its_own_person_and_load(
+    folder: Path, run: Run, several: Problem
+) -> None:
+    """Link frames are held against pinocchio with persons that are generated anew."""
+    readme = (folder / "README.md").read_text()
+    seen = {}
+    with (folder / "replay.mcap").open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        attached = {each.name: each.data for each in reader.iter_attachments()}
+        for _, channel, message in reader.iter_messages():
+            kind = {"/tf": FrameTransforms}.get(channel.topic, SceneUpdate)
+            if not channel.topic.startswith("/joint_states"):
+                seen[channel.topic, message.log_time] = kind.FromString(message.data)
+    assert attached == {name: (folder / name).read_bytes() for name in attached}
+    assert set(attached) == {"robot.urdf", "human_1.urdf", "human_2.urdf"}
+    for number, (human, payload, height) in enumerate(CASES):
+        time = 2_000_000_000 * number
+        scene = next(s for s in several.scenes if (s.human.label, s.payload.label) == (human, payload))
+        tree = human_tree(PEOPLE[human])
+        posture = posture_of(run.details[1].heights[number].agents[HUMAN])
+        instant = AgentModel.of(scene.human, tree).at(posture)
+        world_from = frames(seen["/tf", time])
+        for link in ("LeftPalm", "RightPalm", "Head", "LeftSole"):
+            _, origin = instant.pose(link)
+            expected = np.diag([-1.0, -1.0, 1.0]) @ origin
+            assert np.allclose(world_from[f"human/{link}"][:3, 3], expected, rtol=0.0, atol=1e-9)
+        (load,) = seen["/scene/load", time].entities
+        assert load.cubes[0].size.x == scene.payload.size[0]
+        assert [text.text for text in load.texts] == [f"{human}, {payload}, {height:g} m"]
+        assert world_from["load"][2, 3] == pytest.approx(height)
+        (cleared,) = seen["/scene/human", time].deletions
+        assert cleared.type == type(cleared).ALL
+        file = f"human_{[*PEOPLE].index(human) + 1}.urdf"
+        assert f"| {2 * number} s | `{human}` | `{file}` | `{payload}` | {height:g} m |" in readme
+        assert attached[file].decode() == urdf_text(tree)
+    assert max(time for _, time in seen) == 2_000_000_000 * (len(CASES) - 1) + 1_000_000_000
+
+
+def test_layout_says_what_time_means(folder: Path) -> None:
+    panels = json.loads((folder / "layout.json").read_text())["configById"]
+    assert panels["3D!scene"]["scene"]["labelScaleFactor"] == 1.0
+    assert "2 s per case" in panels["Plot!human"]["title"]
+
+
+def test_page_holds_everyone_and_every_case(run: Run) -> None:
+    content = page_content(run)
+    assert (content.people, content.payloads) == (tuple(PEOPLE), tuple(LOADS))
+    assert content.bodies is not None
+    masses = {name: sum(link.mass_kg for link in body.links) for name, body in content.bodies.people.items()}
+    assert masses == pytest.approx({name: person.mass for name, person in PEOPLE.items()})
+    assert {name: load.mass_kg for name, load in content.bodies.payloads.items()} == LOADS
+    for number, design in content.designs.items():
+        assert design.postures == run.details[number].heights
+
+
+def test_page_keeps_fewer_designs_of_many_pairs(
+    several: Problem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    many = write_several(several, tmp_path / "run", designs=12)
+    monkeypatch.setattr(gather, "MOST_POSTURES", 32)
+    content = page_content(many)
+    assert sum(bool(design.postures) for design in content.designs.values()) == 32 / 4
+    assert any(note.startswith("postures of 8 of 12 designs") for note in content.notes)
+
+
+def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(run: Run, several: Problem) -> None:
+    company = random_company(several, 1)
+    stages = [company.stage_of(run.details[1].heights[number]) for number in (0, 1, 3)]
+    names = ["{}, {}\nload at {:g} m".format(*CASES[number]) if number != 2 else "" for number in range(4)]
+    assert [axes.get_title() for axes in posture_figure(stages, "all but the third").axes] == names
+
+
+def test_figures_of_show_are_written(several: Problem, tmp_path: Path) -> None:
+    few = write_several(several, tmp_path / "run", designs=1, cases=3)
+    show_design(few.directory, 0, jobs=1, json=True, plot=tmp_path / "figures")
+    assert len(list((tmp_path / "figures").iterdir())) == 6
+    svg = (tmp_path / "figures" / "torques_by_joint.svg").read_text()
+    assert "with all people and loads" in svg
+
+
+def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: Run) -> None:
+    known = quantities(run.header, run.evaluations[0])
+    for evaluation in run.evaluations:
+        outcomes = evaluation.assessment.heights
+        norms = [one.robot_torque_norm for one in outcomes if one.height_m == 0.8]
+        assert len(norms) == 4
+        assert known["robot_torque@0.8"](evaluation) == max(each for each in norms if each is not None)
+        assert known["human_torque@tall@[crate]@1"](evaluation) == outcomes[-1].human_torque_norm
+    bound = run.evaluations[0].assessment.heights[-1].human_torque_norm
+    wanted = conditions(f"human_torque@tall@[crate]@1 <= {bound!r}", known, "--where")
+    assert run.evaluations[0] in meeting(run.evaluations, wanted)
+
+
+def test_cases_are_a_data_frame_with_people_and_loads(run: Run) -> None:
+    opened = evodesign.open_run(run.directory)
+    table = pd.DataFrame(opened.cases())
+    assert len(table) == len(run.evaluations) * len(CASES)
+    for number, own in table.groupby("number"):
+        assert [*zip(own.human, own.payload, own.height, strict=True)] == CASES
+        outcomes = run.evaluations[int(str(number))].assessment.heights
+        assert [*own.robot_torque] == [one.robot_torque_norm for one in outcomes]
+        assert [*own.human_torque] == [one.human_torque_norm for one in outcomes]
+    assert opened.cases(opened.designs[:1])["number"] == [0] * len(CASES)
