@@ -45,6 +45,9 @@ from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
 __all__ = ["SYMMETRIC", "PostureProblem", "Symmetry", "posture_program"]
 
+SEEDS_BESIDE = 2
+"""Seeds solved beside another person's solution, which mostly leads to the best optimum by itself."""
+
 SYMMETRIC = "symmetric"
 """Name in results of the symmetric program over both agents."""
 
@@ -101,7 +104,7 @@ class PostureProblem:
         values: Sequence[float],
         height: float,
         checker: Checker,
-        alike: Mapping[str, AgentPosture] | None = None,
+        alike: HeightSolution | None = None,
     ) -> HeightSolution:
         """The best checked posture of a design at one height.
 
@@ -109,20 +112,27 @@ class PostureProblem:
             values: one number per design parameter.
             height: of the load's centre [m].
             checker: the independent check, made for this design.
-            alike: postures of the same design with the same load at this height beside another person; where
-                the person's part is known, the robot's is close to the one sought.
+            alike: solution of the same design with the same load at this height, beside another person with
+                the same joints; fewer starts do beside it.
         """
         trials: list[Trial] = []
-        if alike is not None and height in self._split_heights:
-            trials.append(self._split.beside_another(values, height, alike, checker))
-        for program, seeds in self._programs(height) if not trials or trials[0].best is None else ():
-            trials.append(program.trial(values, height, seeds, checker))
-            if trials[-1].best is not None:
+        for trial in self._trials(values, height, checker, alike):
+            trials.append(trial)
+            if trial.best is not None:
                 break
         best = trials[-1].best
         if self._symmetry is Symmetry.POLISH and best is not None:
             trials.append(self._full.polish(values, height, best.postures, checker))
         return height_solution(height, trials)
+
+    def _trials(
+        self, values: Sequence[float], height: float, checker: Checker, alike: HeightSolution | None
+    ) -> Iterator[Trial]:
+        """What each program leads to, in turn."""
+        for program, seeds in self._programs(height):
+            if alike is not None:
+                yield program.beside_another(values, height, seeds, alike, checker)
+            yield program.trial(values, height, seeds, checker)
 
     def landscape(self, height: float) -> Landscape:
         """The cost at a height [m] of the program that is solved first, of which seeds are made."""
@@ -192,6 +202,23 @@ class _Postures:
     ) -> Trial:
         """What the seeds lead to, or the fixed starts if there are none."""
         starts = named_starts(self._name, self._solver, seeds, self._fixed)
+        ends = [(name, self._solve(values, height, start)) for name, start in starts]
+        return cheapest(ends, partial(self._candidate, height, checker))
+
+    def beside_another(
+        self,
+        values: Sequence[float],
+        height: float,
+        seeds: Sequence[Start],
+        alike: HeightSolution,
+        checker: Checker,
+    ) -> Trial:
+        """What a solution with the same load beside another person leads to, and the worthiest seeds."""
+        known = start_from(self._forms, self._solver.program, alike.postures, alike.disturbed)
+        starts = [
+            (f"{self._name}: beside another", known),
+            *named_starts(self._name, self._solver, seeds, self._fixed)[:SEEDS_BESIDE],
+        ]
         ends = [(name, self._solve(values, height, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 

@@ -12,7 +12,7 @@ Source: DESIGN 3.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -32,7 +32,7 @@ from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.program import IpoptOptions, Program, RawSolution
 from evodesign.posture.retold import start_from
 from evodesign.posture.shelf import Shelf, likeness
-from evodesign.posture.solution import AgentPosture
+from evodesign.posture.solution import HeightSolution
 from evodesign.posture.start import Start, fixed_starts, named_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
@@ -79,10 +79,15 @@ class SplitPostures:
         return cheapest(ends, partial(self._candidate, height, checker))
 
     def beside_another(
-        self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
+        self,
+        values: Sequence[float],
+        height: float,
+        seeds: Sequence[Start],
+        alike: HeightSolution,
+        checker: Checker,
     ) -> Trial:
-        """What the robot's posture with the same load and another person leads to."""
-        start = start_from(self._forms, self._robot.program, postures)
+        """What the robot's posture with the same load and another person leads to; it is close."""
+        start = start_from(self._forms, self._robot.program, alike.postures)
         end = self._robot.near.solve([*values, *self._beside(height)], start)
         return cheapest([(f"{SPLIT}: beside another", end)], partial(self._candidate, height, checker))
 

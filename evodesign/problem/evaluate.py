@@ -73,7 +73,7 @@ class Evaluator:
         heights: list[HeightSolution] = []
         for number, scene in enumerate(scenes):
             checker = check.elsewhere(scene, self._people[id(scene.human)])
-            alike = {h.height: h.postures for h in heights if h.solved and self._same_load(h.scene, number)}
+            alike = {h.height: h for h in heights if h.solved and self._alike(h.scene, number)}
             for height in problem.heights:
                 found = self._at_height(values, number, height, reach, checker, alike.get(height))
                 heights.append(replace(found, scene=number))
@@ -91,9 +91,10 @@ class Evaluator:
     def _scene(self, height: HeightSolution) -> Scene:
         return self.problem.scenes[height.scene]
 
-    def _same_load(self, scene: int, other: int) -> bool:
-        """Whether two scenes have the same load."""
-        return self.problem.scenes[scene].payload is self.problem.scenes[other].payload
+    def _alike(self, number: int, other: int) -> bool:
+        """Whether two scenes have the same load, and people with the same joints."""
+        scene, beside = self.problem.scenes[number], self.problem.scenes[other]
+        return scene.payload is beside.payload and scene.human.joints == beside.human.joints
 
     def assess(self, genome: Genome) -> Assessed:
         """What a genome is worth, with its postures."""
@@ -126,7 +127,7 @@ class Evaluator:
         height: float,
         reach: Reach,
         checker: Checker,
-        alike: Mapping[str, AgentPosture] | None,
+        alike: HeightSolution | None,
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
