@@ -47,6 +47,7 @@ bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python -m benchmarks.inner_quality
 	$(BIN)/python -m benchmarks.paper_formulation
 	$(BIN)/python benchmarks/gradients.py
+	$(BIN)/python -m benchmarks.many_cases
 	$(BIN)/python -m benchmarks.disturbed_growth
 	$(BIN)/python -m benchmarks.disturbed_ranking
 	$(BIN)/python -m benchmarks.disturbed_speed
