@@ -98,6 +98,7 @@ class HumanProblem:
         key = ("person", likeness(scene, form.agent))
         program = (shelf or Shelf()).solver(key, lambda: human_program(form, scene, weight), options)
         self._solver = program
+        self._pushed_to_the_end: dict[tuple[float, float], RawSolution] = {}
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
@@ -106,9 +107,16 @@ class HumanProblem:
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
         """The person's posture at a height [m] under a push [N], about as good as V promises.
 
-        It starts from the nearest node, close to the solution; where that fails or leads to a dearer optimum,
-        from the next ones.
+        Mostly the agents push as far as they may, and every design asks for the same: that is solved once.
         """
+        if abs(push) < self._push:
+            return self._best_from_nodes(height, push, value)
+        if (height, push) not in self._pushed_to_the_end:
+            self._pushed_to_the_end[height, push] = self._best_from_nodes(height, push, value)
+        return self._pushed_to_the_end[height, push]
+
+    def _best_from_nodes(self, height: float, push: float, value: HumanValue) -> RawSolution:
+        """From the nearest node, close to the solution; if that fails or is dearer than V, from the next."""
         nearest = value.nearest(push)[:NODES_TRIED]
         ends: list[RawSolution] = []
         for solver, start in [(self._solver.near, nearest[0]), *((self._solver, start) for start in nearest)]:

@@ -42,6 +42,9 @@ __all__ = ["SPLIT", "SplitPostures", "robot_program"]
 SPLIT = "split"
 """The program's name in results."""
 
+AT_LIMIT = 1e-6
+"""How little below its limit a push [N] counts as being there; IPOPT ends a little before it."""
+
 
 class SplitPostures:
     """The robot's program against the person's value function, for the heights that have one."""
@@ -111,7 +114,8 @@ class SplitPostures:
     def _push(self, robot: RawSolution) -> float:
         posture = self._forms[0].expand(robot.of(ROBOT))
         push = float(push_of(self._scene.robot, {s: ca.DM(w) for s, w in posture.hand_wrenches.items()}))
-        return float(np.clip(push, -self._scene.stance.push, self._scene.stance.push))
+        limit = self._scene.stance.push
+        return float(np.copysign(limit, push)) if abs(push) > limit - AT_LIMIT else push
 
 
 def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolution:

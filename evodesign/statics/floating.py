@@ -117,12 +117,11 @@ class FloatingBody:
         model, data = self.model, self.model.createData()
         q, v = self._coordinates(configuration), np.empty(model.nv)
         v[self.order] = velocity
-        mass = np.array(pin.crba(model, data, q))[np.ix_(self.order, self.order)]
         bias = np.array(pin.nonLinearEffects(model, data, q, v))[self.order]
         pin.computeJointJacobians(model, data, q)
         pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))  # last: it leaves dJ/dt nu in `data`
         pin.updateFramePlacements(model, data)
-        return Instant(self, mass, bias, data)
+        return Instant(self, q, bias, data)
 
     def _coordinates(self, configuration: Configuration) -> Array:
         """The configuration vector of pinocchio, in the world."""
@@ -166,15 +165,21 @@ class Instant:
 
     Args:
         body: the body.
-        mass: mass matrix M, shape (v, v).
+        coordinates: pinocchio's configuration vector.
         bias: Coriolis, centrifugal and gravity terms h, shape (v,).
         data: pinocchio's, with kinematics at zero acceleration.
     """
 
     body: FloatingBody
-    mass: Array
+    coordinates: Array
     bias: Array
     data: Any
+
+    @property
+    def mass(self) -> Array:
+        """Mass matrix M, shape (v, v)."""
+        model, order = self.body.model, self.body.order
+        return np.array(pin.crba(model, model.createData(), self.coordinates))[np.ix_(order, order)]
 
     def twist_in_frame(self, frame: str) -> tuple[Array, Array]:
         """J, shape (6, v), and dJ/dt nu of a frame's linear and angular velocity in the frame's own axes."""
