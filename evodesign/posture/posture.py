@@ -38,15 +38,12 @@ from evodesign.posture.program import IpoptOptions, Program, RawSolution
 from evodesign.posture.retold import start_from
 from evodesign.posture.sharing import EffortWeights, shared_scene, shared_weights
 from evodesign.posture.shelf import Shelf, likeness
-from evodesign.posture.solution import AgentPosture, HeightSolution
+from evodesign.posture.solution import AgentPosture, HeightSolution, Neighbour
 from evodesign.posture.split import SplitPostures
-from evodesign.posture.start import Start, fixed_starts, named_starts
+from evodesign.posture.start import SEEDS_BESIDE, Start, fixed_starts, named_starts
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
 __all__ = ["SYMMETRIC", "PostureProblem", "Symmetry", "posture_program"]
-
-SEEDS_BESIDE = 2
-"""Seeds solved beside another person's solution, which mostly leads to the best optimum by itself."""
 
 SYMMETRIC = "symmetric"
 """Name in results of the symmetric program over both agents."""
@@ -104,7 +101,7 @@ class PostureProblem:
         values: Sequence[float],
         height: float,
         checker: Checker,
-        alike: HeightSolution | None = None,
+        neighbour: Neighbour | None = None,
     ) -> HeightSolution:
         """The best checked posture of a design at one height.
 
@@ -112,11 +109,10 @@ class PostureProblem:
             values: one number per design parameter.
             height: of the load's centre [m].
             checker: the independent check, made for this design.
-            alike: solution of the same design with the same load at this height, beside another person with
-                the same joints; fewer starts do beside it.
+            neighbour: what the same design led to in a similar scene; fewer starts do beside it.
         """
         trials: list[Trial] = []
-        for trial in self._trials(values, height, checker, alike):
+        for trial in self._trials(values, height, checker, neighbour):
             trials.append(trial)
             if trial.best is not None:
                 break
@@ -126,12 +122,12 @@ class PostureProblem:
         return height_solution(height, trials)
 
     def _trials(
-        self, values: Sequence[float], height: float, checker: Checker, alike: HeightSolution | None
+        self, values: Sequence[float], height: float, checker: Checker, neighbour: Neighbour | None
     ) -> Iterator[Trial]:
         """What each program leads to, in turn."""
         for program, seeds in self._programs(height):
-            if alike is not None:
-                yield program.beside_another(values, height, seeds, alike, checker)
+            if neighbour is not None:
+                yield program.from_neighbour(values, height, seeds, neighbour, checker)
             yield program.trial(values, height, seeds, checker)
 
     def landscape(self, height: float) -> Landscape:
@@ -205,18 +201,19 @@ class _Postures:
         ends = [(name, self._solve(values, height, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 
-    def beside_another(
+    def from_neighbour(
         self,
         values: Sequence[float],
         height: float,
         seeds: Sequence[Start],
-        alike: HeightSolution,
+        neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
-        """What a solution with the same load beside another person leads to, and the worthiest seeds."""
+        """What the solution in a similar scene leads to, and the worthiest seeds."""
+        alike = neighbour.solution
         known = start_from(self._forms, self._solver.program, alike.postures, alike.disturbed)
         starts = [
-            (f"{self._name}: beside another", known),
+            (f"{self._name}: neighbour", known),
             *named_starts(self._name, self._solver, seeds, self._fixed)[:SEEDS_BESIDE],
         ]
         ends = [(name, self._solve(values, height, start)) for name, start in starts]

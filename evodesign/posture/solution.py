@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from evodesign.records import Status
 
-__all__ = ["AgentPosture", "Attempt", "HeightSolution"]
+__all__ = ["AgentPosture", "Attempt", "HeightSolution", "Neighbour"]
 
 Array = NDArray[np.float64]
 
@@ -94,3 +94,16 @@ class HeightSolution:
     def solved(self) -> bool:
         """Whether there is a checked posture."""
         return self.status is Status.SOLVED
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbour:
+    """What is known when the same design was solved at the same height in a similar scene.
+
+    Args:
+        solution: solved; its person has the joints of the one sought.
+        same_load: whether only the person differs.
+    """
+
+    solution: HeightSolution
+    same_load: bool

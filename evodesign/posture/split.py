@@ -32,8 +32,8 @@ from evodesign.posture.portfolio import NEAR, Landscape
 from evodesign.posture.program import IpoptOptions, Program, RawSolution
 from evodesign.posture.retold import start_from
 from evodesign.posture.shelf import Shelf, likeness
-from evodesign.posture.solution import HeightSolution
-from evodesign.posture.start import Start, fixed_starts, named_starts
+from evodesign.posture.solution import Neighbour
+from evodesign.posture.start import SEEDS_BESIDE, Start, fixed_starts, named_starts
 from evodesign.records import Status, worst_status
 from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
@@ -81,18 +81,25 @@ class SplitPostures:
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return cheapest(ends, partial(self._candidate, height, checker))
 
-    def beside_another(
+    def from_neighbour(
         self,
         values: Sequence[float],
         height: float,
         seeds: Sequence[Start],
-        alike: HeightSolution,
+        neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
-        """What the robot's posture with the same load and another person leads to; it is close."""
-        start = start_from(self._forms, self._robot.program, alike.postures)
-        end = self._robot.near.solve([*values, *self._beside(height)], start)
-        return cheapest([(f"{SPLIT}: beside another", end)], partial(self._candidate, height, checker))
+        """What the robot's posture in a similar scene leads to: it is close; and the worthiest seeds.
+
+        With the same load the other person's V(X) is all that differs, and no seed is needed.
+        """
+        parameters = [*values, *self._beside(height)]
+        known = start_from(self._forms, self._robot.program, neighbour.solution.postures)
+        ends = [(f"{SPLIT}: neighbour", self._robot.near.solve(parameters, known))]
+        if not neighbour.same_load:
+            starts = named_starts(SPLIT, self._robot, seeds, self._fixed)[:SEEDS_BESIDE]
+            ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
+        return cheapest(ends, partial(self._candidate, height, checker))
 
     def _beside(self, height: float) -> tuple[float, ...]:
         """The robot's parameters beside the design's."""

@@ -10,10 +10,13 @@ import numpy as np
 from evodesign.posture.program import Solver
 from evodesign.statics.scene import HUMAN, ROBOT
 
-__all__ = ["Start", "fixed_starts", "named_starts", "person_starts"]
+__all__ = ["SEEDS_BESIDE", "Start", "fixed_starts", "named_starts", "person_starts"]
 
 Start = Mapping[str, Any]
 """Starting values by variable name; variables left out begin at the program's own."""
+
+SEEDS_BESIDE = 2
+"""Seeds solved beside a neighbour's solution, which mostly leads to the best optimum by itself."""
 
 SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
 """Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.

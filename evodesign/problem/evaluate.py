@@ -15,7 +15,7 @@ from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import Reach, ReachProblem, common_reach
 from evodesign.posture.sharing import shared_scene
 from evodesign.posture.shelf import Shelf
-from evodesign.posture.solution import AgentPosture, Array, HeightSolution
+from evodesign.posture.solution import AgentPosture, Array, HeightSolution, Neighbour
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -73,9 +73,8 @@ class Evaluator:
         heights: list[HeightSolution] = []
         for number, scene in enumerate(scenes):
             checker = check.elsewhere(scene, self._people[id(scene.human)])
-            alike = {h.height: h for h in heights if h.solved and self._alike(h.scene, number)}
             for height in problem.heights:
-                found = self._at_height(values, number, height, reach, checker, alike.get(height))
+                found = self._at_height(values, number, height, reach, checker, heights)
                 heights.append(replace(found, scene=number))
         return DesignResult(
             scenes=problem.scenes,
@@ -91,10 +90,16 @@ class Evaluator:
     def _scene(self, height: HeightSolution) -> Scene:
         return self.problem.scenes[height.scene]
 
-    def _alike(self, number: int, other: int) -> bool:
-        """Whether two scenes have the same load, and people with the same joints."""
-        scene, beside = self.problem.scenes[number], self.problem.scenes[other]
-        return scene.payload is beside.payload and scene.human.joints == beside.human.joints
+    def _neighbour(self, before: Sequence[HeightSolution], number: int, height: float) -> Neighbour | None:
+        """The most similar case at a height [m] of those solved before: of the same load if there is one."""
+        scene, best = self.problem.scenes[number], None
+        for solution in before:
+            other = self._scene(solution)
+            if solution.solved and solution.height == height and other.human.joints == scene.human.joints:
+                same_load = other.payload is scene.payload
+                if best is None or same_load >= best.same_load:
+                    best = Neighbour(solution, same_load)
+        return best
 
     def assess(self, genome: Genome) -> Assessed:
         """What a genome is worth, with its postures."""
@@ -127,7 +132,7 @@ class Evaluator:
         height: float,
         reach: Reach,
         checker: Checker,
-        alike: HeightSolution | None,
+        before: Sequence[HeightSolution],
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
@@ -135,7 +140,8 @@ class Evaluator:
         if distance > 0.0:
             reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
             return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, (), "")
-        return self._postures[scene].solve(values, height, checker, alike)
+        neighbour = self._neighbour(before, scene, height)
+        return self._postures[scene].solve(values, height, checker, neighbour)
 
 
 def _violation(result: DesignResult) -> float | None:
