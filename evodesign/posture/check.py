@@ -212,7 +212,7 @@ def _torque_limits(agent: Agent, posture: AgentPosture) -> dict[str, float]:
 def _load(scene: Scene, postures: Mapping[str, AgentPosture], outside: Array = STILL) -> dict[str, float]:
     """Balance of the load, of which a force from outside [N] meets the box's centre, and bounds on hands."""
     weight = np.array([0.0, 0.0, -GRAVITY * scene.payload.mass])
-    force, moment = weight + outside, np.cross(scene.payload.center_of_mass, weight)
+    force, moment = weight + outside, pin.skew(np.array(scene.payload.center_of_mass)) @ weight
     squeeze, passed, carried = float(outside[0]) / 2.0, 0.0, 0.0
     for agent in (scene.robot, scene.human):
         world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
@@ -221,7 +221,7 @@ def _load(scene: Scene, postures: Mapping[str, AgentPosture], outside: Array = S
             on_load = -world_from_agent @ wrench[:3]
             point = world_from_agent @ np.array(scene.payload.grasp_point(agent, side))
             force = force + on_load
-            moment = moment + np.cross(point, on_load) - world_from_agent @ wrench[3:]
+            moment = moment + pin.skew(point) @ on_load - world_from_agent @ wrench[3:]
             if agent is scene.robot:
                 squeeze += float(on_load[0])
                 carried += float(on_load[2])

@@ -54,12 +54,14 @@ class FloatingBody:
         model: pinocchio's model, without the joints that do not move.
         joints: names of the moving joints, in the order of our rows.
         order: pinocchio's velocity index of each of our rows.
+        places: pinocchio's configuration index of each moving joint.
         world_from_given: rotation from the axes in which configurations are given to the world, (3, 3).
     """
 
     model: Any
     joints: tuple[str, ...]
     order: NDArray[np.intp]
+    places: NDArray[np.intp]
     world_from_given: Array
 
     @property
@@ -106,7 +108,8 @@ class FloatingBody:
     def _of_model(cls, model: Any, joints: Sequence[str], world_from_given: Array) -> FloatingBody:
         model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
         columns = [model.joints[model.getJointId(name)].idx_v for name in joints]
-        return cls(model, tuple(joints), np.array([*range(ROOT), *columns]), world_from_given)
+        places = np.array([model.joints[model.getJointId(name)].idx_q for name in joints], int)
+        return cls(model, tuple(joints), np.array([*range(ROOT), *columns]), places, world_from_given)
 
     def at(self, configuration: Configuration, velocity: Array) -> Instant:
         """The body at a configuration, moving with a velocity of shape (6 + joints,).
@@ -132,9 +135,7 @@ class FloatingBody:
         q = np.array(pin.neutral(self.model))
         q[:3] = self.world_from_given @ configuration.base_position
         q[3:7] = pin.Quaternion(world_from_base).coeffs()
-        for name in self.joints:
-            joint, position = self.model.joints[self.model.getJointId(name)], configuration.joints[name]
-            q[joint.idx_q] = position
+        q[self.places] = [configuration.joints[name] for name in self.joints]
         return q
 
 
