@@ -69,8 +69,15 @@ def refuse_heights(problem: Problem, known: Preparation) -> None:
     """Refuse a height at which one of the people cannot hold a load, whatever the robot.
 
     Raises:
-        InputError: naming the height and the person.
+        InputError: naming the height and the person; or a person who cannot hold a load at any height.
     """
+    held = {stretch.scene for stretch in known.stretches}
+    for number, scene in enumerate(problem.scenes):
+        if problem.stretches and number not in held:
+            who = scene.label or "the person"
+            raise InputError(
+                problem.source.path, "human", "people who can hold every load", f"{who}, at no height"
+            )
     for stretch in known.stretches:
         for position, height in enumerate(problem.heights):
             if not stretch.lowest <= height <= stretch.highest:

@@ -16,6 +16,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import value_of
 from evodesign.problem.prepare import refuse_heights, setting_of
+from evodesign.records import Objective, Sense
 from evodesign.tree.anthropometry import Person, Sex
 from evodesign.tree.human import human_tree
 
@@ -77,3 +78,12 @@ def test_a_height_that_somebody_cannot_hold_is_refused(problem: Problem) -> None
     with pytest.raises(InputError, match=r"task\.heights_m\[0\]: wanted a height that the person can hold"):
         refuse_heights(problem, known)
     refuse_heights(problem, replace(NOTHING_KNOWN, stretches=(Stretch(0.8, 1.9),)))
+
+
+def test_a_person_who_holds_the_load_nowhere_is_refused(problem: Problem) -> None:
+    """Left out, the others' reach would pass for everyone's."""
+    shared = Objective(name="shared_reach_height", sense=Sense.MAXIMISE, unit="m")
+    asking = replace(problem, objectives=(*problem.objectives, shared))
+    with pytest.raises(InputError, match="people who can hold every load, found the person, at no height"):
+        refuse_heights(asking, NOTHING_KNOWN)
+    refuse_heights(asking, replace(NOTHING_KNOWN, stretches=(Stretch(0.1, 1.9),)))
