@@ -26,6 +26,7 @@ from evodesign.posture.posture import Symmetry
 from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
 from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.reach_tangent import HeightTangent, ReachTangents
+from evodesign.posture.shelf import Shelf
 from evodesign.posture.solution import HeightSolution
 from evodesign.posture.tangent import PostureTangent, PostureTangents
 from evodesign.problem.build import Problem
@@ -141,10 +142,12 @@ class Sensitivities:
         space, options = problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
         loads = {id(scene.payload): scene for scene in problem.scenes}
-        self._reaches = [
-            ReachTangents(ReachProblem(scene, space, options, symmetric=symmetric, known=known), options)
+        shelf = Shelf()
+        reaches = [
+            ReachProblem(scene, space, options, symmetric=symmetric, known=known, shelf=shelf)
             for scene in loads.values()
         ]
+        self._reaches = [ReachTangents(reach, options) for reach in reaches]
         self._postures = [
             PostureTangents(each, space, problem.weights, options, known.of_scene(number).values)
             for number, each in enumerate(problem.scenes)
