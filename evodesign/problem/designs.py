@@ -10,7 +10,7 @@ from evodesign.design.policy import POLICIES
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
-from evodesign.problem.file import DesignEntry, PopulationFile
+from evodesign.problem.design_file import DesignEntry, PopulationFile
 from evodesign.problem.materials import refuse_no_choice
 from evodesign.records import Genome
 from evodesign.tree.model import Tree

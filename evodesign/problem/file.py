@@ -13,13 +13,14 @@ import msgspec
 from msgspec import Meta
 
 from evodesign.posture.posture import Symmetry
+from evodesign.problem.baseline_table import BaselineTable
+from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 from evodesign.statics.disturbance import OverCases, PushedAt
 from evodesign.statics.scene import Grasp
 from evodesign.tree.anthropometry import Sex
 from evodesign.tree.population import PopulationSex
 
 __all__ = [
-    "BaselineTable",
     "DisturbanceTable",
     "HumanTable",
     "ProblemFile",
@@ -28,16 +29,7 @@ __all__ = [
     "TorqueLimits",
 ]
 
-Positive = Annotated[float, Meta(gt=0.0)]
-NotNegative = Annotated[float, Meta(ge=0.0)]
-Share = Annotated[float, Meta(ge=0.0, le=1.0)]
-Point = tuple[float, float, float]
-Name = Annotated[str, Meta(min_length=1)]
 T = TypeVar("T")
-
-
-class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Base of all tables."""
 
 
 class HandsTable(Table, frozen=True):
@@ -81,7 +73,7 @@ class RobotTable(Table, frozen=True):
     trunk: tuple[Name, ...] = ("root_link", "chest")
     joints: tuple[Name, ...] = ()
     torque_limits: TorqueLimits = TorqueLimits.NONE
-    torque_limits_n_m: dict[str, Positive] = {}
+    torque_limits_n_m: dict[str, Positive] = msgspec.field(default_factory=dict)
 
 
 class PopulationForm(Table, frozen=True):
@@ -109,7 +101,7 @@ class HumanTable(Table, frozen=True):
     soles: SolesTable | None = None
     trunk: tuple[Name, ...] = ()
     joints: tuple[Name, ...] = ()
-    strengths_n_m: dict[str, tuple[Positive, Positive]] = {}
+    strengths_n_m: dict[str, tuple[Positive, Positive]] = msgspec.field(default_factory=dict)
 
 
 class GraspsTable(Table, frozen=True):
@@ -258,39 +250,6 @@ class SolverTable(Table, frozen=True):
     evaluation_memory_gb: Annotated[float, Meta(ge=0.5)] = 8.0
 
 
-class TaskWeightsTable(Table, frozen=True):
-    """`[baseline.weights]`: W1 to W4 of the paper's tasks.
-
-    torque: of |tau|^2 in (10 N m)^2; density: of distances to the preferred densities in 1000 kg/m^3,
-    multiplied; center_of_pressure: of squared distances from the middle of the sole, in m^2; mass_height:
-    of 1 / z^2 of the standing robot's centre of mass, in 1/m^2.
-    """
-
-    torque: Positive = 1.0
-    density: NotNegative = 0.0
-    center_of_pressure: NotNegative = 0.0
-    mass_height: NotNegative = 0.0
-
-
-class BaselineTable(Table, frozen=True):
-    """`[baseline]`: the paper's joint problem, postures of all heights and the design in one program.
-
-    `start` names designs of the file `search.start` with which the starts begin; left out: all of it.
-    `compile` pays for hundreds of starts only: the program of all heights is long.
-    """
-
-    start: tuple[Name, ...] | None = None
-    weights: TaskWeightsTable = TaskWeightsTable()
-    preferred_densities_kg_per_m3: tuple[Positive, ...] = ()
-    joint_limits: bool = True
-    contact_limits: bool = True
-    stance_limits: bool = True
-    length_bounds: bool = True
-    compile: bool = False
-    iterations: Annotated[int, Meta(ge=1)] = 1000
-    seconds: Positive = 60.0
-
-
 class ProblemFile(Table, frozen=True):
     """A whole problem file."""
 
@@ -324,23 +283,3 @@ def _listed(key: str, tables: T | tuple[T, ...]) -> dict[str, T]:
     if isinstance(tables, tuple):
         return {f"{key}[{position}]": table for position, table in enumerate(tables)}
     return {key: tables}
-
-
-class DesignEntry(Table, frozen=True):
-    """`[[design]]` of a population file: values by group; what is left out stays unscaled.
-
-    `material` names the material of a density that has materials, in place of `density_kg_per_m3`.
-    """
-
-    name: Name
-    length: dict[str, Positive] = {}
-    density_kg_per_m3: dict[str, Positive] = {}
-    policy: dict[str, float] = {}
-    material: dict[str, Name] = {}
-
-
-class PopulationFile(Table, frozen=True):
-    """A whole population file."""
-
-    name: Name
-    design: Annotated[tuple[DesignEntry, ...], Meta(min_length=1)]

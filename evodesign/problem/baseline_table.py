@@ -1,0 +1,44 @@
+"""`[baseline]` of a problem file: the paper's joint problem."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from evodesign.problem.table import Name, NotNegative, Positive, Table
+
+__all__ = ["BaselineTable", "TaskWeightsTable"]
+
+
+class TaskWeightsTable(Table, frozen=True):
+    """`[baseline.weights]`: W1 to W4 of the paper's tasks.
+
+    torque: of |tau|^2 in (10 N m)^2; density: of distances to the preferred densities in 1000 kg/m^3,
+    multiplied; center_of_pressure: of squared distances from the middle of the sole, in m^2; mass_height:
+    of 1 / z^2 of the standing robot's centre of mass, in 1/m^2.
+    """
+
+    torque: Positive = 1.0
+    density: NotNegative = 0.0
+    center_of_pressure: NotNegative = 0.0
+    mass_height: NotNegative = 0.0
+
+
+class BaselineTable(Table, frozen=True):
+    """`[baseline]`: the paper's joint problem, postures of all heights and the design in one program.
+
+    `start` names designs of the file `search.start` with which the starts begin; left out: all of it.
+    `compile` pays for hundreds of starts only: the program of all heights is long.
+    """
+
+    start: tuple[Name, ...] | None = None
+    weights: TaskWeightsTable = TaskWeightsTable()
+    preferred_densities_kg_per_m3: tuple[Positive, ...] = ()
+    joint_limits: bool = True
+    contact_limits: bool = True
+    stance_limits: bool = True
+    length_bounds: bool = True
+    compile: bool = False
+    iterations: Annotated[int, Meta(ge=1)] = 1000
+    seconds: Positive = 60.0
