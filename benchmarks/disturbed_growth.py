@@ -17,18 +17,18 @@ from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
+from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases
+from evodesign.mechanics.scene import Scene
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.form import symmetric_forms
-from evodesign.posture.portfolio import Coverage, Portfolio
-from evodesign.posture.posture import PostureProblem
-from evodesign.posture.preparation import Preparation
-from evodesign.posture.retold import start_from
-from evodesign.posture.shelf import Shelf
-from evodesign.posture.solution import AgentPosture, HeightSolution
+from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.symmetry import symmetric_forms
+from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
 from evodesign.records import Status
-from evodesign.statics.disturbance import Disturbance, Disturbances, OverCases
-from evodesign.statics.scene import Scene
 
 HEIGHT = 1.0
 SIZES = (2.0, 1.5, 1.0, 0.75, 0.5, 0.25, 0.0)
@@ -53,7 +53,7 @@ class Bench:
     """A scene's posture problem with its check."""
 
     def __init__(self, problem: Problem, scene: Scene) -> None:
-        self._problem, self._scene, self._shelf = problem, scene, Shelf()
+        self._problem, self._scene, self._shelf = problem, scene, SolverCache()
         options = replace(problem.options, compiled=False)
         self._ingredients = (scene, problem.space, problem.weights, options, problem.symmetry)
         self._landscape = PostureProblem(*self._ingredients, shelf=self._shelf).landscape(HEIGHT)
@@ -66,7 +66,7 @@ class Bench:
         if like is not None:
             known = start_from(symmetric_forms(self._scene), self._landscape.solver.program, like)
             starts = (known, *starts)
-        seeds = Preparation(postures={HEIGHT: Portfolio(starts, Coverage(0, 0, 0.0))})
+        seeds = Precomputed(postures={HEIGHT: StartPortfolio(starts, Coverage(0, 0, 0.0))})
         postures = PostureProblem(*self._ingredients, seeds, self._shelf)
         return postures.solve(design, HEIGHT, Checker(self._scene, tree, self._human))
 

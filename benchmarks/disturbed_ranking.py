@@ -21,16 +21,16 @@ from joblib import Parallel, delayed
 from scipy.stats import kendalltau, rankdata
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.nlp.start_portfolio import Coverage, StartPortfolio, random_start
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.portfolio import Coverage, Portfolio, random_start
-from evodesign.posture.posture import PostureProblem
-from evodesign.posture.preparation import Preparation
-from evodesign.posture.reach import ReachProblem
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure
-from evodesign.statics.disturbance import Disturbance, Disturbances
-from evodesign.statics.scene import HUMAN, ROBOT, Grasp, Scene
 
 HEIGHTS = (0.8, 1.0, 1.2)
 DISTURBANCES = Disturbances(
@@ -117,8 +117,8 @@ def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
     landscape = PostureProblem(*ingredients).landscape(HEIGHTS[0])
     rng = np.random.default_rng(0)
     starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
-    seeds = Portfolio(starts, Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Preparation(postures=dict.fromkeys(HEIGHTS, seeds)))
+    seeds = StartPortfolio(starts, Coverage(0, 0, 0.0))
+    return PostureProblem(*ingredients, Precomputed(postures=dict.fromkeys(HEIGHTS, seeds)))
 
 
 def judge(load: str, designs: list[Design], starts: int) -> list[Row | None]:

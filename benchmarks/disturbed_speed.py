@@ -18,12 +18,12 @@ import numpy as np
 
 from benchmarks.disturbed_ranking import HEIGHTS, LOADS
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
-from evodesign.posture.posture import PostureProblem
-from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
+from evodesign.mechanics.scene import Scene
+from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.problem.build import Problem
 from evodesign.records import Status
-from evodesign.statics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
-from evodesign.statics.scene import Scene
 
 DISTURBANCES = (
     Disturbance("heavier", mass_share=0.2),

@@ -18,9 +18,9 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import HEIGHTS, HERE, Design, known_at, problem_at, random_designs
-from evodesign.posture.portfolio import Landscape, random_start
-from evodesign.posture.posture import PostureProblem
-from evodesign.posture.preparation import Preparation
+from evodesign.nlp.start_portfolio import Landscape, random_start
+from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
@@ -50,14 +50,14 @@ class Row:
 class Judge:
     """Evaluates designs, and searches for something better with many random starts."""
 
-    def __init__(self, problem: Problem, known: Preparation, starts: int) -> None:
+    def __init__(self, problem: Problem, known: Precomputed, starts: int) -> None:
         self.problem = problem
         self._starts = starts
         self._evaluator = Evaluator(problem, known)
         scene, space, options = problem.scene, problem.space, problem.options
         self._split, self._joint = (
             PostureProblem(scene, space, problem.weights, options, problem.symmetry, given)
-            for given in (known, Preparation())
+            for given in (known, Precomputed())
         )
 
     def rows(self, number: int, design: Design, joint: bool) -> list[Row]:

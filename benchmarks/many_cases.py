@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_designs
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult

@@ -21,16 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
-from evodesign.posture.agent import agent_block
-from evodesign.posture.bearing import TORQUE_UNIT
+from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.nlp.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.form import whole
-from evodesign.posture.load import LOAD_UNIT, push_of
-from evodesign.posture.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
-from evodesign.posture.solution import AgentPosture
-from evodesign.posture.start import fixed_starts
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.starts import fixed_starts
+from evodesign.posture.symmetry import whole
+from evodesign.posture.terms.agent import agent_block
+from evodesign.posture.terms.load import LOAD_UNIT, push_of
+from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.problem.build import Problem
-from evodesign.statics.scene import SIDES, Agent, Scene
 from evodesign.tree.model import Tree
 
 __all__ = ["PaperPostures", "PaperProgram", "paper_program"]

@@ -21,14 +21,14 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from benchmarks.inner_problem import problem_at
-from evodesign.posture.agent import agent_block
-from evodesign.posture.bearing import TORQUE_UNIT
-from evodesign.posture.constraints import equal
-from evodesign.posture.form import Form, symmetric_forms
-from evodesign.posture.program import Program, Solver
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.nlp.program import Program, Solver
+from evodesign.posture.symmetry import Form, symmetric_forms
+from evodesign.posture.terms.agent import agent_block
+from evodesign.posture.terms.stance import equal
+from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.records import Status
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import Grasp, Scene
 
 MASS, MOMENT = 10.0, 7.0  # of the load [kg]; that a hand bears [N m]
 SHARES, SPREAD = (0.1, 0.5, 1.0), 0.3

@@ -16,17 +16,17 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.inner_problem import problem_at
-from evodesign.design.policy import EFFORT_RATIO, POLICIES, ROBOT_SHARE
+from evodesign.design.allocation import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
+from evodesign.nlp.start_portfolio import random_start
+from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
-from evodesign.posture.form import symmetric_forms
-from evodesign.posture.portfolio import random_start
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.sharing import EffortWeights, shared_scene
+from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import Problem
 from evodesign.records import Status
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import HUMAN, ROBOT, Grasp
 
 HEIGHTS = (0.4, 0.6, 0.8, 1.0, 1.2, 1.3)
 VALUES = {
@@ -41,7 +41,7 @@ Point = tuple[float, float, float]
 def sweep(problem: Problem, policy: str, height: float, starts: int) -> Iterator[Point | None]:
     """A point for each value of a policy; None where nothing was found."""
     scene = problem.scene
-    bounds = POLICIES[policy]
+    bounds = ALLOCATIONS[policy]
     parameter = DesignParameter(ParameterKind.POLICY, policy, (), bounds.lowest, bounds.highest)
     space = DesignSpace((parameter,))
     postures = PostureProblem(scene, space, EffortWeights(), problem.options, Symmetry.ON)

@@ -17,7 +17,6 @@ __all__ = [
     "AgentDetail",
     "Assessed",
     "Assessment",
-    "BorneDetail",
     "Detail",
     "Evaluation",
     "Front",
@@ -25,14 +24,15 @@ __all__ = [
     "Genome",
     "HeightDetail",
     "HeightOutcome",
+    "LoadCaseDetail",
     "Objective",
     "Parameter",
     "ProblemSource",
     "ReachOutcome",
     "RunHeader",
     "SearchSettings",
+    "SearchStage",
     "Sense",
-    "Stage",
     "Status",
     "Turn",
     "choice_at",
@@ -207,7 +207,7 @@ class AgentDetail(Record, frozen=True):
     foot_wrenches: dict[str, tuple[float, ...]]
 
 
-class BorneDetail(Record, frozen=True):
+class LoadCaseDetail(Record, frozen=True):
     """What an agent bears under a disturbance, its posture being what it is; as in `AgentDetail`."""
 
     torques_n_m: dict[str, float]
@@ -225,7 +225,7 @@ class HeightDetail(Record, frozen=True, omit_defaults=True):
     agents: dict[str, AgentDetail]
     human_name: str = ""
     payload_name: str = ""
-    disturbed: dict[str, dict[str, BorneDetail]] = {}
+    disturbed: dict[str, dict[str, LoadCaseDetail]] = {}
 
 
 class Assessed(Record, frozen=True):
@@ -297,7 +297,7 @@ class Front(Record, frozen=True):
     evaluations: tuple[int, ...]
 
 
-class Stage(Record, frozen=True):
+class SearchStage(Record, frozen=True):
     """What a search was for its first so many generations, before a branch made it another one."""
 
     algorithm: str
@@ -320,7 +320,7 @@ class SearchSettings(Record, frozen=True):
     population: int
     seed: int
     start: tuple[Genome, ...] = ()
-    past: tuple[Stage, ...] = ()
+    past: tuple[SearchStage, ...] = ()
     asynchronous: bool = False
     choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
 

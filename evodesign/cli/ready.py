@@ -13,15 +13,15 @@ import msgspec
 
 from evodesign.cli.making import making
 from evodesign.cli.output import show_notes
+from evodesign.nlp.codegen import RECIPE, Compiler, NotCompiled, find_compiler
+from evodesign.nlp.disk_cache import Cache, digest_of, user_cache
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
-from evodesign.posture.cache import Cache, digest_of, user_cache
-from evodesign.posture.codegen import RECIPE, Compiler, NotCompiled, find_compiler
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.problem.prepare import Watcher, prepared
+from evodesign.problem.precompute import PrecomputeProgress, precomputed
 from evodesign.records import ProblemSource, RunHeader
 from evodesign.search.base import JOINT_STARTS
 
@@ -45,7 +45,7 @@ def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
             factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem, problem.limits)
             compiled = problem.joint.options.compiled
         else:
-            known = prepared(problem, _cache("prepared"), pool, watcher)
+            known = precomputed(problem, _cache("precomputed"), pool, watcher)
             factory = AssessmentFactory(digest, problem, known)
             compiled = problem.options.compiled
         if compiled:
@@ -60,17 +60,17 @@ def evaluator_of(problem: Problem, jobs: int) -> Evaluator:
     return Evaluator(problem, known)
 
 
-def known_of(problem: Problem, pool: Pool) -> Preparation:
+def known_of(problem: Problem, pool: Pool) -> Precomputed:
     """What is known of a problem before any robot is evaluated, worked out where it is missing."""
     with making() as watcher:
-        return prepared(problem, _cache("prepared"), pool, watcher)
+        return precomputed(problem, _cache("precomputed"), pool, watcher)
 
 
 def _digest(source: ProblemSource) -> str:
     return digest_of(msgspec.json.encode(source, order="deterministic"))
 
 
-def _compile(factory: Evaluations, watcher: Watcher) -> None:
+def _compile(factory: Evaluations, watcher: PrecomputeProgress) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):

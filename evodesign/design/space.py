@@ -14,7 +14,7 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.design.policy import POLICIES
+from evodesign.design.allocation import ALLOCATIONS
 from evodesign.errors import ModelError
 from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
@@ -137,13 +137,13 @@ class DesignSpace:
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
         return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
 
-    def policies(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
+    def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The policies among a design's values, by their own names."""
         pairs = zip(self.parameters, values, strict=True)
         return {p.group: value for p, value in pairs if p.kind is ParameterKind.POLICY}
 
     @property
-    def policy_names(self) -> frozenset[str]:
+    def allocation_names(self) -> frozenset[str]:
         """Names of the policies that a design chooses."""
         return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
 
@@ -160,7 +160,7 @@ class DesignSpace:
         if parameter.kind is ParameterKind.LENGTH:
             return 1.0
         if parameter.kind is ParameterKind.POLICY:
-            return POLICIES[parameter.group].usual
+            return ALLOCATIONS[parameter.group].usual
         solids = [
             solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids
         ]

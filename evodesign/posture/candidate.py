@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from evodesign.nlp.program import RawSolution
 from evodesign.posture.check import TOLERANCE
-from evodesign.posture.program import RawSolution
-from evodesign.posture.solution import AgentPosture, Attempt, HeightSolution
+from evodesign.posture.results import AgentPosture, Attempt, HeightSolution
 from evodesign.records import Status, worst_status
 
 __all__ = ["Candidate", "Trial", "cheapest", "checked", "height_solution"]

@@ -18,12 +18,12 @@ from types import MappingProxyType
 import numpy as np
 import pinocchio as pin
 
-from evodesign.posture.solution import AgentPosture, Array
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.contact import foot_margins
-from evodesign.statics.disturbance import Disturbance, PushedAt
-from evodesign.statics.floating import ROOT, Configuration, FloatingBody, Instant
-from evodesign.statics.scene import SIDES, Agent, Grasp, Scene
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.contact import foot_margins
+from evodesign.mechanics.disturbance import Disturbance, PushedAt
+from evodesign.mechanics.floating_base import ROOT, Configuration, FloatingBody, Instant
+from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
+from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.model import Tree
 
 __all__ = ["TOLERANCE", "AgentModel", "Checker"]

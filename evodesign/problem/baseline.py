@@ -10,15 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from evodesign.design.policy import EFFORT_RATIO
+from evodesign.design.allocation import EFFORT_RATIO
 from evodesign.errors import InputError
 from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
-from evodesign.posture.joint import JointProblem, JointSolution
-from evodesign.posture.reach import Reach
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.formulations.codesign import JointProblem, JointSolution
+from evodesign.posture.formulations.reach import Reach
+from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
+from evodesign.problem.evaluate import detail_of, height_outcome, reach_of
 from evodesign.problem.materials import refuse_choices
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -35,7 +35,7 @@ def refuse_unsuited(problem: Problem) -> None:
             density of materials.
     """
     refuse_choices(problem.space, problem.source)
-    if EFFORT_RATIO in problem.space.policy_names:
+    if EFFORT_RATIO in problem.space.allocation_names:
         wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"
         raise InputError(problem.source.path, "design.policy", wanted, f"'{EFFORT_RATIO}'")
     if len(problem.scenes) > 1:
@@ -88,7 +88,7 @@ class Baseline:
             reason="solved" if solution.solved else solution.heights[0].reason,
             reach=reach_of(result.reach),
             heights=tuple(
-                outcome_of(replace(height, reason=_reason(height, violations)), self._problem.scene)
+                height_outcome(replace(height, reason=_reason(height, violations)), self._problem.scene)
                 for height, violations in zip(result.heights, solution.violations, strict=True)
             ),
         )

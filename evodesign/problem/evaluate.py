@@ -8,14 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.nlp.solver_cache import SolverCache
 from evodesign.pool.base import Limits
+from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.reach import Reach, ReachProblem, common_reach
-from evodesign.posture.sharing import shared_scene
-from evodesign.posture.shelf import Shelf
-from evodesign.posture.solution import AgentPosture, Array, HeightSolution, Neighbour
+from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.reach import Reach, ReachProblem, common_reach
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.results import AgentPosture, Array, HeightSolution, Neighbour
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -23,18 +24,17 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
-    BorneDetail,
     Genome,
     HeightDetail,
     HeightOutcome,
+    LoadCaseDetail,
     ProblemSource,
     ReachOutcome,
     Status,
     worst_status,
 )
-from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["AssessmentFactory", "Evaluator", "detail_of", "outcome_of", "reach_of"]
+__all__ = ["AssessmentFactory", "Evaluator", "detail_of", "height_outcome", "reach_of"]
 
 
 class Evaluator:
@@ -45,19 +45,19 @@ class Evaluator:
         known: what is known beforehand.
     """
 
-    def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
+    def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self.problem = problem
         self.known = known
         space, options, symmetry = problem.space, problem.options, problem.symmetry
-        shelf = Shelf()
+        solvers = SolverCache()
         self._postures = [
-            PostureProblem(scene, space, problem.weights, options, symmetry, known.of_scene(number), shelf)
+            PostureProblem(scene, space, problem.weights, options, symmetry, known.of_scene(number), solvers)
             for number, scene in enumerate(problem.scenes)
         ]
         symmetric = symmetry is not Symmetry.OFF
         self._reaches = {
             id(scene.payload): ReachProblem(
-                scene, space, options, symmetric=symmetric, known=known, shelf=shelf
+                scene, space, options, symmetric=symmetric, known=known, solvers=solvers
             )
             for scene in problem.scenes
         }
@@ -84,7 +84,7 @@ class Evaluator:
             reach=reach,
             heights=tuple(heights),
             paper=problem.joint,
-            people_highest=min((stretch.highest for stretch in self.known.stretches), default=None),
+            people_highest=min((stretch.highest for stretch in self.known.person_reaches), default=None),
         )
 
     def _scene(self, height: HeightSolution) -> Scene:
@@ -113,7 +113,7 @@ class Evaluator:
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
-        heights = tuple(outcome_of(height, self._scene(height)) for height in result.heights)
+        heights = tuple(height_outcome(height, self._scene(height)) for height in result.heights)
         failed = [height for height in result.heights if not height.solved]
         return Assessment(
             design=dict(self.problem.space.named(values)),
@@ -162,7 +162,7 @@ def reach_of(reach: Reach) -> ReachOutcome:
     )
 
 
-def outcome_of(height: HeightSolution, scene: Scene) -> HeightOutcome:
+def height_outcome(height: HeightSolution, scene: Scene) -> HeightOutcome:
     """A height in short, as it is logged."""
     return HeightOutcome(
         height_m=height.height,
@@ -207,8 +207,8 @@ def detail_of(height: HeightSolution, scene: Scene) -> HeightDetail:
     )
 
 
-def _borne(posture: AgentPosture) -> BorneDetail:
-    return BorneDetail(
+def _borne(posture: AgentPosture) -> LoadCaseDetail:
+    return LoadCaseDetail(
         torques_n_m=dict(posture.torques),
         hand_wrenches=_numbers(posture.hand_wrenches),
         foot_wrenches=_numbers(posture.foot_wrenches),
@@ -233,7 +233,7 @@ class AssessmentFactory:
 
     digest: str
     problem: Problem = field(compare=False)
-    known: Preparation = field(compare=False)
+    known: Precomputed = field(compare=False)
 
     @property
     def source(self) -> ProblemSource:

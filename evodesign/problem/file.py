@@ -12,13 +12,13 @@ from typing import Annotated, TypeVar
 import msgspec
 from msgspec import Meta
 
-from evodesign.posture.posture import Symmetry
+from evodesign.human.anthropometry import Sex
+from evodesign.human.population import PopulationSex
+from evodesign.mechanics.disturbance import OverCases, PushedAt
+from evodesign.mechanics.scene import Grasp
+from evodesign.posture.formulations.joint import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
-from evodesign.statics.disturbance import OverCases, PushedAt
-from evodesign.statics.scene import Grasp
-from evodesign.tree.anthropometry import Sex
-from evodesign.tree.population import PopulationSex
 
 __all__ = [
     "DisturbanceTable",
@@ -202,7 +202,7 @@ class MaterialTable(Table, frozen=True):
     source: Name
 
 
-class PolicyTable(Table, frozen=True):
+class AllocationTable(Table, frozen=True):
     """`[[design.policy]]`: how a design divides the work; see `design.policy` for the names."""
 
     name: Name
@@ -215,7 +215,7 @@ class DesignTable(Table, frozen=True):
 
     length: tuple[LengthTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
-    policy: tuple[PolicyTable, ...] = ()
+    policy: tuple[AllocationTable, ...] = ()
 
 
 class ObjectivesTable(Table, frozen=True):

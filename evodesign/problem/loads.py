@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 from evodesign.errors import InputError
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.problem.file import PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 
 __all__ = ["payloads"]
 

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-__all__ = ["Descent", "Landscape", "Point", "Slopes", "descend"]
+__all__ = ["Descent", "DescentProblem", "Iterate", "Slopes", "descend"]
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ LEAST_GAIN = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class Iterate:
     """A place that exists: all its margins are zero or more.
 
     Args:
@@ -69,13 +69,13 @@ class Slopes:
     margins: Array
 
 
-class Landscape(Protocol):
+class DescentProblem(Protocol):
     """What is descended."""
 
-    def look(self, position: Array) -> Point | None:
+    def look(self, position: Array) -> Iterate | None:
         """The point at a position, or None where there is none."""
 
-    def slopes(self, point: Point) -> Slopes | None:
+    def slopes(self, point: Iterate) -> Slopes | None:
         """The derivatives at a point that was looked at, or None at a kink."""
 
 
@@ -89,13 +89,13 @@ class Descent:
         reason: why it ended, in a sentence.
     """
 
-    best: Point
+    best: Iterate
     looks: int
     reason: str
 
 
 def descend(
-    landscape: Landscape, start: Point, budget: int, watch: Callable[[int, Point | None, bool], None]
+    landscape: DescentProblem, start: Iterate, budget: int, watch: Callable[[int, Iterate | None, bool], None]
 ) -> Descent:
     """Go downhill from a point.
 
@@ -152,7 +152,7 @@ def _radius(radius: float, length: float, share: float) -> float:
     return min(2.0 * radius, LARGEST_RADIUS) if share > 0.75 and length > 0.8 * radius else radius
 
 
-def _step(point: Point, slopes: Slopes, curvature: Array, radius: float) -> Array:
+def _step(point: Iterate, slopes: Slopes, curvature: Array, radius: float) -> Array:
     """The minimiser of the model; missing reserve is a variable beside the step."""
     count = len(point.position)
     sizes = np.abs(slopes.margins).sum(axis=1)

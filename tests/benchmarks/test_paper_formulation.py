@@ -12,18 +12,18 @@ import pytest
 from benchmarks.paper_formulation import measure_ours
 from benchmarks.paper_posture import PaperProgram, paper_program
 from benchmarks.projected_graph import agent_matrices
-from evodesign.posture.bearing import TORQUE_UNIT
-from evodesign.posture.preparation import Preparation
-from evodesign.posture.program import RawSolution
-from evodesign.posture.solution import AgentPosture
-from evodesign.posture.stand import COMFORT
+from evodesign.mechanics.coupled import CoupledModel
+from evodesign.mechanics.projected import contact_wrenches, projected_torques
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.nlp.program import RawSolution
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.terms.floating_base import COMFORT
+from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
-from evodesign.statics.coupled import CoupledModel
-from evodesign.statics.projected import contact_wrenches, projected_torques
-from evodesign.statics.scene import HUMAN, ROBOT
-from tests.statics.test_projected import boundless, places_of, postures_of, random_case
+from tests.mechanics.test_projected import boundless, places_of, postures_of, random_case
 
 HEIGHT = 1.0  # [m]
 TORQUE = 1e-4  # [N m]
@@ -134,7 +134,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
 
 
 def test_figures_count_what_was_solved(
-    problem: Problem, known: Preparation, design: tuple[float, ...]
+    problem: Problem, known: Precomputed, design: tuple[float, ...]
 ) -> None:
     figures = measure_ours(problem, known, [design], HEIGHT)
     assert (figures.solved, figures.tried) == (1, 1)

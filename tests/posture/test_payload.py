@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 
 BOX = (0.5, 0.5, 0.025)
 

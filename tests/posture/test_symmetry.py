@@ -9,14 +9,14 @@ import pytest
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import ModelError
+from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.form import half, symmetric_forms
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.reach import ReachProblem
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.results import HeightSolution
+from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import Problem
 from evodesign.records import Status
-from evodesign.statics.scene import HUMAN, ROBOT, Payload
 
 
 def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> HeightSolution:

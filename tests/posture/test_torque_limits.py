@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
-from evodesign.statics.disturbance import Disturbance, Disturbances
-from evodesign.statics.scene import HUMAN, ROBOT
 
 HEIGHT = 1.2
 

@@ -12,7 +12,7 @@ from evodesign import evolve
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.pool.serial import SerialPool
-from evodesign.posture.tasks import density_task, mass_height_task
+from evodesign.posture.terms.paper_tasks import density_task, mass_height_task
 from evodesign.problem.baseline import Baseline, BaselineFactory
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.niosh import Coupling
+from evodesign.human.strength import joint_strengths
+from evodesign.mechanics.contact import SoleSize
+from evodesign.mechanics.scene import HUMAN, Agent
 from evodesign.posture.check import AgentModel
-from evodesign.posture.lifting import Coupling
-from evodesign.posture.solution import AgentPosture
+from evodesign.posture.results import AgentPosture
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.records import AgentDetail
-from evodesign.statics.contact import SoleSize
-from evodesign.statics.scene import HUMAN, Agent
-from evodesign.tree.anthropometry import Person, Sex
-from evodesign.tree.human import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
-from evodesign.tree.strength import joint_strengths
 
 MAN = Person(1.82, 72.7, Sex.MALE)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import build_problem
 from evodesign.records import ProblemSource
-from evodesign.statics.scene import Agent
 from tests.fuzz.test_fuzz_inputs import PROBLEM, ROBOT, TEXTS
 
 

@@ -23,19 +23,19 @@ from evodesign.analysis.quantities import quantities
 from evodesign.cli.exporting import export_run_design
 from evodesign.cli.output import figure
 from evodesign.cli.showing import show_design
+from evodesign.human.body import human_tree
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import Problem
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.page import gather, page_content
 from evodesign.runlog.run import Run
-from evodesign.statics.scene import HUMAN, ROBOT
-from evodesign.tree.human import human_tree
 from evodesign.tree.urdf_write import urdf_text
 from tests.cli.test_show_and_export import cells
 from tests.report.replay.test_replay import frames
+from tests.report.scenes import random_company
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
-from tests.report.stages import random_company
-from tests.report.test_stage import posture_of
+from tests.report.test_scene_models import posture_of
 
 
 @pytest.fixture(scope="module")
@@ -206,8 +206,8 @@ def test_page_keeps_fewer_designs_of_many_pairs(
 
 
 def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(run: Run, several: Problem) -> None:
-    company = random_company(several, 1)
-    stages = [company.stage_of(run.details[1].heights[number]) for number in (0, 1, 3)]
+    scene_set = random_company(several, 1)
+    stages = [scene_set.placed_scene(run.details[1].heights[number]) for number in (0, 1, 3)]
     names = ["{}, {}\nload at {:g} m".format(*CASES[number]) if number != 2 else "" for number in range(4)]
     assert [axes.get_title() for axes in posture_figure(stages, "all but the third").axes] == names
 

@@ -11,7 +11,7 @@ from evodesign.errors import InputError
 from evodesign.records import SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.cma_es import CmaEs
-from evodesign.search.cma_instances import MARGIN, default_population, uncrowded_cost
+from evodesign.search.cma_instances import MARGIN, default_population, improvement_cost
 
 FAILED = Outcome(None, None)
 
@@ -210,13 +210,13 @@ def test_default_population_is_that_of_the_tutorial(dimension, population):
 
 def test_the_cost_is_the_gain_in_units_of_the_range():
     """Extent 4 and 10: others at (0.25, 0.5), reference 1.1; (0.5, 0.2) adds (1.1 - 0.5) (0.5 - 0.2)."""
-    cost = uncrowded_cost(np.array([[2.0, 15.0]]), np.array([[1.0, 10.0], [5.0, 20.0]]))
+    cost = improvement_cost(np.array([[2.0, 15.0]]), np.array([[1.0, 10.0], [5.0, 20.0]]))
     assert cost((3.0, 12.0)) == pytest.approx(-0.18, rel=1e-12)
     assert cost((4.0, 17.0)) == pytest.approx(0.2, rel=1e-12)
 
 
 def test_the_cost_without_a_range_keeps_the_unit():
     """Reference 7 + 1.1 in the first objective, whose values all agree."""
-    cost = uncrowded_cost(np.empty((0, 2)), np.array([[7.0, 0.0], [7.0, 2.0]]))
+    cost = improvement_cost(np.empty((0, 2)), np.array([[7.0, 0.0], [7.0, 2.0]]))
     assert cost((7.5, 1.0)) == pytest.approx(-0.6 * 0.6, rel=1e-12)
-    assert uncrowded_cost(np.empty((0, 2)), np.empty((0, 2)))((7.5, 1.0)) == 0.0
+    assert improvement_cost(np.empty((0, 2)), np.empty((0, 2)))((7.5, 1.0)) == 0.0

@@ -14,7 +14,7 @@ from evodesign.search.base import Outcome
 from evodesign.search.discrete import least_deviations, snapped
 from evodesign.search.mixed_operators import MixedCrossover, MixedMutation
 from evodesign.search.quasi_random import SobolStream
-from evodesign.search.registry import make_search, make_steady_search
+from evodesign.search.registry import make_asynchronous_search, make_search
 
 COUNTS = (0, 4, 3, 7)
 
@@ -193,6 +193,6 @@ def test_choices_go_on_being_varied_after_all_else_has_converged(algorithm, monk
 
 def test_one_discrete_coordinate_alone_is_not_for_cma_es():
     alone = SearchSettings(algorithm="cma-es", dimension=1, objectives=1, population=6, seed=1, choices=(4,))
-    for make in (make_search, make_steady_search):
+    for make in (make_search, make_asynchronous_search):
         with pytest.raises(InputError, match="one discrete coordinate"):
             make(alone)

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from evodesign.records import Evaluation, HeightDetail, RunHeader, materials_of
-from evodesign.report.company import Company
+from evodesign.report.scene_set import SceneSet
 from evodesign.tree.model import Tree
 
 __all__ = ["ExportedDesign", "design_json"]
@@ -29,13 +29,13 @@ class ExportedDesign:
     run: str
     header: RunHeader
     evaluation: Evaluation
-    company: Company
+    scene_set: SceneSet
     heights: tuple[HeightDetail, ...]
 
     @property
     def people(self) -> dict[str, tuple[str, Tree]]:
         """By file name: each person's label and tree. Several people are numbered, whatever their labels."""
-        people = self.company.people
+        people = self.scene_set.people
         if len(people) == 1:
             ((person, tree),) = people
             return {"human.urdf": (person.label, tree)}

@@ -14,7 +14,7 @@ import msgspec
 import pytest
 
 from evodesign.analysis.front import front
-from evodesign.analysis.watched import Watched
+from evodesign.analysis.live_state import LiveRun
 from evodesign.errors import InputError, RunError
 from evodesign.report.live.server import ADDRESS, LiveServer
 from evodesign.report.live.state import state_of
@@ -27,11 +27,11 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 def state(*, ended: bool = False, now: float = 45.0, count: int = len(RUN)) -> dict[str, object]:
-    watched = Watched()
+    watched = LiveRun()
     records = [HEADER, *RUN[:count], toy_generation(0, 4), toy_generation(1, 8)]
     watched.learn([(record, float(second)) for second, record in enumerate(records)])
-    assert watched.standing is not None
-    return state_of(watched.standing, ended=ended, now=now)
+    assert watched.state is not None
+    return state_of(watched.state, ended=ended, now=now)
 
 
 @pytest.fixture

@@ -16,13 +16,13 @@ import numpy as np
 import pytest
 
 from evodesign.analysis.front import front
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import Problem
 from evodesign.records import AgentDetail, Objective, Sense
 from evodesign.report.page import page_content, page_html
 from evodesign.report.page.bodies import agent_body
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.statics.scene import HUMAN, ROBOT
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from tests.report.page.chromium import Tab, browser, executable
