@@ -61,6 +61,7 @@ def digest(value: object, *, without: Exceptions = NO_EXCEPTIONS) -> str:
         without: fields that do not count, of exactly these classes.
     Raises:
         TypeError: a value of another type; it says which and where.
+        RecursionError: data that contain themselves.
         ValueError: `without` names a field that its class lacks.
     """
     for kind, names in without.items():
@@ -223,7 +224,8 @@ def _release(name: str) -> str | None:
     with suppress(PackageNotFoundError):
         return version(name)
     for found in distributions():  # such as pin, which is imported as pinocchio
-        if f"/{name}/__init__.py," in (found.read_text("RECORD") or ""):
+        record = f"\n{found.read_text('RECORD')}"
+        if any(f"{before}{name}/__init__.py," in record for before in ("\n", "/site-packages/")):
             return found.version
     spec = find_spec(name)
     return None if spec is None or spec.origin is None else str(Path(spec.origin).stat().st_mtime_ns)

@@ -201,10 +201,15 @@ def test_another_release_of_a_package_is_another_code(monkeypatch: pytest.Monkey
         assert closure.digest() != before, one
 
 
-def test_a_package_imported_under_another_name_has_its_version() -> None:
+def test_a_package_imported_under_another_name_has_its_version(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert identity._release("pinocchio") == importlib.import_module("pinocchio").__version__
     assert identity._release("no_such_package") is None
-    assert identity._release("tests"), "a package without distribution goes by its time"
+    (tmp_path / "loner.py").touch()
+    monkeypatch.syspath_prepend(str(tmp_path))
+    time = identity._release("loner")
+    assert time == str((tmp_path / "loner.py").stat().st_mtime_ns), "no distribution holds it"
 
 
 def test_a_module_that_does_not_exist_is_refused() -> None:

@@ -8,12 +8,18 @@ differ in the person share the robot's.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.identity import Exceptions, digest
+from evodesign.mechanics.scene import Agent, Payload, Scene
 from evodesign.nlp.program import IpoptOptions, Program, Solver
 
 __all__ = ["SolverCache", "program_key"]
+
+NO_PART_OF_PROGRAMS: Exceptions = {
+    Scene: {"human": "only hands stand in for a person who has no body in the program"},
+    Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},
+    Agent: {"label": "is a word for results"},
+}
 
 
 class SolverCache:
@@ -37,12 +43,11 @@ class SolverCache:
 
 
 def program_key(scene: Scene, *agents: Agent) -> str:
-    """What the programs of a scene's agents follow from, beside the agents; the load's mass is none of it.
+    """Digest of what the programs of a scene's agents follow from: all of it but the named exceptions.
 
     Args:
-        scene: load, ground and stance.
-        agents: those with a body in the program; the same object is the same agent.
+        scene: robot, load, ground and stance.
+        agents: those with a body in the program; the robot counts in any case.
     """
-    load = replace(scene.payload, mass=0.0, label="")
-    limits = (scene.ground, scene.stance, scene.robot_share, scene.disturbances)
-    return repr((load, *limits, *(id(agent) for agent in agents)))
+    others = tuple(agent for agent in agents if agent is not scene.robot)
+    return digest((scene, others), without=NO_PART_OF_PROGRAMS)
