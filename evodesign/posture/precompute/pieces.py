@@ -1,22 +1,21 @@
 """What is worked out once per problem, before any robot is evaluated: the pieces of a `Precomputed`.
 
-A piece is a function of the problem alone and is kept, as JSON, under a digest of everything that it depends
-on; so a score depends neither on a cache nor on who worked the piece out.
+A piece is a function of the problem alone and is kept, as JSON, under a digest of all of the setting, the
+piece and the code but for named exceptions; so a score depends neither on a cache nor on who worked it out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-import casadi as ca
 import msgspec
 
 from evodesign.design.space import DesignSpace
+from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
-from evodesign.mechanics.scene import Agent, Grasp, Scene
-from evodesign.nlp.disk_cache import digest_of
+from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene
 from evodesign.nlp.program import IpoptOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio
 from evodesign.posture.allocation import EffortWeights
@@ -37,12 +36,8 @@ from evodesign.posture.precompute.stored import (
     stored_value,
 )
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.tree.urdf_write import urdf_text
 
 __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
-
-RECIPE = b"4"
-"""Changes whenever the same problem would get other pieces."""
 
 REACH_TRAINING = Training(designs=32, starts=8)
 HALF_TRAINING = Training(designs=48, starts=8)
@@ -109,6 +104,37 @@ class PrecomputeSetting:
         return self.symmetry is not Symmetry.OFF
 
 
+NO_PART_OF_PIECES: Exceptions = {
+    PrecomputeSetting: {
+        "scenes": "the one that a piece is worked out in counts",
+        "middle": "says which scene that is",
+        "symmetry": "polishing comes later: whether postures are symmetric counts",
+    },
+    Piece: {"scene": "says which scene that is", "label": "is a word for messages"},
+    Agent: {"label": "is a word for results"},
+    Payload: {"label": "is a word for results"},
+    IpoptOptions: {"compiled": "machine code gives the same bits"},
+}
+
+NO_PART_OF_A_PERSONS: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        **NO_PART_OF_PIECES[PrecomputeSetting],
+        "space": "a person stands behind the load, whatever the robot's hardware",
+    },
+    Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
+}
+
+NO_PART_OF: Mapping[Subject, Exceptions] = {
+    Subject.PERSON: NO_PART_OF_A_PERSONS,
+    Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
+    Subject.HIGHEST: NO_PART_OF_PIECES,
+    Subject.LOWEST: NO_PART_OF_PIECES,
+    Subject.POSTURE: NO_PART_OF_PIECES,
+}
+"""Fields on which a piece does not depend, by its subject, with the reason."""
+
+
 def stages(
     setting: PrecomputeSetting, heights: Sequence[float], *, seeds: bool, person_reaches: bool
 ) -> list[list[Piece]]:
@@ -159,19 +185,9 @@ def _scene_of(setting: PrecomputeSetting, piece: Piece) -> Scene:
 
 
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
-    """The digest under which a piece is kept."""
-    scene, options = _scene_of(setting, piece), replace(setting.options, compiled=False)
-    load = replace(scene.payload, label="")
-    limits = (scene.ground, scene.stance, scene.robot_share)
-    numbers = (piece.subject, piece.height, load, *limits, setting.weights, options)
-    ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
-    if scene.disturbances:
-        ingredients.append(repr(scene.disturbances).encode())
-    if piece.subject is Subject.PERSON_REACH:
-        ingredients.append(repr(setting.symmetric).encode())
-    elif piece.subject is not Subject.PERSON:
-        ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]
-    return digest_of(*ingredients)
+    """The digest under which a piece is kept: of all that it may follow from, and of the code."""
+    data = (setting, setting.symmetric, _scene_of(setting, piece), piece)
+    return digest((data, code_digest(__name__)), without=NO_PART_OF[piece.subject])
 
 
 def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
@@ -238,9 +254,3 @@ def _designs(
     space: DesignSpace, training: Training, wanted: Callable[[tuple[float, ...]], bool]
 ) -> Iterator[tuple[float, ...]]:
     return spread_designs(len(space.parameters), space.values, wanted, LOOKED_AT * training.designs)
-
-
-def _named(agent: Agent) -> list[bytes]:
-    named = (agent.joints, agent.hands, agent.soles, agent.sole_size, agent.trunk)
-    limits = [repr(sorted(agent.torque_limits.items())).encode()] if agent.limits_torques else []
-    return [urdf_text(agent.tree).encode(), repr(named).encode(), *limits]
