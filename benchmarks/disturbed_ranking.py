@@ -25,8 +25,9 @@ from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio, random_start
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem
@@ -77,7 +78,9 @@ class Judge:
         quiet = replace(problem.scene, payload=payload)
         self._problem = problem
         self._scenes = (quiet, replace(quiet, disturbances=DISTURBANCES))
-        self._reach = ReachProblem(self._scenes[1], problem.space, problem.options, symmetric=True)
+        self._reach = ReachProblem(
+            Setting(self._scenes[1], problem.space, problem.weights, problem.options), symmetric=True
+        )
         self._postures = [_with_starts(problem, scene, starts) for scene in self._scenes]
         self._human = AgentModel.of(quiet.human, quiet.human.tree)
 
@@ -113,12 +116,13 @@ def _norms(solution: HeightSolution, agent: str) -> dict[str, float]:
 
 def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
     """A posture problem whose solves begin at the program's own starts and at some random ones."""
-    ingredients = (scene, problem.space, problem.weights, problem.options, problem.symmetry)
-    landscape = PostureProblem(*ingredients).landscape(HEIGHTS[0])
+    setting = Setting(scene, problem.space, problem.weights, problem.options)
+    landscape = PostureProblem(setting, problem.symmetry).landscape(HEIGHTS[0])
     rng = np.random.default_rng(0)
     starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
-    seeds = StartPortfolio(starts, Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Precomputed(postures=dict.fromkeys(HEIGHTS, seeds)))
+    portfolio = StartPortfolio(starts, Coverage(0, 0, 0.0))
+    known = Precomputed(postures=dict.fromkeys(HEIGHTS, portfolio))
+    return PostureProblem(setting, problem.symmetry, known)
 
 
 def judge(load: str, designs: list[Design], starts: int) -> list[Row | None]:

@@ -23,7 +23,8 @@ from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.coupled import PAYLOAD
 from evodesign.mechanics.dynamics import mass_matrix
 from evodesign.mechanics.scene import SIDES, Agent, Payload, Scene
-from evodesign.posture.terms.torque import GRASP_ROWS, hand_wrench
+from evodesign.posture.terms.base import hand_wrench
+from evodesign.posture.terms.grasp import GRASP_ROWS
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Link, Tree
 

@@ -22,9 +22,11 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.nlp.start_portfolio import random_start
 from evodesign.posture.allocation import EffortWeights, shared_scene
-from evodesign.posture.check import TOLERANCE, AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
+from evodesign.posture.warm_start import instant_of, layout_of
 from evodesign.problem.build import Problem
 from evodesign.records import Status
 
@@ -44,7 +46,7 @@ def sweep(problem: Problem, policy: str, height: float, starts: int) -> Iterator
     bounds = ALLOCATIONS[policy]
     parameter = DesignParameter(ParameterKind.POLICY, policy, (), bounds.lowest, bounds.highest)
     space = DesignSpace((parameter,))
-    postures = PostureProblem(scene, space, EffortWeights(), problem.options, Symmetry.ON)
+    postures = PostureProblem(Setting(scene, space, EffortWeights(), problem.options), Symmetry.ON)
     landscape, rng = postures.landscape(height), np.random.default_rng(1)
     tried = [*landscape.starts, *(random_start(landscape, rng) for _ in range(starts))]
     person = AgentModel.of(scene.human, scene.human.tree)
@@ -56,9 +58,11 @@ def sweep(problem: Problem, policy: str, height: float, starts: int) -> Iterator
             continue
         best = min(solved, key=lambda end: end.cost)
         tried.append(best.values)
-        found = {f.agent.name: f.expand(best.of(f.agent.name)) for f in symmetric_forms(scene)}
+        layout = layout_of(landscape.solver.program)
+        instant = instant_of(layout, symmetric_forms(scene), scene, best.values)
+        found = instant.postures
         checker = Checker(shared_scene(scene, space, (value,)), scene.robot.tree, person)
-        if max(checker.residuals(found, height).values()) > TOLERANCE:
+        if max(sizes(checker.residuals(instant, height)).values()) > TOLERANCE:
             raise AssertionError(f"the check refuses {policy} {value:g} at {height:g} m")
         carried = -sum(wrench[2] for wrench in found[ROBOT].hand_wrenches.values())
         share = carried / (GRAVITY * scene.payload.mass)

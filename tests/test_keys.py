@@ -22,8 +22,8 @@ import pytest
 
 from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
-from evodesign.nlp.solver_cache import NO_PART_OF_PROGRAMS, program_key
-from evodesign.posture.formulations.joint import Symmetry
+from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
+from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.pieces import NO_PART_OF, Piece, PrecomputeSetting, Subject, key_of
 from evodesign.problem import evaluation_cache
 from evodesign.problem.build import build_problem
@@ -158,13 +158,17 @@ def setting_of(name: str) -> PrecomputeSetting:
     return precompute_setting(build_problem(source_of(name)))
 
 
+def key(scene: Scene) -> str:
+    return program_key("reach", scene)
+
+
 @pytest.mark.parametrize("problem", ["shared_lifting", "three_people_three_loads"])
 def test_every_field_of_a_scene_counts_in_the_key_of_its_programs(problem: str) -> None:
     setting = setting_of(problem)
     scene = setting.scenes[setting.middle]
-    see_every_field_count(scene, NO_PART_OF_PROGRAMS, program_key)
+    see_every_field_count(scene, NO_PART_OF_PROGRAMS, key)
     with_both = {kind: names for kind, names in NO_PART_OF_PROGRAMS.items() if kind is not Scene}
-    seen = see_every_field_count(scene, with_both, lambda s: program_key(s, s.robot, s.human))
+    seen = see_every_field_count(scene, with_both, lambda s: program_key("joint", s, s.robot, s.human))
     assert {"Scene", "Payload", "Agent", "Tree", "Link", "Joint", "StanceLimits", "Ground"} <= seen
 
 
@@ -172,7 +176,7 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
     scene = setting_of("shared_lifting").scenes[0]
     without = {kind: names for kind, names in NO_PART_OF_PROGRAMS.items() if kind is not Payload}
     with pytest.raises(AssertionError, match=r"Scene\.payload\.mass: 11\.0"):
-        see_every_field_count(scene, without, program_key)
+        see_every_field_count(scene, without, key)
 
 
 @pytest.mark.parametrize(

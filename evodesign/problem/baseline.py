@@ -7,7 +7,7 @@ that fails leaves an assessment without objectives, with its status and reason.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from evodesign.design.allocation import EFFORT_RATIO
@@ -17,6 +17,8 @@ from evodesign.posture.check import TOLERANCE
 from evodesign.posture.formulations.codesign import JointProblem, JointSolution
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import HeightSolution
+from evodesign.posture.solution_derivative import known_instant
+from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import detail_of, height_outcome, reach_of
 from evodesign.problem.materials import refuse_choices
@@ -73,7 +75,7 @@ class Baseline:
             result: of an evaluation; all its heights are solved.
         """
         genome = self._problem.space.genome(result.values)
-        return self._joint.polish(genome, [height.postures for height in result.heights])
+        return self._joint.polish(genome, [known_instant(height) for height in result.heights])
 
     def assess(self, start: Genome) -> Assessed:
         """What the design in which a start ended is worth, with its postures."""
@@ -117,9 +119,9 @@ def _reach(solution: JointSolution) -> Reach:
     return Reach(min(heights), max(heights), Status.SOLVED, reason)
 
 
-def _reason(height: HeightSolution, violations: Mapping[str, float]) -> str:
+def _reason(height: HeightSolution, violations: Sequence[Residual]) -> str:
     """A solved height's reason, with every limit that is not enforced and does not hold."""
-    beyond = [f"{name} by {size:.3g}" for name, size in violations.items() if size > TOLERANCE]
+    beyond = [f"{r.name} by {r.size:.3g}" for r in violations if r.size > TOLERANCE]
     return (
         f"{height.reason}; limits not enforced and exceeded: {', '.join(beyond)}" if beyond else height.reason
     )

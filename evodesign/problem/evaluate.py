@@ -13,8 +13,9 @@ from evodesign.nlp.solver_cache import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import Reach, ReachProblem, common_reach
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, HeightSolution, Neighbour
 from evodesign.problem.build import Problem
@@ -51,13 +52,18 @@ class Evaluator:
         space, options, symmetry = problem.space, problem.options, problem.symmetry
         solvers = SolverCache()
         self._postures = [
-            PostureProblem(scene, space, problem.weights, options, symmetry, known.of_scene(number), solvers)
+            PostureProblem(
+                Setting(scene, space, problem.weights, options), symmetry, known.of_scene(number), solvers
+            )
             for number, scene in enumerate(problem.scenes)
         ]
         symmetric = symmetry is not Symmetry.OFF
         self._reaches = {
             id(scene.payload): ReachProblem(
-                scene, space, options, symmetric=symmetric, known=known, solvers=solvers
+                Setting(scene, space, problem.weights, options),
+                symmetric=symmetric,
+                known=known,
+                solvers=solvers,
             )
             for scene in problem.scenes
         }
@@ -136,10 +142,10 @@ class Evaluator:
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
-            return HeightSolution(height, reach.status, reach.reason, {}, {}, (), "")
+            return HeightSolution(height, reach.status, reach.reason, {}, {}, ())
         if distance > 0.0:
             reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, (), "")
+            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, ())
         neighbour = self._neighbour(before, scene, height)
         return self._postures[scene].solve(values, height, checker, neighbour)
 

@@ -82,7 +82,7 @@ def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
         **{name: label for name, label in labels.items() if label},
         "status": str(height.status),
         "reason": height.reason,
-        "start": height.start,
+        "start": height.attempt.name if height.attempt else "",
         "solver": _solver(height),
     }
     if height.solved:
@@ -137,7 +137,7 @@ def _solver(height: HeightSolution) -> dict[str, Any]:
         "seconds": sum(attempt.seconds for attempt in height.attempts),
         "attempts": [
             {
-                "start": attempt.start,
+                "start": attempt.name,
                 "status": str(attempt.status),
                 "reason": attempt.reason,
                 "iterations": attempt.iterations,

@@ -16,7 +16,7 @@ from evodesign.human.anthropometry import Sex
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
 from evodesign.mechanics.scene import Grasp
-from evodesign.posture.formulations.joint import Symmetry
+from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 

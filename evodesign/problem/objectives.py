@@ -16,8 +16,8 @@ from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.balance import standing_height_of_mass
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
-from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.problem.aggregate import (
     WORST,
     CaseQuantity,

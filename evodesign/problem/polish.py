@@ -16,7 +16,7 @@ import numpy as np
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.nlp.optimality import Array, NotDifferentiable
-from evodesign.posture.reach_derivative import ReachDerivative
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult

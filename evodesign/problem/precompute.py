@@ -57,7 +57,8 @@ def precomputed(
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = precompute_setting(problem), Precomputed()
-    for stage in stages(setting, problem.heights, seeds=problem.seeds, person_reaches=problem.person_reaches):
+    heights, people = problem.heights, problem.person_reaches
+    for stage in stages(setting, heights, portfolios=problem.seeds, person_reaches=people):
         missing = []
         for piece in stage:
             content = cache.read(key_of(setting, piece)) if cache else None

@@ -28,12 +28,12 @@ from evodesign.mechanics.projected import (
     projected_torques,
 )
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Scene
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.nlp.program import Program
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.load import load_constraints
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
@@ -217,19 +217,17 @@ def boundless(problem: Problem) -> tuple[Solver, Scene]:
     scene, space = problem.scene, problem.space
     design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
-    robot = agent_block(whole(scene.robot), tree, scene, height)
-    human = agent_block(whole(scene.human), scene.human.tree, scene, height)
-    hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}
-    load = load_constraints(scene, hands, symmetric=False)
-    every = (*robot.constraints, *human.constraints, *load)
+    parties = (Embodied(whole(scene.robot), tree), Embodied(whole(scene.human), scene.human.tree))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    every = assembly.constraints
     kept = tuple(c for c in every if not c.name.endswith(("_foot_contact", ".push")))
-    assert len(every) - len(kept) == 5  # four feet and the push
+    assert len(every) - len(kept) == 5  # four feet and the internal force
     program = Program(
         name="boundless",
-        variables=(*robot.variables, *human.variables),
+        variables=assembly.variables,
         constraints=kept,
-        cost=(robot.effort + human.effort) / TORQUE_UNIT**2,
-        parameters=ca.vertcat(design, height),
+        cost=assembly.undisturbed.effort({ROBOT: 1.0, HUMAN: 1.0}),
+        parameters={"design": design, "height": height},
     )
     return Solver(program, IpoptOptions()), scene
 
@@ -274,7 +272,7 @@ def test_the_solvers_torques_and_wrenches_are_the_papers(problem: Problem) -> No
     strained = []
     for _ in range(DESIGNS):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
-        raw = solver.solve([*values, 1.0], start)
+        raw = solver.solve({"design": values, "height": 1.0}, start)
         assert raw.status is Status.SOLVED, raw.reason
         postures = postures_of(scene, raw)
         model = CoupledModel(scene, problem.space.resized(scene.robot.tree, values))

@@ -25,7 +25,9 @@ from evodesign.nlp.codegen import (
     library,
 )
 from evodesign.nlp.disk_cache import Cache, open_cache
-from evodesign.nlp.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.problem.build import Problem
 from evodesign.records import Status
@@ -79,17 +81,19 @@ def program(radius: float) -> Program:
     turn = ca.sin(0.3 * x.value[0])
     a, b = x.value[0], x.value[1] + turn
     cost = (1.0 - a) ** 2 + weight * (b - a**2) ** 2
-    return Program("valley", (x,), (Constraint("disc", ca.norm_2(x.value), 0.1, radius),), cost, weight)
+    return Program(
+        "valley", (x,), (Constraint("disc", ca.norm_2(x.value), 0.1, radius),), cost, {"weight": weight}
+    )
 
 
 def nlp(radius: float) -> Mapping[str, Any]:
     made = program(radius)
     (block,), (disc,) = made.variables, made.constraints
-    return {"x": block.symbol, "p": made.parameters, "f": made.cost + radius, "g": disc.expression}
+    return {"x": block.symbol, "p": made.given, "f": made.cost + radius, "g": disc.expression}
 
 
 def solved(solver: Solver) -> RawSolution:
-    return solver.solve([100.0], solver.start)
+    return solver.solve({"weight": 100.0}, solver.start)
 
 
 def same(one: RawSolution, other: RawSolution) -> bool:
@@ -132,7 +136,7 @@ def test_library_holds_the_exact_derivatives(cache: Cache, compiler: Compiler) -
 def test_compiled_reach_of_the_default_problem_is_the_same(problem: Problem) -> None:
     """One real compilation: about six seconds."""
     reaches = [
-        ReachProblem(problem.scene, problem.space, options, symmetric=True)
+        ReachProblem(Setting(problem.scene, problem.space, problem.weights, options), symmetric=True)
         for options in (IpoptOptions(), COMPILED)
     ]
     assert isinstance(reaches[1]._solver.functions, CompiledFunctions)

@@ -15,16 +15,21 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
-from evodesign.nlp.program import Solver
+from evodesign.nlp.solver import Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.codesign import JointProblem
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry, posture_program
+from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.formulations.reach import ReachProblem
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.results import AgentPosture, HeightSolution, Instant
+from evodesign.posture.solution_derivative import known_instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.warm_start import instant_of, layout_of, start_from
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
+from tests.posture.violations import violations
 
 NO_POLICY = DesignSpace(())
 MASS = 10.0
@@ -52,7 +57,7 @@ def solve(
 ) -> HeightSolution:
     """The unscaled robot's posture; everything that is checked holds."""
     options = replace(problem.options, tolerance=1e-10)
-    posture = PostureProblem(scene, space, weights, options, symmetry)
+    posture = PostureProblem(Setting(scene, space, weights, options), symmetry)
     found = posture.solve(values, height, checker(shared_scene(scene, space, values)))
     assert found.solved, found.reason
     assert max(found.residuals.values()) <= TOLERANCE
@@ -117,13 +122,12 @@ def end(
 ) -> Postures:
     """The optimum next to some postures; it passes the check."""
     options = replace(problem.options, tolerance=1e-10, near=True)
-    solver = Solver(posture_program(forms, scene, NO_POLICY, EQUAL), options)
-    rows = {variable.name: variable.symbol.numel() for variable in solver.program.variables}
-    start = {k: v for form in forms for k, v in form.start(postures[form.agent.name], rows).items()}
-    raw = solver.solve([height, MASS], start)
+    solver = Solver(posture_program(forms, Setting(scene, NO_POLICY, EQUAL, options)), options)
+    start = start_from(solver.program, forms, [Instant(0.0, postures)])
+    raw = solver.solve({"design": [], "height": height, "mass": MASS}, start)
     assert raw.status is Status.SOLVED, raw.reason
-    found = {form.agent.name: form.expand(raw.of(form.agent.name)) for form in forms}
-    assert max(checker(scene).residuals(found, height).values()) <= TOLERANCE
+    found = instant_of(layout_of(solver.program), forms, scene, raw.values).postures
+    assert max(violations(checker(scene), found, height).values()) <= TOLERANCE
     return found
 
 
@@ -144,7 +148,7 @@ def test_no_hand_passes_more_than_it_bears(problem: Problem) -> None:
 
 def test_the_check_sees_shares_and_moments_that_were_not_asked_for(problem: Problem) -> None:
     postures = solve(problem, rigid(problem, share=0.7)).postures
-    other = checker(rigid(problem, moment=3.0, share=0.4)).residuals(postures, 1.0)
+    other = violations(checker(rigid(problem, moment=3.0, share=0.4)), postures, 1.0)
     assert other["load.share"] == pytest.approx(0.3 * MASS * GRAVITY, rel=1e-6)
     wrenches = [p.hand_wrenches[side][3:] for p in postures.values() for side in SIDES]
     assert other["load.hand_moment"] == pytest.approx(np.abs(wrenches).max() - 3.0)
@@ -158,7 +162,7 @@ def test_no_agent_lifts_the_other_by_the_load(problem: Problem) -> None:
         name: replace(p, hand_wrenches={s: 1.5 * w for s, w in p.hand_wrenches.items()})
         for name, p in found.postures.items()
     }
-    residuals = checker(rigid(problem)).residuals(lifted, 0.6)
+    residuals = violations(checker(rigid(problem)), lifted, 0.6)
     assert residuals["load.share"] == pytest.approx(0.5 * MASS * GRAVITY, rel=1e-5)
 
 
@@ -192,9 +196,8 @@ def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> 
 
 
 def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
-    options = problem.options
-    space = policy(ROBOT_SHARE)
-    reach = ReachProblem(rigid(problem, moment=7.0), space, options, symmetric=True)
+    setting = Setting(rigid(problem, moment=7.0), policy(ROBOT_SHARE), EQUAL, problem.options)
+    reach = ReachProblem(setting, symmetric=True)
     highest = [reach.solve((given,)).highest or 0.0 for given in (0.0, 1.0)]
     assert 1.0 < highest[1] <= highest[0] + 1e-6
 
@@ -206,7 +209,7 @@ def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> Non
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True)), (0.3,)
     )
-    together = joint.polish((0.3,), [alone.postures])
+    together = joint.polish((0.3,), [known_instant(alone)])
     assert together.solved, together.attempt.reason
     assert share(together.heights[0]) == pytest.approx(0.3, abs=1e-6)
     assert norms(together.heights[0]) == pytest.approx(norms(alone), abs=1e-3)
@@ -219,7 +222,7 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True))
     )
-    together = joint.polish((share(alone),), [alone.postures])
+    together = joint.polish((share(alone),), [known_instant(alone)])
     assert together.solved, together.attempt.reason
     assert together.design[0] == pytest.approx(share(alone), abs=1e-3)
     cost = min(attempt.cost for attempt in alone.attempts if attempt.status is Status.SOLVED)

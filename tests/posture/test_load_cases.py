@@ -15,15 +15,17 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
 from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, HeightSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
 from evodesign.records import Status
+from tests.posture.violations import violations
 
 HEAVIER = Disturbance("heavier", mass_share=0.2)
 AWAY = Disturbance("pushed away", push=(20.0, 0.0, 0.0))
@@ -44,14 +46,15 @@ def postures_in(
     scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: Postures | None = None
 ) -> PostureProblem:
     """A scene's posture problem, which begins at its own starts or at other postures."""
-    solvers, ingredients = SolverCache(), (scene, problem.space, problem.weights, problem.options, symmetry)
-    bare = PostureProblem(*ingredients, solvers=solvers)
+    solvers, setting = SolverCache(), Setting(scene, problem.space, problem.weights, problem.options)
+    bare = PostureProblem(setting, symmetry, solvers=solvers)
     if like is None:
         return bare
     landscape = bare.landscape(HEIGHT)
     forms = symmetric_forms(scene) if symmetry is Symmetry.ON else (whole(scene.robot), whole(scene.human))
-    seeds = StartPortfolio((start_from(forms, landscape.solver.program, like),), Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Precomputed(postures={HEIGHT: seeds}), solvers)
+    start = start_from(landscape.solver.program, forms, [Instant(0.0, like)])
+    portfolio = StartPortfolio((start,), Coverage(0, 0, 0.0))
+    return PostureProblem(setting, symmetry, Precomputed(postures={HEIGHT: portfolio}), solvers)
 
 
 def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Checker:
@@ -204,7 +207,7 @@ def test_the_check_sees_what_is_wrong_under_a_disturbance(
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
     name = AWAY.name
     wrong = {**borne.disturbed[name], agent: changed(borne.disturbed[name][agent], part)}
-    found = checker.residuals(borne.postures, HEIGHT, {**borne.disturbed, name: wrong})
+    found = violations(checker, borne.postures, HEIGHT, {**borne.disturbed, name: wrong})
     assert found[f"{name}: {agent}.{residual}"] > TOLERANCE
     assert all(size <= TOLERANCE for key, size in found.items() if not key.startswith(name))
 
@@ -222,7 +225,7 @@ def test_the_check_sees_a_disturbance_of_another_size(
     others = tuple(stronger if other is case else other for other in EVERY)
     scene = disturbed(problem, *others)
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
-    found = checker.residuals(borne.postures, HEIGHT, borne.disturbed)
+    found = violations(checker, borne.postures, HEIGHT, borne.disturbed)
     assert max(size for key, size in found.items() if key.startswith(case.name)) > 0.1
 
 
@@ -267,7 +270,10 @@ def test_a_reach_with_disturbances_is_one_that_postures_bear(problem: Problem) -
     pushes = tuple(replace(ROBOT_BACK, name=f"{x:g} N", push=(x, 0.0, 0.0)) for x in (-110.0, 110.0))
     scenes = [disturbed(problem, *cases) for cases in ((), (HUMAN_BACK,), pushes)]
     quiet, beside, shaken = (
-        ReachProblem(scene, problem.space, problem.options, symmetric=True).solve(values) for scene in scenes
+        ReachProblem(Setting(scene, problem.space, problem.weights, problem.options), symmetric=True).solve(
+            values
+        )
+        for scene in scenes
     )
     assert (beside.lowest, beside.highest) == (quiet.lowest, quiet.highest), "it is the person who is pushed"
     assert quiet.lowest is not None

@@ -55,7 +55,9 @@ def test_a_kept_reach_is_the_one_that_was_worked_out(problem: Problem, stretch: 
     assert known.person_reaches == (stretch,)
     other = replace(setting, space=replace(setting.space, parameters=setting.space.parameters[:1]))
     assert key_of(other, piece) == key_of(setting, piece), "it does not depend on the robot's hardware"
-    asked = [piece.subject for s in stages(setting, (1.0,), seeds=False, person_reaches=True) for piece in s]
+    asked = [
+        piece.subject for s in stages(setting, (1.0,), portfolios=False, person_reaches=True) for piece in s
+    ]
     assert Subject.PERSON_REACH in asked
 
 

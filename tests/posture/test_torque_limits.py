@@ -15,6 +15,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
+from tests.posture.violations import violations
 
 HEIGHT = 1.2
 
@@ -63,7 +64,7 @@ def test_the_check_measures_how_far_a_torque_is_beyond_its_limit(
     assert "human.torque_limits" not in held.heights[0].residuals
     scene = limited(problem, SHOULDERS).scene
     human = AgentModel.of(scene.human, scene.human.tree)
-    found = Checker(scene, free.tree, human).residuals(free.heights[0].postures, HEIGHT)
+    found = violations(Checker(scene, free.tree, human), free.heights[0].postures, HEIGHT)
     torques = free.heights[0].postures[ROBOT].torques
     assert found["robot.torque_limits"] == pytest.approx(abs(torques["l_shoulder_pitch"]) - 1.5)
 

@@ -185,12 +185,12 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
 ) -> None:
     subjects = {
         piece.subject
-        for stage in stages(precompute_setting(shaken), (1.0,), seeds=True, person_reaches=False)
+        for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False)
         for piece in stage
     }
     assert Subject.PERSON not in subjects
     quiet = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
-    for stage in stages(precompute_setting(shaken), (1.0,), seeds=True, person_reaches=False):
+    for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False):
         for piece in stage:
             same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(quiet), piece)
             assert same is (piece.subject is not Subject.POSTURE), "quiet seeds of reach do"

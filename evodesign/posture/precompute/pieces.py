@@ -16,13 +16,14 @@ from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene
-from evodesign.nlp.program import IpoptOptions
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio
 from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.person_reach import person_reach
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.precompute.stored import (
     StoredPersonReach,
@@ -56,9 +57,9 @@ class Subject(StrEnum):
 
     PERSON = "the person's part"
     PERSON_REACH = "the person's reach"
-    HIGHEST = "seeds of the highest load"
-    LOWEST = "seeds of the lowest load"
-    POSTURE = "seeds of postures"
+    HIGHEST = "starts of the highest load"
+    LOWEST = "starts of the lowest load"
+    POSTURE = "starts of postures"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +89,7 @@ class PrecomputeSetting:
 
     Args:
         scenes: every person with every load.
-        middle: the scene that seeds are made in.
+        middle: the scene that portfolios are made in.
     """
 
     scenes: tuple[Scene, ...]
@@ -136,14 +137,14 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
 
 
 def stages(
-    setting: PrecomputeSetting, heights: Sequence[float], *, seeds: bool, person_reaches: bool
+    setting: PrecomputeSetting, heights: Sequence[float], *, portfolios: bool, person_reaches: bool
 ) -> list[list[Piece]]:
     """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
     Args:
         setting: of the problem.
         heights: of the load's centre [m].
-        seeds: whether solves begin at seeds.
+        portfolios: whether solves begin at portfolios of starts.
         person_reaches: whether the people's own reach is asked for.
     """
     people = [
@@ -157,7 +158,7 @@ def stages(
         for height in heights
         if setting.symmetric and _push_alone(scene, setting.space)
     ]
-    if not seeds:
+    if not portfolios:
         return [people]
     middle = setting.middle
     return [
@@ -204,7 +205,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         scene = setting.scenes[piece.scene]
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
         return msgspec.json.encode(stored_person_reach(found))
-    return msgspec.json.encode(stored_portfolio(_seeds(setting, piece, known)))
+    return msgspec.json.encode(stored_portfolio(_portfolio(setting, piece, known)))
 
 
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
@@ -234,16 +235,17 @@ def _person(setting: PrecomputeSetting, piece: Piece) -> HumanValue | None:
     return HumanProblem(form, scene, setting.weights.human, setting.options).value(piece.height)
 
 
-def _seeds(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
+def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
     scene, space, known = _scene_of(setting, piece), setting.space, known.of_scene(piece.scene)
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
-    reach = ReachProblem(scene, space, options, symmetric=setting.symmetric, known=known)
+    own = Setting(scene, space, setting.weights, options)
+    reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
     if piece.subject is not Subject.POSTURE:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         return start_portfolio(
             landscape, _designs(space, REACH_TRAINING, lambda design: True), REACH_TRAINING
         )
-    problem = PostureProblem(scene, space, setting.weights, options, setting.symmetry, known)
+    problem = PostureProblem(own, setting.symmetry, known)
     training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
     training = training if setting.symmetric else WHOLE_TRAINING
     designs = _designs(space, training, lambda design: reach.solve(design).distance(piece.height) == 0.0)
