@@ -74,7 +74,7 @@ def _landscapes(
     yield "highest load", reach.landscape(HIGHEST), known.highest.seeds
     yield "lowest load", reach.landscape(LOWEST), known.lowest.seeds
     split = PostureProblem(scene, space, weights, options, Symmetry.ON, known)
-    yield "robot against V(X), 1.0 m", split.landscape(1.0), known.seeds(1.0)
+    yield "robot with V(X), 1.0 m", split.landscape(1.0), known.seeds(1.0)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
         joint = PostureProblem(scene, space, weights, options, symmetry).landscape(1.0)
         yield name, joint, joint.starts

@@ -83,7 +83,7 @@ class Constraint:
 
 @dataclass(frozen=True, slots=True)
 class IpoptOptions:
-    """IPOPT's settings; the values are what measured best on posture problems (DESIGN 3).
+    """IPOPT's settings; the values are what measured best on posture problems.
 
     Args:
         tolerance: of the scaled optimality error; bounds are taken as wider by as much, at most 1e-8.

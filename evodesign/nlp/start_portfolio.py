@@ -1,11 +1,13 @@
-"""Seeds against luck: a few starts that lead nearly every design to its best known optimum.
+"""Start portfolios: a few starts from which a solver finds nearly every design's best known optimum.
 
-The optima of quasi-random training designs are the candidates. A seed is worth as many designs as it leads
-close to the best that is known of them; the worthiest comes first, and seeds are added until all training
-designs are led well. Then fresh designs are held against the portfolio; those that it fails are trained with,
-and others are held against what has grown. The same landscape always gets the same portfolio.
+The optima of quasi-random training designs are the candidates. The value of a candidate is the number of
+designs for which the solver converges from it to within a tolerance of the best known optimum. The candidate
+of greatest value comes first, and others are added until every training design has a good start. Then the
+portfolio is tested on fresh designs; those for which it fails join the training, and the next test takes
+others. The same landscape always gets the same portfolio.
 
-Source: DESIGN 3 (seeds); greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
+Source: docs/model.md, section 5 (start portfolios); greedy cover: Johnson 1974; Halton's points:
+scipy.stats.qmc.
 """
 
 from __future__ import annotations
@@ -45,10 +47,10 @@ class Training:
     Args:
         designs: for training, and as many fresh ones in each round.
         starts: random ones per design, beside the fixed ones, to find its best optimum.
-        candidates: tried for each seed.
-        seeds: the most that a portfolio holds.
+        candidates: tried for each start that is added.
+        seeds: the most starts that a portfolio holds.
         rounds: of fresh designs, at most.
-        share: of fresh designs led well, with which a portfolio is good enough.
+        share: of fresh designs with a good start, from which a portfolio is good enough.
     """
 
     designs: int = 64
@@ -78,7 +80,7 @@ class Landscape:
     absolute: float
 
     def solve(self, design: Design, start: Start) -> RawSolution:
-        """Where a start leads."""
+        """The optimum that the solver finds from a start."""
         return self.solver.solve([*design, *self.beside], start)
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
@@ -88,11 +90,11 @@ class Landscape:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How well a portfolio leads designs that it was not made from.
+    """How good a portfolio is for designs that it was not computed from.
 
     Args:
         designs: how many were tried.
-        good: how many of them it led close to their best known optimum.
+        good: for how many of them the solver converged close to the best known optimum.
         worst: largest distance from the best known optimum, in the cost's unit.
     """
 
@@ -102,20 +104,20 @@ class Coverage:
 
     @property
     def share(self) -> float:
-        """Share of the designs that were led well; 1 where none could be tried."""
+        """Share of the designs with a good start; 1 where none could be tried."""
         return self.good / self.designs if self.designs else 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class StartPortfolio:
-    """Starts, the worthiest first, and how good they are; none where no training design has an optimum."""
+    """Starts, the best one first, and how good they are; none where no training design has an optimum."""
 
     seeds: tuple[Start, ...]
     coverage: Coverage
 
 
 def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: Training) -> StartPortfolio:
-    """The seeds of a landscape.
+    """The start portfolio of a landscape.
 
     Args:
         landscape: whose optima are sought.
@@ -134,9 +136,9 @@ def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: T
     coverage = Coverage(0, 0, 0.0)
     for _ in range(training.rounds):
         fresh = studies(seeds)
-        led = _least_costs(landscape, seeds, fresh)
-        good = landscape.good(led, _best(fresh))
-        coverage = Coverage(len(fresh), int(good.sum()), float(np.max(led - _best(fresh), initial=0.0)))
+        reached = _least_costs(landscape, seeds, fresh)
+        good = landscape.good(reached, _best(fresh))
+        coverage = Coverage(len(fresh), int(good.sum()), float(np.max(reached - _best(fresh), initial=0.0)))
         if coverage.share >= training.share or len(seeds) == training.seeds:
             break
         learned = [study for study, well in zip(fresh, good, strict=True) if not well]
@@ -182,7 +184,7 @@ class _Study:
 def _study(
     landscape: Landscape, design: Design, known: Sequence[Start], count: int, rng: np.random.Generator
 ) -> _Study | None:
-    """The best of some known and some random starts; None where none leads to an optimum."""
+    """The best of some known and some random starts; None where none converges."""
     starts = [*known, *(random_start(landscape, rng) for _ in range(count))]
     ends = [landscape.solve(design, start) for start in starts]
     solved = [end for end in ends if end.status is Status.SOLVED]
@@ -197,7 +199,7 @@ def _best(studies: Sequence[_Study]) -> Costs:
 
 
 def _least_costs(landscape: Landscape, seeds: Sequence[Start], studies: Sequence[_Study]) -> Costs:
-    """The least cost to which seeds lead each design; infinite where they lead to none."""
+    """The least cost of each design from some starts; infinite where none converges."""
     costs = np.full((len(studies), 1 + len(seeds)), np.inf)
     for row, study in enumerate(studies):
         for column, seed in enumerate(seeds):
@@ -211,10 +213,10 @@ def _least_costs(landscape: Landscape, seeds: Sequence[Start], studies: Sequence
 def _grown(
     landscape: Landscape, seeds: tuple[Start, ...], studies: Sequence[_Study], training: Training
 ) -> tuple[Start, ...]:
-    """The seeds with others added until every study is led well, or there are as many as there may be."""
-    best, led = _best(studies), np.full(len(studies), np.inf)
+    """The starts with others added until every study has a good one, or there are as many as there may be."""
+    best, reached = _best(studies), np.full(len(studies), np.inf)
     while len(seeds) < training.seeds:
-        open_ones = np.flatnonzero(~landscape.good(led, best)).tolist()
+        open_ones = np.flatnonzero(~landscape.good(reached, best)).tolist()
         if not open_ones:
             break
         left = [studies[index] for index in open_ones]
@@ -222,7 +224,7 @@ def _grown(
         costs = np.array([_least_costs(landscape, [study.optimum], left) for study in tried])
         best[open_ones] = np.minimum(best[open_ones], costs.min(axis=0))
         winner = int(np.argmax(landscape.good(costs, best[open_ones]).sum(axis=1)))
-        led[open_ones] = np.minimum(led[open_ones], costs[winner])
+        reached[open_ones] = np.minimum(reached[open_ones], costs[winner])
         seeds = (*seeds, tried[winner].optimum)
     return seeds
 
