@@ -68,7 +68,7 @@ class OpenedProblem:
         Args:
             design: values by name, those left out as in the unscaled robot; or one value per parameter.
         Raises:
-            InputError: an unknown name, a wrong number of values, a value that is no positive number, a
+            InputError: an unknown name, a wrong number of values, a value that is no positive number, an
                 allocation parameter beyond its range, or a density that is neither a material's nor the
                 unscaled robot's where there are materials.
         """
