@@ -145,12 +145,12 @@ def test_objectives_move_with_allocations_as_differences_say(shared: Problem) ->
     names = [parameter.name for parameter in exact.space.parameters]
     for name in ("policy.robot_share", "policy.effort_ratio", "length.forearm"):
         step = np.where(np.array(names) == name, 1e-4, 0.0)
-        values = [
+        both = [
             evaluator.assess_values(tuple(np.array(values) + sign * step)).assessment.objectives
             for sign in (1.0, -1.0)
         ]
         for objective in ("robot_torque", "human_torque", "reach_height"):
-            slope = (values[0][objective] - values[1][objective]) / 2e-4
+            slope = (both[0][objective] - both[1][objective]) / 2e-4
             assert found[objective][name] == pytest.approx(slope, rel=1e-4, abs=1e-4), (objective, name)
     assert abs(found["robot_torque"]["policy.robot_share"]) > 1.0
     assert found["reach_height"]["policy.effort_ratio"] == pytest.approx(0.0, abs=1e-12)
@@ -183,9 +183,9 @@ def test_reach_with_rigid_grasps_has_a_gradient(problem: Problem) -> None:
     evaluator = Evaluator(rigid)
     place = [parameter.name for parameter in rigid.space.parameters].index("length.forearm")
     step = 1e-4 * np.eye(len(values))[place]
-    values = [
+    both = [
         evaluator.assess_values(tuple(v)).assessment.objectives["reach_height"]
         for v in (values + step, values - step)
     ]
-    assert found["length.forearm"] == pytest.approx((values[0] - values[1]) / 2e-4, rel=1e-4)
+    assert found["length.forearm"] == pytest.approx((both[0] - both[1]) / 2e-4, rel=1e-4)
     assert found["length.forearm"] > 0.1

@@ -81,14 +81,14 @@ def test_masses_are_the_resized_robots(real_run: Run, content: Content, problem:
 def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: Run, content: Content) -> None:
     marks = {mark.label: mark.number for mark in content.marks}
     assert marks["unscaled robot"] == 0
-    assessment = {
+    objectives = {
         each.number: each.assessment.objectives
         for each in front(real_run.header.objectives, real_run.evaluations)
     }
-    least = min(assessment.values(), key=lambda values: values["robot_torque"])
-    assert assessment[marks["least robot torque"]] == least
-    greatest = max(assessment.values(), key=lambda values: values["reach_height"])
-    assert assessment[marks["greatest reach height"]] == greatest
+    least = min(objectives.values(), key=lambda values: values["robot_torque"])
+    assert objectives[marks["least robot torque"]] == least
+    greatest = max(objectives.values(), key=lambda values: values["reach_height"])
+    assert objectives[marks["greatest reach height"]] == greatest
     assert "knee" in marks
 
 
