@@ -111,7 +111,7 @@ def main() -> None:
         size: Bench(problem, replace(problem.scene, disturbances=disturbances_of(size, OverCases.WORST)))
         for size in SIZES
     }
-    quiet = Bench(problem, problem.scene)
+    undisturbed_bench = Bench(problem, problem.scene)
     mean = Bench(problem, replace(problem.scene, disturbances=disturbances_of(0.0, OverCases.MEAN)))
     rows = []
     for design in random_designs(problem, options.designs):
@@ -121,7 +121,7 @@ def main() -> None:
             found = bench.best(design, like)
             costs[f"{size:g}"] = cost_of(found)
             like = found.postures or None
-        undisturbed = quiet.best(design, like)
+        undisturbed = undisturbed_bench.best(design, like)
         at_zero = {
             "worst": cost_of(growing[0.0].best(design, undisturbed.postures)),
             "mean": cost_of(mean.best(design, undisturbed.postures)),

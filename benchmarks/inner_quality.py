@@ -1,4 +1,4 @@
-"""How much of a design's score is luck?
+"""How much does the result of a design depend on the starting points?
 
 Random designs of the default problem, the load at four heights. Of the heights that reach says can be held:
 how many are solved and pass the check; how many solved ones lie within 1 % of the best of 25 random starts of

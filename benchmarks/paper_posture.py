@@ -1,11 +1,11 @@
 """The posture problem as the paper states it: torques and wrenches are functions of the posture.
 
-    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + comfort            over bases and joints
+    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + regularisation     over bases and joints
     with        tau = (N B)^+ N h  and  f by Eq. 13                in the graph (`projected_graph`)
 
 Bounds, starts, and the constraints of hands, feet, stance, ground and push are the very ones of our whole
-posture program; comfort is ours without its terms in wrenches. The difference: our program chooses the
-wrenches and ties torques to them by equalities.
+posture program; the regularisation is ours without its terms in wrenches. The difference: our program chooses
+the wrenches and ties torques to them by equalities.
 
 Source: Sartore et al. 2022, Eq. 14 with pi fixed.
 """
@@ -116,14 +116,14 @@ class _Part:
         matrices: SX function from posture and design to M, h and Q^T.
         constraints: of our agent block, less statics.
         rows: SX function from posture, feet's wrenches, design and height to each constraint's expression.
-        comfort: SX function from posture to our comfort under vanishing wrenches.
+        regularisation: SX function from posture to ours under vanishing wrenches.
     """
 
     variables: tuple[Variable, ...]
     matrices: Any
     constraints: tuple[Constraint, ...]
     rows: Any
-    comfort: Any
+    regularisation: Any
 
     @property
     def posture(self) -> Expression:
@@ -148,7 +148,7 @@ def _part(agent: Agent, tree: Tree, scene: Scene, design: Expression, height: Ex
         [part / symbols[0].scale for part in ca.vertsplit(feet, 6)],
     )
     wrenches = [v.symbol for name, v in variables.items() if name.endswith(("_hand", "_foot"))]
-    comfort = ca.substitute(
+    regularisation = ca.substitute(
         [total(assembly.undisturbed.regularisation)],
         wrenches,
         [ca.SX.zeros(symbol.numel()) for symbol in wrenches],
@@ -158,7 +158,7 @@ def _part(agent: Agent, tree: Tree, scene: Scene, design: Expression, height: Ex
         matrices=agent_matrices(agent, tree, scene, design),
         constraints=kept,
         rows=ca.Function("rows", [posture, feet, design, height], rows),
-        comfort=ca.Function("comfort", [posture], comfort),
+        regularisation=ca.Function("regularisation", [posture], regularisation),
     )
 
 
@@ -184,7 +184,7 @@ def _program(
         name="paper",
         variables=(*parts[0].variables, *parts[1].variables),
         constraints=(*constraints, Constraint("load.push", push, -limit, limit)),
-        cost=effort / TORQUE_UNIT**2 + sum(part.comfort(part.posture) for part in parts),
+        cost=effort / TORQUE_UNIT**2 + sum(part.regularisation(part.posture) for part in parts),
         parameters=parameters,
     )
 

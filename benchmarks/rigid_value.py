@@ -2,8 +2,8 @@
 
 With rigid grasps the load passes three numbers between robot and person in a symmetric posture: the push X,
 the vertical force Z and the moment N on the person's hands. V(X, Z, N) is fitted by a tensor of Chebyshev
-polynomials over the box |X| <= push, 0 <= Z <= m g, |N| <= what two hands bear, and held against the best of
-as many starts at random points of the box. Costs are in 100 N^2 m^2.
+polynomials over the box |X| <= push, 0 <= Z <= m g, |N| <= what two hands transmit, and compared with the
+best of as many starts at random points of the box. Costs are in 100 N^2 m^2.
 
     python -m benchmarks.rigid_value [--height 1.0] [--degrees 4 8 8] [--starts 9] [--points 60]
 """
@@ -31,7 +31,7 @@ from evodesign.posture.terms.base import BodyTerm
 from evodesign.posture.terms.registry import TERMS
 from evodesign.records import Status
 
-MASS, MOMENT = 10.0, 7.0  # of the load [kg]; that a hand bears [N m]
+MASS, MOMENT = 10.0, 7.0  # of the load [kg]; that a hand transmits [N m]
 SHARES, SPREAD = (0.1, 0.5, 1.0), 0.3
 
 Array = Any

@@ -21,8 +21,8 @@ from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
-settings.register_profile("house", deadline=None, derandomize=True)
-settings.load_profile("house")
+settings.register_profile("evodesign", deadline=None, derandomize=True)
+settings.load_profile("evodesign")
 
 
 @pytest.fixture(scope="session")

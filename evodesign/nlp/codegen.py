@@ -153,8 +153,8 @@ def _key(nlp: Mapping[str, Expression], compiler: Compiler) -> str:
 
 def _c_text(nlp: Mapping[str, Expression]) -> str:
     """C of all functions that `nlpsol` looks for in a library, under the names that it gives them itself."""
-    quiet = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes"}}
-    solver = ca.nlpsol("solver", "ipopt", dict(nlp), quiet)
+    silent = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes"}}
+    solver = ca.nlpsol("solver", "ipopt", dict(nlp), silent)
     generator = ca.CodeGenerator("functions", {"verbose": False})
     for function in (solver.oracle(), *(solver.get_function(name) for name in solver.get_function())):
         generator.add(function)

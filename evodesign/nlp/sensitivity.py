@@ -2,8 +2,8 @@
 
 IPOPT finds the solution again with a tight tolerance; the active set is read from multipliers and slacks;
 Newton's method on it reaches rounding accuracy; and the implicit function theorem gives the derivative
-(`kkt`). Every active inequality must have a multiplier of the right sign and every other one must hold
-(strict complementarity). Where a condition fails the solution has a kink there, and a sentence says so.
+(`optimality`). Every active inequality must have a multiplier of the right sign and every other one must hold
+(strict complementarity). Where a condition fails the derivative does not exist, and a sentence says so.
 
 Source: Fiacco, Introduction to Sensitivity and Stability Analysis in Nonlinear Programming (1983), Theorem
 3.2.2; Nocedal and Wright, Numerical Optimization, ch. 12.

@@ -184,7 +184,7 @@ class _Study:
 def _study(
     landscape: Landscape, design: Design, known: Sequence[Start], count: int, rng: np.random.Generator
 ) -> _Study | None:
-    """The best of some known and some random starts; None where none leads to an optimum."""
+    """The best of some known and some random starts; None where none converges."""
     starts = [*known, *(random_start(landscape, rng) for _ in range(count))]
     ends = [landscape.solve(design, start) for start in starts]
     solved = [end for end in ends if end.status is Status.SOLVED]

@@ -65,7 +65,7 @@ class Baseline:
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
-        """Where a start leads; named designs begin with standard postures, others with drawn ones."""
+        """The result of a start; named designs begin with standard postures, others with drawn ones."""
         return self._joint.solve(start, drawn=start not in self._problem.joint_start)
 
     def polish(self, result: DesignResult) -> JointSolution:
@@ -78,7 +78,7 @@ class Baseline:
         return self._joint.polish(genome, [known_instant(height) for height in result.heights])
 
     def assess(self, start: Genome) -> Assessed:
-        """What the design in which a start ended is worth, with its postures."""
+        """The results of the design in which a start ended, with its postures."""
         solution = self.solve(start)
         result = self.result(solution)
         heights = tuple(detail_of(height, self._problem.scene) for height in result.heights if height.solved)
@@ -142,5 +142,5 @@ class BaselineFactory:
     limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
-        """Build the joint problem and return the function from start to what it leads to."""
+        """Build the joint problem and return the function from start to its result."""
         return Baseline(build_problem(self.source)).assess

@@ -53,7 +53,7 @@ class Problem:
         options: of the inner solver.
         limits: of one evaluation.
         symmetry: which postures are looked for.
-        seeds: whether solves begin at the problem's seeds.
+        seeds: whether solves begin at the problem's start portfolios.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
         joint: the paper's joint problem.

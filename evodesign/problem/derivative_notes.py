@@ -20,7 +20,7 @@ from evodesign.records import Status
 __all__ = ["posture_notes", "reach_notes"]
 
 NEAR = 0.01
-"""Share of a parameter's range within which a change of limits is worth a sentence."""
+"""Share of a parameter's range within which a change of limits gets a sentence."""
 
 DISTINCT = 1e-5
 """Relative difference of costs above which two optima are not the same."""

@@ -1,4 +1,4 @@
-"""One design's worth: reach first, then a posture per height, then the objectives.
+"""The evaluation of one design: reach first, then a posture per height, then the objectives.
 
 An evaluation depends on problem and design alone: no state is carried from one to the next.
 """
@@ -108,11 +108,11 @@ class Evaluator:
         return best
 
     def assess(self, genome: Genome) -> Assessed:
-        """What a genome is worth, with its postures."""
+        """The results of a genome, with its postures."""
         return self.assess_values(self.problem.space.values(genome))
 
     def assess_values(self, values: Sequence[float]) -> Assessed:
-        """What a design given as one number per parameter is worth, with its postures."""
+        """The results of a design given as one number per parameter, with its postures."""
         result = self.solve(values)
         heights = tuple(detail_of(height, self._scene(height)) for height in result.heights if height.solved)
         return Assessed(assessment=self.assessment(values, result), heights=heights)
@@ -252,5 +252,5 @@ class AssessmentFactory:
         return self.problem.limits
 
     def __call__(self) -> Callable[[Genome], Assessed]:
-        """Build the inner problems and return the function from genome to what it is worth."""
+        """Build the inner problems and return the function from genome to results."""
         return Evaluator(self.problem, self.known).assess

@@ -51,7 +51,7 @@ def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
 
 
 def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The robot's largest |tau| over its limit, over the joints: 1 for a joint that bears all that it can."""
+    """The robot's largest |tau| over its limit, over the joints: 1 for a joint at its limit."""
     torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
     return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
 

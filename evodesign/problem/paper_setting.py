@@ -1,4 +1,4 @@
-"""The published setting of the paper: solved, held against its torque formula, and its broken limits.
+"""The published setting of the paper: solved, compared with its torque formula, and its broken limits.
 
 Source: Sartore et al. 2022, Eq. 12 and 14.
 """

@@ -115,7 +115,8 @@ def _worked_out(
 
 
 LIMITS = Limits(seconds=3600.0)
-"""What a piece may cost: seeds are thousands of solves, and rigid grasps or a busy machine make them long."""
+"""What a piece may cost: a portfolio takes thousands of solves, long ones with rigid grasps or a busy
+machine."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ which for formulas of a few operations agree with the exact derivative to about 
 nothing beyond its function to have a gradient.
 
 What an objective depends on shows when it is taken away: an objective that does not exist without a height's
-posture has that height's kinks.
+posture gets that height's notes.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class ObjectiveSensitivity:
     Args:
         gradient: derivative by parameter name, in the objective's unit per unit of the parameter; None where
             the objective has none.
-        kinks: sentences on where, how near and why it does not move smoothly.
+        notes: sentences on where, how near and why the derivative does not exist.
     """
 
     gradient: Mapping[str, float] | None
@@ -63,7 +63,7 @@ class DesignDerivative:
         problem: whose design it is.
         values: of the design, one number per parameter.
         result: what was computed of it.
-        heights: one tangent per required height; a kink where there is none.
+        heights: one tangent per required height; a reason where there is none.
         highest, lowest: tangents of the reach.
     """
 
@@ -199,6 +199,6 @@ def _slope(values: Sequence[float], step: float) -> float:
 
 
 def _not_smooth(values: Sequence[float]) -> bool:
-    """Whether second differences grow with the step, as at a kink, and not with its square."""
+    """Whether second differences grow with the step, as without a derivative, and not with its square."""
     near, far = (abs(values[2 - k] - 2.0 * values[2] + values[2 + k]) for k in (1, 2))
     return near > 1e-9 * max(1.0, abs(values[2])) and far < 3.0 * near

@@ -56,7 +56,7 @@ def test_a_portfolio_finds_every_well_that_is_somebodys_deepest() -> None:
         assert min(ends) == pytest.approx(best(design), abs=0.02)
 
 
-def test_a_single_start_is_led_astray() -> None:
+def test_a_single_start_may_miss_the_best_optimum() -> None:
     """What the portfolio is for: from zero most designs end in another well than their deepest."""
     ends = [(design, landscape().solve((design,), {"robot.joints": [0.0]}).cost) for (design,) in designs(40)]
     assert np.mean([cost > best(design) + 0.02 for design, cost in ends]) > 0.3

@@ -1,4 +1,4 @@
-"""Who carries how much: rigid grasps, the moments that a hand bears, fixed and chosen shares and weights."""
+"""Who carries how much: rigid grasps, moments of a hand, fixed and chosen shares and weights."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ EQUAL = EffortWeights()
 Postures = Mapping[str, AgentPosture]
 
 
-def policy(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
+def allocation(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
     return DesignSpace((DesignParameter(ParameterKind.POLICY, name, (), lower, upper),))
 
 
@@ -139,7 +139,7 @@ def test_the_robot_carries_the_share_that_it_is_given(symmetry: Symmetry, proble
         assert found.residuals["load.share"] <= TOLERANCE
 
 
-def test_no_hand_passes_more_than_it_bears(problem: Problem) -> None:
+def test_no_hand_transmits_more_than_its_limit(problem: Problem) -> None:
     free, bounded = solve(problem, rigid(problem)), solve(problem, rigid(problem, moment=4.0))
     assert moments(free) > 10.0
     assert moments(bounded) == pytest.approx(4.0, abs=1e-6)
@@ -168,14 +168,16 @@ def test_no_agent_lifts_the_other_by_the_load(problem: Problem) -> None:
 
 def test_a_share_chosen_by_the_design_is_the_same_share_fixed(problem: Problem) -> None:
     fixed = solve(problem, rigid(problem, moment=7.0, share=0.3))
-    chosen = solve(problem, rigid(problem, moment=7.0), space=policy(ROBOT_SHARE), values=(0.3,))
+    chosen = solve(problem, rigid(problem, moment=7.0), space=allocation(ROBOT_SHARE), values=(0.3,))
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
 def test_a_ratio_chosen_by_the_design_is_the_same_weights_fixed(problem: Problem) -> None:
     weights = EffortWeights(2.0 * 10.0 / 11.0, 2.0 / 11.0)
     fixed = solve(problem, rigid(problem, moment=7.0), weights=weights)
-    chosen = solve(problem, rigid(problem, moment=7.0), space=policy(EFFORT_RATIO, -2.0, 2.0), values=(1.0,))
+    chosen = solve(
+        problem, rigid(problem, moment=7.0), space=allocation(EFFORT_RATIO, -2.0, 2.0), values=(1.0,)
+    )
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
@@ -186,9 +188,9 @@ def test_weights_add_up_to_two_and_have_their_ratio() -> None:
         assert math.log10(weights.robot / weights.human) == pytest.approx(exponent, abs=1e-9)
 
 
-def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> None:
+def test_robot_torque_falls_with_the_weight_of_its_effort(problem: Problem) -> None:
     """An optimum of a weighted sum: the robot's part falls as its weight grows, the person's rises."""
-    space, scene = policy(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
+    space, scene = allocation(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
     found = [norms(solve(problem, scene, 0.8, space=space, values=(e,))) for e in (-2.0, 0.0, 2.0)]
     robot, human = zip(*found, strict=True)
     assert robot[0] > 2.0 * robot[1] > 4.0 * robot[2]
@@ -196,7 +198,7 @@ def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> 
 
 
 def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
-    setting = Setting(rigid(problem, moment=7.0), policy(ROBOT_SHARE), EQUAL, problem.options)
+    setting = Setting(rigid(problem, moment=7.0), allocation(ROBOT_SHARE), EQUAL, problem.options)
     reach = ReachProblem(setting, symmetric=True)
     highest = [reach.solve((given,)).highest or 0.0 for given in (0.0, 1.0)]
     assert 1.0 < highest[1] <= highest[0] + 1e-6
@@ -204,7 +206,7 @@ def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
 
 def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> None:
     """Held at a share, one height: the optimum of the posture problem."""
-    scene, space = rigid(problem, moment=7.0), policy(ROBOT_SHARE)
+    scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene, space=space, values=(0.3,))
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True)), (0.3,)
@@ -217,7 +219,7 @@ def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> Non
 
 def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     """Free to choose, it does no worse than the posture problem whose share is free."""
-    scene, space = rigid(problem, moment=7.0), policy(ROBOT_SHARE)
+    scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene)
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True))

@@ -108,7 +108,7 @@ def test_the_published_setting_gives_the_papers_torques(
 
 
 def test_the_published_setting_shows_its_weakness(as_published: JointSolution) -> None:
-    """Human torque far below the table, and limits broken: a joint's range and what a foot can bear."""
+    """Human torque far below the table, and limits broken: a joint's range and a foot's contact."""
     for height in as_published.heights:
         assert height.postures["human"].torque_norm < 0.1 * PUBLISHED_HUMAN[height.height]
     worst: dict[str, float] = {}
@@ -197,7 +197,7 @@ def test_a_higher_centre_of_mass_is_bought_with_torque(paper: Problem) -> None:
 
 
 def test_the_density_task_is_a_sum_of_products(paper: Problem) -> None:
-    """Against the formula as printed, up to the rounding of its kink."""
+    """Against the formula as printed, up to the smoothing at zero."""
     rng = np.random.default_rng(1)
     values = paper.space.values(tuple(rng.uniform(size=len(paper.space.parameters)).tolist()))
     preferred = (1405.0, 4000.0)

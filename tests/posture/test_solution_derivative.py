@@ -1,4 +1,4 @@
-"""Derivatives of solutions against closed forms, and the refusal of kinks."""
+"""Derivatives of solutions against closed forms, and the refusal where they do not exist."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_multipliers_of_the_parameters_are_the_gradient_of_the_optimal_cost() ->
 
 
 @pytest.mark.parametrize("wanted", [[0.0, 0.5], [1.5, 0.5]])
-def test_point_just_at_a_limit_is_a_kink(wanted: list[float]) -> None:
+def test_there_is_no_derivative_just_at_a_limit(wanted: list[float]) -> None:
     found = optimum(nearest_point(), wanted)
     assert isinstance(found, NotDifferentiable)
     assert "just about to reach or to leave its limit" in found.reason

@@ -47,7 +47,7 @@ def test_cost_of_a_half_is_that_of_the_whole_at_the_same_posture(problem: Proble
     """The paired torques count twice: recomputed here from the expanded posture."""
     solution = solve(problem, Symmetry.ON)
     effort = sum(posture.torque_norm**2 for posture in solution.postures.values()) / 100.0
-    assert effort <= cost(solution) <= effort * 1.1, "comfort is a small part of the cost"
+    assert effort <= cost(solution) <= effort * 1.1, "the regularisation is a small part of the cost"
 
 
 def test_right_side_mirrors_the_left(problem: Problem) -> None:

@@ -110,7 +110,7 @@ def test_the_lifting_index_is_the_held_part_of_the_load_over_what_is_recommended
     assert found.lifting_index == pytest.approx(24.5 / 9.81 / found.recommended_weight)
 
 
-def test_the_strain_is_that_of_the_weakest_way_of_a_joint() -> None:
+def test_the_relative_torque_is_that_of_the_weakest_direction_of_a_joint() -> None:
     """One newton metre everywhere, so the weakest of all positive directions works hardest."""
     strain = ergonomics(PERSON, posture({})).strain
     assert strain is not None
@@ -118,7 +118,7 @@ def test_the_strain_is_that_of_the_weakest_way_of_a_joint() -> None:
     assert strain.share == pytest.approx(1.0 / weakest)
 
 
-def test_a_person_without_strengths_has_no_strain_but_a_lifting_index() -> None:
+def test_a_person_without_strengths_has_no_relative_torque_but_a_lifting_index() -> None:
     found = ergonomics(replace(PERSON, strengths={}), posture({"jLeftElbow_rotz": -1.5}))
     assert found.strain is None
     assert found.recommended_weight >= 0.0

@@ -95,7 +95,7 @@ def test_moved_wrenches_have_the_logged_force_and_moment(problem: Problem) -> No
             assert np.allclose([*(sign * hand.force), *(sign * hand.moment)], posture.hand_wrenches[side])
 
 
-def test_foot_that_bears_nothing_keeps_its_wrench_at_the_sole(problem: Problem) -> None:
+def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: Problem) -> None:
     models = random_cast(problem, 3)
     height = random_detail(problem, 3).heights[0]
     height.agents[ROBOT].foot_wrenches["left"] = (0.0,) * 6

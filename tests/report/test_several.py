@@ -81,7 +81,7 @@ def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.
         assert expected in rows
 
 
-def test_card_names_the_case_in_which_a_joint_or_contact_bears_most(
+def test_card_names_the_case_of_largest_torque_and_contact_force(
     run: Run, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show_design(run.directory, 1, jobs=1, json=False, plot=None)
@@ -143,7 +143,7 @@ def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
 def test_recording_shows_each_case_with_its_own_person_and_load(
     folder: Path, run: Run, several: Problem
 ) -> None:
-    """Link frames are held against pinocchio with persons that are generated anew."""
+    """Link frames are compared with pinocchio with persons that are generated anew."""
     readme = (folder / "README.md").read_text()
     seen = {}
     with (folder / "replay.mcap").open("rb") as stream:

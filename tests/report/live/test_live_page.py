@@ -123,8 +123,8 @@ def test_browser_shows_names_as_text(server: LiveServer, tmp_path: Path) -> None
         "--disable-background-networking",
         "--no-first-run",
     ]
-    quiet = ["--disable-component-update", "--disable-sync", f"--user-data-dir={tmp_path}"]
-    command = [str(CHROMIUM), *flags, *quiet, "--virtual-time-budget=4000", "--dump-dom", server.url]
+    silent = ["--disable-component-update", "--disable-sync", f"--user-data-dir={tmp_path}"]
+    command = [str(CHROMIUM), *flags, *silent, "--virtual-time-budget=4000", "--dump-dom", server.url]
     page = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
     assert "40 of 100 evaluations" in page
