@@ -17,12 +17,27 @@ from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.prepare import prepared
 from evodesign.problem.source import read_source
+from tests.machine import NEEDS, leave_out, left_out
 from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
 settings.register_profile("house", deadline=None, derandomize=True)
 settings.load_profile("house")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Ask what the machine lacks before fixtures are made for a test that cannot run."""
+    for marker, (there, reason) in NEEDS.items():
+        if item.get_closest_marker(marker) and not there():
+            leave_out(reason)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say what was left out, and how to have it."""
+    for sentence in left_out(terminalreporter.stats.get("skipped", [])):
+        terminalreporter.write_line(sentence)
 
 
 @pytest.fixture(scope="session")

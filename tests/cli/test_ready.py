@@ -47,6 +47,7 @@ def test_cache_does_not_change_an_answer(quick: Path, tmp_path: Path) -> None:
     assert cold == warm
 
 
+@pytest.mark.needs_compiler
 def test_compiler_does_not_change_an_answer(quick: Path, tmp_path: Path) -> None:
     compiled, _ = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "with")})
     interpreted, _ = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "without"), "CC": "/nowhere/cc"})
