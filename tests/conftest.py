@@ -41,10 +41,12 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
             leave_out(reason)
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
     """Say what was left out, and how to have it."""
     for sentence in left_out(terminalreporter.stats.get("skipped", [])):
         terminalreporter.write_line(sentence)
+    if "not slow" in config.option.markexpr:
+        terminalreporter.write_line("left out: the slow tests, which `make test-all` runs too")
 
 
 @pytest.fixture(scope="session")

@@ -257,8 +257,9 @@ def test_no_worker_outlives_its_parent(how: signal.Signals, pause: float) -> Non
             parent.send_signal(how)
         try:
             wait_until_all_end(pids)
-        finally:
-            parent.kill()  # a parent that goes on would be waited for without end
+        except AssertionError:
+            parent.kill()  # one that goes on would be waited for without end
+            raise
         if how is signal.SIGINT:
             assert parent.stderr is not None
             assert parent.stderr.read().count("Traceback") == 1  # the parent's own
