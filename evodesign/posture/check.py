@@ -21,7 +21,7 @@ import pinocchio as pin
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.contact import foot_margins
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
-from evodesign.mechanics.floating_base import ROOT, Configuration, FloatingBody, Instant
+from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.model import Tree
@@ -53,7 +53,7 @@ class AgentModel:
         """The agent with a tree of numbers (a design's)."""
         return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)))
 
-    def at(self, posture: AgentPosture) -> Instant:
+    def at(self, posture: AgentPosture) -> BodyState:
         """Kinematics, Jacobians and gravity torques of a posture."""
         configuration = Configuration(posture.base_position, posture.base_angles, posture.joints)
         return self.body.at(configuration, np.zeros(self.body.size))
@@ -136,7 +136,7 @@ def _distance(posture: AgentPosture, other: AgentPosture) -> float:
 
 
 def _statics(
-    agent: Agent, instant: Instant, posture: AgentPosture, disturbance: Disturbance = QUIET
+    agent: Agent, instant: BodyState, posture: AgentPosture, disturbance: Disturbance = QUIET
 ) -> dict[str, float]:
     """Rows of h - J^T f: six of the base, then the joints."""
     rows = np.array(instant.bias)
@@ -156,7 +156,7 @@ def _statics(
 
 
 def _contacts(
-    agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene, height: float
+    agent: Agent, instant: BodyState, posture: AgentPosture, scene: Scene, height: float
 ) -> dict[str, float]:
     hands, heights, slants = [], [], []
     for side in SIDES:
@@ -180,7 +180,7 @@ def _foot_contact(agent: Agent, posture: AgentPosture, scene: Scene) -> float:
     return max(0.0, -float(min(margins)))
 
 
-def _limits(agent: Agent, instant: Instant, posture: AgentPosture, scene: Scene) -> dict[str, float]:
+def _limits(agent: Agent, instant: BodyState, posture: AgentPosture, scene: Scene) -> dict[str, float]:
     stance = scene.stance
     joints = [(agent.tree.joint_by_name[name], position) for name, position in posture.joints.items()]
     beyond = [max(joint.lower - position, position - joint.upper) for joint, position in joints]

@@ -57,9 +57,9 @@ def middles(detail: AgentDetail) -> tuple[np.ndarray, np.ndarray]:
     solved = AgentPosture(
         np.array(detail.base_position_m), np.array(detail.base_rpy_rad), detail.joints_rad, {}, {}, {}
     )
-    instant = AgentModel.of(PERSON, PERSON.tree).at(solved)
-    hands = np.mean([instant.pose(name)[1] for name in HANDS.values()], axis=0)
-    ankles = np.mean([instant.pose(name)[1] for name in ("LeftFoot", "RightFoot")], axis=0)
+    state = AgentModel.of(PERSON, PERSON.tree).at(solved)
+    hands = np.mean([state.pose(name)[1] for name in HANDS.values()], axis=0)
+    ankles = np.mean([state.pose(name)[1] for name in ("LeftFoot", "RightFoot")], axis=0)
     return hands, ankles
 
 

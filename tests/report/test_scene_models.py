@@ -53,9 +53,9 @@ def test_links_stand_where_pinocchio_puts_them(problem: Problem) -> None:
     height = random_detail(problem, 7).heights[0]
     stage = placed_scene(models, height)
     for agent in models.agents:
-        instant = AgentModel.of(agent, models.trees[agent.name]).at(posture_of(height.agents[agent.name]))
+        state = AgentModel.of(agent, models.trees[agent.name]).at(posture_of(height.agents[agent.name]))
         for link in models.trees[agent.name].link_by_name:
-            rotation, origin = instant.pose(link)
+            rotation, origin = state.pose(link)
             frame = stage.frames[agent.name][link]
             mirrored = np.diag([agent.sign, agent.sign, 1.0])
             assert np.allclose(mirrored @ origin, frame.translation, rtol=0.0, atol=1e-9)
