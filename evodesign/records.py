@@ -17,6 +17,7 @@ __all__ = [
     "AgentDetail",
     "Assessed",
     "Assessment",
+    "Case",
     "Detail",
     "Evaluation",
     "Front",
@@ -24,6 +25,7 @@ __all__ = [
     "Genome",
     "HeightDetail",
     "HeightOutcome",
+    "Hold",
     "LoadCaseDetail",
     "Objective",
     "Parameter",
@@ -34,6 +36,7 @@ __all__ = [
     "SearchStage",
     "Sense",
     "Status",
+    "Task",
     "Turn",
     "choice_at",
     "design_of",
@@ -75,6 +78,42 @@ class Sense(StrEnum):
 
 class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Base of all records: immutable, strict, keyword-only."""
+
+
+class Hold(Record, frozen=True, tag_field="kind", tag="hold"):
+    """A task: the load held still, its centre at a height [m]."""
+
+    height_m: float
+
+    def __str__(self) -> str:
+        return f"{self.height_m:g} m"
+
+
+Task = Hold
+"""What is done with the load: a union of tagged records as soon as there is a second kind."""
+
+
+class Case(Record, frozen=True, kw_only=True, omit_defaults=True):
+    """A person who does a task with a load, undisturbed or under a disturbance.
+
+    Person, load and disturbance are names of the problem, empty where there is one person or load, or no
+    disturbance.
+    """
+
+    person: str = ""
+    payload: str = ""
+    task: Task
+    disturbance: str = ""
+
+    @property
+    def label(self) -> str:
+        """Person and load, such as `short, 5 kg`; empty where there is one of each."""
+        return ", ".join(name for name in (self.person, self.payload) if name)
+
+    @property
+    def name(self) -> str:
+        """Everything that tells it from other cases, such as `short, 5 kg, 0.8 m, pushed`."""
+        return ", ".join(name for name in (self.label, str(self.task), self.disturbance) if name)
 
 
 class Objective(Record, frozen=True):
