@@ -24,7 +24,7 @@ from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
@@ -59,7 +59,7 @@ class Bench:
         self._landscape = PostureProblem(*self._ingredients, shelf=self._shelf).landscape(HEIGHT)
         self._human = AgentModel.of(scene.human, scene.human.tree)
 
-    def best(self, design: Design, like: Postures | None) -> HeightSolution:
+    def best(self, design: Design, like: Postures | None) -> CaseSolution:
         """The cheapest checked posture from the program's own starts and from a known posture."""
         tree = self._problem.space.resized(self._scene.robot.tree, design)
         starts = self._landscape.starts
@@ -71,7 +71,7 @@ class Bench:
         return postures.solve(design, HEIGHT, Checker(self._scene, tree, self._human))
 
 
-def cost_of(solution: HeightSolution) -> float:
+def cost_of(solution: CaseSolution) -> float:
     """The cost of the start that won; infinite where none did."""
     won = [a.cost for a in solution.attempts if a.start == solution.start and a.status is Status.SOLVED]
     return min(won, default=float("inf"))

@@ -28,7 +28,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem
 from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure
 
@@ -105,7 +105,7 @@ class Judge:
         )
 
 
-def _norms(solution: HeightSolution, agent: str) -> dict[str, float]:
+def _norms(solution: CaseSolution, agent: str) -> dict[str, float]:
     """Torque norms of an agent [N m], by case."""
     cases = {"nothing": solution.postures, **solution.disturbed}
     return {name: postures[agent].torque_norm for name, postures in cases.items()}

@@ -65,7 +65,7 @@ class Judge:
         result = self._evaluator.solve(design)
         rng = np.random.default_rng(number)
         found = []
-        for solution in result.heights:
+        for solution in result.cases:
             if result.reach.distance(solution.height) != 0.0:
                 continue
             own = self._split.landscape(solution.height)

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_designs
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
@@ -47,7 +47,7 @@ def main() -> None:
     apart = _timed(_Apart(several), designs)
     found = {
         "designs": options.designs,
-        "cases": len(problem.scenes) * len(problem.heights),
+        "cases": len(problem.scenes) * len(problem.tasks),
         **{f"together_{name}": value for name, value in together.items() if name != "results"},
         **{f"apart_{name}": value for name, value in apart.items() if name != "results"},
         "single_case_designs_per_second_processor": _timed(single, random_designs(default, options.designs))[
@@ -69,9 +69,9 @@ class _Apart:
             for number in range(len(whole.problem.scenes))
         ]
 
-    def solve(self, values: Sequence[float]) -> list[HeightSolution]:
+    def solve(self, values: Sequence[float]) -> list[CaseSolution]:
         """Every case of a design, in the order of the whole."""
-        return [height for part in self._parts for height in part.solve(values).heights]
+        return [height for part in self._parts for height in part.solve(values).cases]
 
 
 def _alone(problem: Problem, number: int) -> Problem:
@@ -93,12 +93,12 @@ def _timed(evaluator: Evaluator | _Apart, designs: Sequence[Design]) -> dict[str
     return {
         "designs_per_second_wall": len(designs) / wall,
         "designs_per_second_processor": len(designs) / processor,
-        "results": [r.heights if isinstance(r, DesignResult) else r for r in results],
+        "results": [r.cases if isinstance(r, DesignResult) else r for r in results],
     }
 
 
 def _compared(
-    together: Sequence[Sequence[HeightSolution]], apart: Sequence[Sequence[HeightSolution]]
+    together: Sequence[Sequence[CaseSolution]], apart: Sequence[Sequence[CaseSolution]]
 ) -> dict[str, float]:
     """Costs of the same cases both ways."""
     pairs = [
@@ -114,7 +114,7 @@ def _compared(
     }
 
 
-def _cost(height: HeightSolution) -> float:
+def _cost(height: CaseSolution) -> float:
     return min(a.cost for a in height.attempts if a.status is Status.SOLVED)
 
 

@@ -1,9 +1,9 @@
-"""Policies: numbers that a design chooses beside its hardware, on how robot and person divide the work.
+"""Allocations: numbers that a design chooses beside its hardware, on how robot and person divide the work.
 
     robot_share     part of the load's weight that the robot carries, 0 to 1
     effort_ratio    log10(w_r / w_h), where w_r + w_h = 2 weigh the agents' squared torques
 
-So a front can span from "the robot carries" to "the person carries". A policy belongs to no link.
+So a front can span from "the robot carries" to "the person carries". An allocation belongs to no link.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
 
 @dataclass(frozen=True, slots=True)
 class Allocation:
-    """A policy's range.
+    """An allocation's range.
 
     Args:
         usual: its value in the unscaled robot.

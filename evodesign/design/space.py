@@ -1,4 +1,4 @@
-"""What may change: length multipliers and densities of groups of links, and policies.
+"""What may change: length multipliers and densities of groups of links, and allocations.
 
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
@@ -29,20 +29,20 @@ class ParameterKind(StrEnum):
 
     LENGTH = "length"
     DENSITY = "density"
-    POLICY = "policy"
+    ALLOCATION = "allocation"
 
 
-UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.POLICY: "1"}
+UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.ALLOCATION: "1"}
 
 
 @dataclass(frozen=True, slots=True)
 class DesignParameter:
-    """One number that a design chooses, for a group of links or, as a policy, for none.
+    """One number that a design chooses, for a group of links or, as an allocation, for none.
 
     Args:
-        kind: length multiplier [-], density [kg/m^3] or policy [-].
-        group: name of the group, unique among the parameters of its kind; of a policy, its own.
-        links: names of the links that share the value; none for a policy.
+        kind: length multiplier [-], density [kg/m^3] or allocation [-].
+        group: name of the group, unique among the parameters of its kind; of an allocation, its own.
+        links: names of the links that share the value; none for an allocation.
         lower, upper: bounds.
         materials: of which a density must be one's, the lightest first; none if every value within the
             bounds will do.
@@ -138,14 +138,14 @@ class DesignSpace:
         return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
-        """The policies among a design's values, by their own names."""
+        """The allocations among a design's values, by their own names."""
         pairs = zip(self.parameters, values, strict=True)
-        return {p.group: value for p, value in pairs if p.kind is ParameterKind.POLICY}
+        return {p.group: value for p, value in pairs if p.kind is ParameterKind.ALLOCATION}
 
     @property
     def allocation_names(self) -> frozenset[str]:
-        """Names of the policies that a design chooses."""
-        return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
+        """Names of the allocations that a design chooses."""
+        return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.ALLOCATION)
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -153,13 +153,13 @@ class DesignSpace:
         return tuple(len(parameter.materials) for parameter in self.parameters)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
-        """The file's robot as a design: multipliers one, densities averaged over groups, usual policies."""
+        """The file's robot as a design: multipliers one, mean densities of groups, usual allocations."""
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
         if parameter.kind is ParameterKind.LENGTH:
             return 1.0
-        if parameter.kind is ParameterKind.POLICY:
+        if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
         solids = [
             solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids

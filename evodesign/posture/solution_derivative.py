@@ -31,9 +31,10 @@ from evodesign.posture.formulations.decoupled import DECOUPLED, robot_program
 from evodesign.posture.formulations.human_value import HumanValue, human_program
 from evodesign.posture.formulations.joint import SYMMETRIC, posture_program
 from evodesign.posture.load_cases import postures_in_cases, with_worst
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.warm_start import start_from
+from evodesign.records import Task
 
 __all__ = ["PostureDerivative", "PostureDerivatives", "labels_of"]
 
@@ -79,7 +80,7 @@ class PostureDerivative:
 class _Way(Protocol):
     """A way of solving postures, with derivatives."""
 
-    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureDerivative | NotDifferentiable:
+    def at(self, design: Sequence[float], solution: CaseSolution) -> PostureDerivative | NotDifferentiable:
         """The tangent of a posture that this way might have found."""
 
 
@@ -92,12 +93,12 @@ class PostureDerivatives:
         space: DesignSpace,
         weights: EffortWeights,
         options: IpoptOptions,
-        values: Sequence[HumanValue],
+        values: Mapping[Task, HumanValue],
     ) -> None:
         self._ingredients = (scene, space, weights, options)
-        self._values = {value.height: value for value in values}
+        self._values = values
 
-    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureDerivative | NotDifferentiable:
+    def at(self, design: Sequence[float], solution: CaseSolution) -> PostureDerivative | NotDifferentiable:
         """The tangent of a design's solved posture, or why it has none.
 
         Args:
@@ -111,7 +112,7 @@ class PostureDerivatives:
             return NotDifferentiable("the posture was not found again")
         return found if _determined(found) else NotDifferentiable("the posture can move at no cost")
 
-    def _way(self, solution: HeightSolution) -> _Way:
+    def _way(self, solution: CaseSolution) -> _Way:
         """The program that found a posture, differentiated; built when it is first needed."""
         program = solution.start.partition(":")[0]
         if program == DECOUPLED:
@@ -143,10 +144,10 @@ class _Joint:
         program = posture_program(forms, scene, space, weights)
         self._both = SolutionSensitivity(program, options, labels_of(forms))
 
-    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureDerivative | NotDifferentiable:
+    def at(self, design: Sequence[float], solution: CaseSolution) -> PostureDerivative | NotDifferentiable:
         """The tangent of a posture that this program might have found."""
         start = start_from(self._forms, self._both.program, solution.postures, solution.disturbed)
-        parameters = [*design, solution.height, self._mass]
+        parameters = [*design, solution.case.task.height_m, self._mass]
         found = self._both.at(parameters, with_worst(start, self._both.program, parameters))
         if isinstance(found, NotDifferentiable):
             return found
@@ -172,7 +173,7 @@ class _Decoupled:
         space: DesignSpace,
         weights: EffortWeights,
         options: IpoptOptions,
-        values: Mapping[float, HumanValue],
+        values: Mapping[Task, HumanValue],
     ) -> None:
         self._forms, self._scene, self._values = forms, scene, values
         labels = labels_of(forms)
@@ -181,11 +182,11 @@ class _Decoupled:
         )
         self._human = SolutionSensitivity(human_program(forms[1], scene, weights.human), options, labels)
 
-    def at(self, design: Sequence[float], solution: HeightSolution) -> PostureDerivative | NotDifferentiable:
+    def at(self, design: Sequence[float], solution: CaseSolution) -> PostureDerivative | NotDifferentiable:
         """The tangent of a posture that this pair of programs might have found."""
-        value = self._values[solution.height]
+        value = self._values[solution.case.task]
         start = start_from(self._forms, self._robot.program, solution.postures)
-        beside = (solution.height, self._scene.payload.mass, *value.coefficients)
+        beside = (solution.case.task.height_m, self._scene.payload.mass, *value.coefficients)
         robot = self._robot.at([*design, *beside], start)
         if isinstance(robot, NotDifferentiable):
             return robot
@@ -216,9 +217,9 @@ class _Decoupled:
             ),
         )
 
-    def _person(self, solution: HeightSolution, push: float, *, held: bool) -> Optimum | NotDifferentiable:
+    def _person(self, solution: CaseSolution, push: float, *, held: bool) -> Optimum | NotDifferentiable:
         """The person under a push [N]; one that is held at its limit does not move the person."""
-        parameters = [solution.height, self._scene.payload.mass, push]
+        parameters = [solution.case.task.height_m, self._scene.payload.mass, push]
         start = start_from(self._forms, self._human.program, solution.postures)
         raw = self._human.solve(parameters, start)
         if not held:
@@ -236,7 +237,7 @@ def _in(limit: Limit, change: Array) -> Limit:
     return Limit(limit.name, limit.active, limit.margin, limit.slope @ change)
 
 
-def _same(derivative: PostureDerivative, solution: HeightSolution) -> bool:
+def _same(derivative: PostureDerivative, solution: CaseSolution) -> bool:
     """Whether a posture that was found again has the torques that it had."""
     found = derivative.postures(np.zeros_like(derivative.cost_slope))
     return all(

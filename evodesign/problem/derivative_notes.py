@@ -13,7 +13,7 @@ import numpy as np
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
 from evodesign.posture.reach_derivative import ReachDerivative
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.problem.build import Problem
 from evodesign.records import Status
@@ -28,12 +28,11 @@ DISTINCT = 1e-5
 
 
 def posture_notes(
-    problem: Problem, height: HeightSolution, derivative: PostureDerivative | NotDifferentiable
+    problem: Problem, solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable
 ) -> Iterator[str]:
-    """What is to be said of the posture at one height that was solved."""
-    label = problem.scenes[height.scene].label
-    place = f"at {height.height:g} m" + (f", {label}" if label else "")
-    yield f"{place}: {_winner(height, derivative)}"
+    """What is to be said of the posture in one case that was solved."""
+    place = ", ".join(part for part in (f"at {solution.case.task}", solution.case.label) if part)
+    yield f"{place}: {_winner(solution, derivative)}"
     if isinstance(derivative, NotDifferentiable):
         yield f"{place}: no gradient, for {derivative.reason}"
     else:
@@ -57,13 +56,15 @@ def reach_notes(
     yield from _near(problem, place, derivative.limits)
 
 
-def _winner(height: HeightSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
+def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
     """Which start won, and how far behind the next best optimum of the same program is."""
-    won = f"{height.start} won"
+    won = f"{solution.start} won"
     if isinstance(derivative, NotDifferentiable):
         return won
-    program = height.start.partition(":")[0]
-    others = [a for a in height.attempts if a.start.partition(":")[0] == program and a.start != height.start]
+    program = solution.start.partition(":")[0]
+    others = [
+        a for a in solution.attempts if a.start.partition(":")[0] == program and a.start != solution.start
+    ]
     behind = [a.cost / derivative.compared - 1.0 for a in others if a.status is Status.SOLVED]
     distinct = [share for share in behind if share > DISTINCT]
     if not others:

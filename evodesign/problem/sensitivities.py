@@ -9,8 +9,8 @@ exact tangent, by five-point differences,
 which for formulas of a few operations agree with the exact derivative to about 1e-9. So an objective needs
 nothing beyond its function to have a gradient.
 
-What an objective depends on shows when it is taken away: an objective that does not exist without a height's
-posture has that height's kinks.
+What an objective depends on shows when it is taken away: an objective that does not exist without a case's
+posture has that case's kinks.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from evodesign.posture.formulations.joint import Symmetry
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.reach_derivative import ReachDerivative, ReachDerivatives
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution, Instant
 from evodesign.posture.solution_derivative import PostureDerivative, PostureDerivatives
 from evodesign.problem.build import Problem
 from evodesign.problem.derivative_notes import posture_notes, reach_notes
@@ -63,14 +63,14 @@ class DesignDerivative:
         problem: whose design it is.
         values: of the design, one number per parameter.
         result: what was computed of it.
-        heights: one tangent per required height; a kink where there is none.
+        cases: one tangent per case; a kink where there is none.
         highest, lowest: tangents of the reach.
     """
 
     problem: Problem
     values: tuple[float, ...]
     result: DesignResult
-    heights: tuple[PostureDerivative | NotDifferentiable, ...]
+    cases: tuple[PostureDerivative | NotDifferentiable, ...]
     highest: ReachDerivative | NotDifferentiable
     lowest: ReachDerivative | NotDifferentiable
 
@@ -78,17 +78,17 @@ class DesignDerivative:
         """To first order, the results of a design that differs by a step; what has no tangent is left out."""
         tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
-        heights = tuple(
-            replace(
-                height,
-                postures=derivative.postures(step),
-                disturbed=derivative.disturbed(self.result.scenes[height.scene], step),
-            )
+        cases = tuple(
+            replace(solution, instants=(self._instant(solution, derivative, step),))
             if isinstance(derivative, PostureDerivative)
-            else _without(height)
-            for height, derivative in zip(self.result.heights, self.heights, strict=True)
+            else _without(solution)
+            for solution, derivative in zip(self.result.cases, self.cases, strict=True)
         )
-        return replace(self.result, tree=tree, reach=reach, heights=heights)
+        return replace(self.result, tree=tree, reach=reach, cases=cases)
+
+    def _instant(self, solution: CaseSolution, derivative: PostureDerivative, step: Array) -> Instant:
+        scene = self.result.scene_of(solution.case)
+        return Instant(0.0, derivative.postures(step), derivative.disturbed(scene, step))
 
     def sensitivities(self) -> dict[str, ObjectiveSensitivity]:
         """How each of the problem's objectives moves that exists for the design."""
@@ -125,10 +125,10 @@ class DesignDerivative:
         """Sentences on every part of the results that an objective depends on."""
         value, result = partial(objective_value, name), self.result
         said: list[str] = []
-        for position, (height, derivative) in enumerate(zip(result.heights, self.heights, strict=True)):
-            others = [_without(h) if i == position else h for i, h in enumerate(result.heights)]
-            if height.solved and value(replace(result, heights=tuple(others))) is None:
-                said += posture_notes(self.problem, height, derivative)
+        for solution, derivative in zip(result.cases, self.cases, strict=True):
+            others = [_without(each) if each.case == solution.case else each for each in result.cases]
+            if solution.solved and value(replace(result, cases=tuple(others))) is None:
+                said += posture_notes(self.problem, solution, derivative)
         if value(replace(result, reach=replace(result.reach, highest=None))) is None:
             said += reach_notes(self.problem, "highest", self.highest)
         if value(replace(result, reach=replace(result.reach, lowest=None))) is None:
@@ -143,17 +143,17 @@ class Sensitivities:
         self._problem = problem
         space, options = problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
-        loads = {id(scene.payload): scene for scene in problem.scenes}
+        loads = {scene.payload.label: scene for scene in problem.scenes}
         solvers = SolverCache()
         reaches = [
             ReachProblem(scene, space, options, symmetric=symmetric, known=known, solvers=solvers)
             for scene in loads.values()
         ]
         self._reaches = [ReachDerivatives(reach, options) for reach in reaches]
-        self._postures = [
-            PostureDerivatives(each, space, problem.weights, options, known.of_scene(number).values)
-            for number, each in enumerate(problem.scenes)
-        ]
+        self._postures = {
+            scene.pair: PostureDerivatives(scene, space, problem.weights, options, known.values_of(scene))
+            for scene in problem.scenes
+        }
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
@@ -161,11 +161,11 @@ class Sensitivities:
             problem=self._problem,
             values=tuple(values),
             result=result,
-            heights=tuple(
-                self._postures[height.scene].at(values, height)
-                if height.solved
-                else NotDifferentiable(height.reason)
-                for height in result.heights
+            cases=tuple(
+                self._postures[solution.case.pair].at(values, solution)
+                if solution.solved
+                else NotDifferentiable(solution.reason)
+                for solution in result.cases
             ),
             highest=self._end(values, HIGHEST),
             lowest=self._end(values, LOWEST),
@@ -187,9 +187,9 @@ def _end(derivative: ReachDerivative | NotDifferentiable, step: Array) -> float 
     )
 
 
-def _without(height: HeightSolution) -> HeightSolution:
-    """A height without its posture."""
-    return replace(height, status=Status.NUMERICAL_FAILURE, postures={}, residuals={}, disturbed={})
+def _without(solution: CaseSolution) -> CaseSolution:
+    """A case without its posture."""
+    return replace(solution, status=Status.NUMERICAL_FAILURE, instants=(), residuals={})
 
 
 def _slope(values: Sequence[float], step: float) -> float:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import msgspec
 
 from evodesign.analysis.infeasible import causes_of_infeasibility
-from evodesign.records import Evaluation, HeightOutcome, Status
+from evodesign.records import CaseOutcome, Evaluation, Status
 from tests.runlog.toys import toy_evaluations, toy_header
 
 
-def height(height_m: float, status: Status) -> HeightOutcome:
-    return HeightOutcome(
+def height(height_m: float, status: Status) -> CaseOutcome:
+    return CaseOutcome(
         height_m=height_m,
         status=status,
         reason="",
@@ -21,10 +21,10 @@ def height(height_m: float, status: Status) -> HeightOutcome:
     )
 
 
-def failed(number: int, status: Status, *heights: HeightOutcome) -> Evaluation:
+def failed(number: int, status: Status, *heights: CaseOutcome) -> Evaluation:
     first = toy_evaluations(toy_header(), 1)[0]
     assessment = msgspec.structs.replace(
-        first.assessment, violation=0.1, status=status, reason=f"reason {number}", heights=heights
+        first.assessment, violation=0.1, status=status, reason=f"reason {number}", cases=heights
     )
     return msgspec.structs.replace(first, number=number, assessment=assessment)
 
@@ -56,7 +56,7 @@ def test_several_heights_are_one_cause() -> None:
 
 
 def test_a_cause_names_a_height_once_and_with_whom_it_failed() -> None:
-    def case(human: str, status: Status) -> HeightOutcome:
+    def case(human: str, status: Status) -> CaseOutcome:
         return msgspec.structs.replace(height(1.2, status), human_name=human, payload_name="5 kg")
 
     def cause(*statuses: Status) -> str:

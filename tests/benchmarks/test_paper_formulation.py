@@ -88,7 +88,7 @@ def test_at_our_postures_the_graph_is_equations_12_and_13(
 ) -> None:
     result = evaluator.solve(design)
     model = CoupledModel(problem.scene, result.tree)
-    for height in result.heights:
+    for height in result.cases:
         assert height.solved, height.reason
         torques, wrenches = statics(paper, columns(height.postures), [*design, height.height])
         system = model.at(places_of(height.postures, height.height))

@@ -10,11 +10,11 @@ from rich.console import Console
 from rich.table import Table
 
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
-from evodesign.records import Assessment, HeightOutcome, Status
+from evodesign.records import Assessment, CaseOutcome, Status
 
 
-def outcome(human: str = "", payload: str = "") -> HeightOutcome:
-    return HeightOutcome(
+def outcome(human: str = "", payload: str = "") -> CaseOutcome:
+    return CaseOutcome(
         height_m=1.0,
         status=Status.SOLVED,
         reason="solved",
@@ -27,9 +27,9 @@ def outcome(human: str = "", payload: str = "") -> HeightOutcome:
     )
 
 
-def printed(table: Callable[[Assessment, str], Table], *heights: HeightOutcome) -> str:
+def printed(table: Callable[[Assessment, str], Table], *heights: CaseOutcome) -> str:
     assessment = Assessment(
-        design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", heights=heights
+        design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", cases=heights
     )
     out = StringIO()
     Console(file=out, width=110).print(table(assessment, ""))

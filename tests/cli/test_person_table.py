@@ -8,10 +8,9 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from evodesign.analysis.cases import case_name
 from evodesign.cli.person_table import hardest_cases, people_table, person_table
 from evodesign.problem.ergonomics import ergonomics
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 from tests.problem.test_ergonomics import PERSON, posture
 
 REACHING = {"jLeftShoulder_rotz": -1.57, "jRightShoulder_rotz": 1.57}
@@ -44,14 +43,14 @@ def test_what_is_not_known_or_not_recommended_is_a_dash() -> None:
 
 
 def test_a_case_is_named_by_who_and_what_only_where_there_are_several() -> None:
-    assert case_name(HeightDetail(height_m=1.0, agents={})) == "1 m"
-    several = HeightDetail(height_m=0.8, agents={}, human_name="male P5", payload_name="10 kg")
+    assert case_name(CaseDetail(height_m=1.0, agents={})) == "1 m"
+    several = CaseDetail(height_m=0.8, agents={}, human_name="male P5", payload_name="10 kg")
     assert case_name(several) == "male P5, 10 kg, 0.8 m"
 
 
 def test_of_several_people_only_the_hardest_cases_of_each_are_shown() -> None:
-    def case(human: str, height: float) -> HeightDetail:
-        return HeightDetail(height_m=height, agents={}, human_name=human, payload_name="5 kg")
+    def case(human: str, height: float) -> CaseDetail:
+        return CaseDetail(height_m=height, agents={}, human_name=human, payload_name="5 kg")
 
     quiet, far = ergonomics(PERSON, posture({})), ergonomics(PERSON, posture(REACHING))
     assert quiet.lifting_index is not None
@@ -69,7 +68,7 @@ def test_of_several_people_only_the_hardest_cases_of_each_are_shown() -> None:
     out = StringIO()
     Console(file=out, width=110).print(people_table(asked, titled=True))
     assert "hardest postures" in out.getvalue()
-    alone = [(HeightDetail(height_m=height, agents={}), quiet) for height in (0.8, 1.0)]
+    alone = [(CaseDetail(height_m=height, agents={}), quiet) for height in (0.8, 1.0)]
     out = StringIO()
     Console(file=out, width=110).print(people_table(alone, titled=True))
     assert "each posture" in out.getvalue()

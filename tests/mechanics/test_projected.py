@@ -293,7 +293,7 @@ def test_limits_of_the_ground_cost_torque(problem: Problem, evaluator: Evaluator
     """With friction, soles and push enforced, no posture strains less than Eq. 12 says; none much more."""
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     model = CoupledModel(problem.scene, result.tree)
-    for height in result.heights:
+    for height in result.cases:
         system = model.at(places_of(height.postures, height.height))
         least = np.linalg.norm(projected_torques(system))
         found = np.linalg.norm([p.torque_norm for p in height.postures.values()])

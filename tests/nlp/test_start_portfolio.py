@@ -101,7 +101,7 @@ def test_seeds_of_the_default_problem_lead_other_designs_well(known: Precomputed
 
 def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Evaluator) -> None:
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
-    for height in result.heights:
+    for height in result.cases:
         names = [attempt.start for attempt in height.attempts]
         assert height.start in names
         assert all(name.startswith("split: seed") for name in names)
@@ -112,7 +112,7 @@ def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Ev
 def test_without_seeds_solves_begin_at_the_fixed_starts(problem: Problem, known: Precomputed) -> None:
     plain = Evaluator(problem, Precomputed(values=known.values))
     result = plain.solve(problem.space.unscaled(problem.scene.robot.tree))
-    assert [attempt.start for attempt in result.heights[0].attempts] == ["split: start 1", "split: start 2"]
+    assert [attempt.start for attempt in result.cases[0].attempts] == ["split: start 1", "split: start 2"]
 
 
 def test_seeds_reach_higher_than_fixed_starts(

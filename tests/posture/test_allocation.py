@@ -21,7 +21,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.codesign import JointProblem
 from evodesign.posture.formulations.joint import PostureProblem, Symmetry, posture_program
 from evodesign.posture.formulations.reach import ReachProblem
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
@@ -32,8 +32,8 @@ EQUAL = EffortWeights()
 Postures = Mapping[str, AgentPosture]
 
 
-def policy(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
-    return DesignSpace((DesignParameter(ParameterKind.POLICY, name, (), lower, upper),))
+def allocation(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
+    return DesignSpace((DesignParameter(ParameterKind.ALLOCATION, name, (), lower, upper),))
 
 
 def rigid(problem: Problem, moment: float = math.inf, share: float | None = None) -> Scene:
@@ -49,7 +49,7 @@ def solve(
     space: DesignSpace = NO_POLICY,
     values: Sequence[float] = (),
     symmetry: Symmetry = Symmetry.ON,
-) -> HeightSolution:
+) -> CaseSolution:
     """The unscaled robot's posture; everything that is checked holds."""
     options = replace(problem.options, tolerance=1e-10)
     posture = PostureProblem(scene, space, weights, options, symmetry)
@@ -63,21 +63,21 @@ def checker(scene: Scene) -> Checker:
     return Checker(scene, scene.robot.tree, AgentModel.of(scene.human, scene.human.tree))
 
 
-def share(solution: HeightSolution) -> float:
+def share(solution: CaseSolution) -> float:
     wrenches = solution.postures[ROBOT].hand_wrenches
     return -float(sum(wrenches[side][2] for side in SIDES)) / (MASS * GRAVITY)
 
 
-def moments(solution: HeightSolution) -> float:
+def moments(solution: CaseSolution) -> float:
     wrenches = [posture.hand_wrenches[side] for posture in solution.postures.values() for side in SIDES]
     return float(np.abs([wrench[3:] for wrench in wrenches]).max())
 
 
-def torques(solution: HeightSolution) -> list[float]:
+def torques(solution: CaseSolution) -> list[float]:
     return [torque for posture in solution.postures.values() for torque in posture.torques.values()]
 
 
-def norms(solution: HeightSolution) -> tuple[float, float]:
+def norms(solution: CaseSolution) -> tuple[float, float]:
     return solution.postures[ROBOT].torque_norm, solution.postures[HUMAN].torque_norm
 
 
@@ -164,14 +164,16 @@ def test_no_agent_lifts_the_other_by_the_load(problem: Problem) -> None:
 
 def test_a_share_chosen_by_the_design_is_the_same_share_fixed(problem: Problem) -> None:
     fixed = solve(problem, rigid(problem, moment=7.0, share=0.3))
-    chosen = solve(problem, rigid(problem, moment=7.0), space=policy(ROBOT_SHARE), values=(0.3,))
+    chosen = solve(problem, rigid(problem, moment=7.0), space=allocation(ROBOT_SHARE), values=(0.3,))
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
 def test_a_ratio_chosen_by_the_design_is_the_same_weights_fixed(problem: Problem) -> None:
     weights = EffortWeights(2.0 * 10.0 / 11.0, 2.0 / 11.0)
     fixed = solve(problem, rigid(problem, moment=7.0), weights=weights)
-    chosen = solve(problem, rigid(problem, moment=7.0), space=policy(EFFORT_RATIO, -2.0, 2.0), values=(1.0,))
+    chosen = solve(
+        problem, rigid(problem, moment=7.0), space=allocation(EFFORT_RATIO, -2.0, 2.0), values=(1.0,)
+    )
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
@@ -184,7 +186,7 @@ def test_weights_add_up_to_two_and_have_their_ratio() -> None:
 
 def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> None:
     """An optimum of a weighted sum: the robot's part falls as its weight grows, the person's rises."""
-    space, scene = policy(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
+    space, scene = allocation(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
     found = [norms(solve(problem, scene, 0.8, space=space, values=(e,))) for e in (-2.0, 0.0, 2.0)]
     robot, human = zip(*found, strict=True)
     assert robot[0] > 2.0 * robot[1] > 4.0 * robot[2]
@@ -193,7 +195,7 @@ def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> 
 
 def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
     options = problem.options
-    space = policy(ROBOT_SHARE)
+    space = allocation(ROBOT_SHARE)
     reach = ReachProblem(rigid(problem, moment=7.0), space, options, symmetric=True)
     highest = [reach.solve((given,)).highest or 0.0 for given in (0.0, 1.0)]
     assert 1.0 < highest[1] <= highest[0] + 1e-6
@@ -201,20 +203,20 @@ def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
 
 def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> None:
     """Held at a share, one height: the optimum of the posture problem."""
-    scene, space = rigid(problem, moment=7.0), policy(ROBOT_SHARE)
+    scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene, space=space, values=(0.3,))
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True)), (0.3,)
     )
     together = joint.polish((0.3,), [alone.postures])
     assert together.solved, together.attempt.reason
-    assert share(together.heights[0]) == pytest.approx(0.3, abs=1e-6)
-    assert norms(together.heights[0]) == pytest.approx(norms(alone), abs=1e-3)
+    assert share(together.cases[0]) == pytest.approx(0.3, abs=1e-6)
+    assert norms(together.cases[0]) == pytest.approx(norms(alone), abs=1e-3)
 
 
 def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     """Free to choose, it does no worse than the posture problem whose share is free."""
-    scene, space = rigid(problem, moment=7.0), policy(ROBOT_SHARE)
+    scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene)
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True))

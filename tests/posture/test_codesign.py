@@ -69,7 +69,7 @@ def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
     assert together.solved
     assert together.design == pytest.approx(values, rel=1e-9)
     assert together.attempt.cost == pytest.approx(cost, rel=1e-5)
-    for one, other in zip(together.heights, alone, strict=True):
+    for one, other in zip(together.cases, alone, strict=True):
         for agent in one.postures:
             norm = other.postures[agent].torque_norm
             assert one.postures[agent].torque_norm == pytest.approx(norm, rel=1e-5, abs=1e-4)
@@ -89,13 +89,13 @@ def test_freed_the_design_costs_less_than_held(paper: Problem) -> None:
     for _ in range(3):
         near = tuple(np.clip(best + 0.02 * rng.standard_normal(len(best)), 0.0, 1.0).tolist())
         beside = JointProblem(scene, paper.space, heights, chosen, fixed=near)
-        found = beside.polish(near, [free.heights[0].postures])
+        found = beside.polish(near, [free.cases[0].postures])
         assert found.attempt.cost >= free.attempt.cost - 1e-7
 
 
 @pytest.fixture(scope="module")
 def as_published(published: Problem) -> JointSolution:
-    problem = JointProblem(published.scene, published.space, published.heights, published.joint)
+    problem = JointProblem(published.scene, published.space, published.tasks, published.joint)
     return problem.solve(published.joint_start[0], drawn=False)
 
 
@@ -108,7 +108,7 @@ def test_the_published_setting_gives_the_papers_torques(
 
 def test_the_published_setting_shows_its_weakness(as_published: JointSolution) -> None:
     """Human torque far below the table, and limits broken: a joint's range and what a foot can bear."""
-    for height in as_published.heights:
+    for height in as_published.cases:
         assert height.postures["human"].torque_norm < 0.1 * PUBLISHED_HUMAN[height.height]
     worst: dict[str, float] = {}
     for found in as_published.violations:
@@ -122,7 +122,7 @@ def test_the_published_setting_shows_its_weakness(as_published: JointSolution) -
 
 def test_a_foot_is_never_flat_upside_down(as_published: JointSolution) -> None:
     """The check would find a difference of two between the sole's z and the world's."""
-    for height in as_published.heights:
+    for height in as_published.cases:
         assert height.residuals["robot.feet_flat"] < 1e-5
         assert height.residuals["human.feet_flat"] < 1e-5
 
@@ -151,7 +151,7 @@ def test_without_limits_equation_14_remains(paper: Problem) -> None:
 def test_with_limits_every_residual_of_the_check_is_enforced(
     paper: Problem, as_published: JointSolution
 ) -> None:
-    names = [*as_published.heights[0].residuals, *as_published.violations[0]]
+    names = [*as_published.cases[0].residuals, *as_published.violations[0]]
     assert kept(names, LIMITS) == set(names)
     always = kept(names, NO_LIMITS)
     assert {name.rsplit(".", 1)[1] for name in always} == {
@@ -182,7 +182,7 @@ def test_pressure_goes_to_the_middle_of_the_soles(paper: Problem) -> None:
         joint = JointProblem(paper.scene, paper.space, (1.0,), chosen, fixed=paper.start[1])
         solution = joint.solve(paper.start[1], drawn=False)
         assert solution.solved
-        feet = [w for p in solution.heights[0].postures.values() for w in p.foot_wrenches.values()]
+        feet = [w for p in solution.cases[0].postures.values() for w in p.foot_wrenches.values()]
         return float(sum(np.square(center_of_pressure(wrench)).sum() for wrench in feet))
 
     assert distance(1e4) < 0.1 * distance(0.0)
@@ -234,8 +234,8 @@ def test_a_start_that_fails_says_why(paper: Problem) -> None:
     found = JointProblem(paper.scene, paper.space, (1.0,), chosen).solve(paper.start[1], drawn=True)
     assert not found.solved
     assert found.attempt.status is Status.ITERATION_LIMIT
-    assert found.heights[0].status is Status.ITERATION_LIMIT
-    assert "Maximum_Iterations_Exceeded" in found.heights[0].reason
+    assert found.cases[0].status is Status.ITERATION_LIMIT
+    assert "Maximum_Iterations_Exceeded" in found.cases[0].reason
 
 
 def test_starts_are_drawn_from_the_genome_alone(paper: Problem) -> None:

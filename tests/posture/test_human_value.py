@@ -29,7 +29,7 @@ def test_clenshaws_sum_is_numpys(coefficients: list[float], x: float) -> None:
 def test_value_is_what_solving_the_person_gives(problem: Problem, known: Precomputed) -> None:
     """At pushes that are no nodes, against a solve from the nearest node."""
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
-    assert [value.height for value in known.values] == list(problem.heights)
+    assert [value.height for value in known.values] == list(problem.tasks)
     for value in known.values:
         assert value.error <= LARGEST_ERROR
         for push in (-4.3, -1.1, 0.7, 3.9):
@@ -45,7 +45,7 @@ def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, 
     excess = []
     for _ in range(5):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
-        for one, both in zip(split.solve(values).heights, joint.solve(values).heights, strict=True):
+        for one, both in zip(split.solve(values).cases, joint.solve(values).cases, strict=True):
             assert one.status == both.status
             if one.solved:
                 costs = [min(a.cost for a in s.attempts if a.status is Status.SOLVED) for s in (one, both)]

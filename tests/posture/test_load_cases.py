@@ -18,7 +18,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem, Symmetry
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
@@ -60,8 +60,8 @@ def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Che
 
 
 def solved(
-    scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: HeightSolution | None = None
-) -> HeightSolution:
+    scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: CaseSolution | None = None
+) -> CaseSolution:
     """Of the unscaled robot; begun at another solution's postures if there is one."""
     values = problem.space.unscaled(scene.robot.tree)
     checker = checker_of(scene, problem, values)
@@ -72,24 +72,24 @@ def solved(
     return solution
 
 
-def cost_of(solution: HeightSolution) -> float:
+def cost_of(solution: CaseSolution) -> float:
     return min(attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED)
 
 
 @pytest.fixture(scope="module")
-def undisturbed(problem: Problem) -> HeightSolution:
+def undisturbed(problem: Problem) -> CaseSolution:
     return solved(problem.scene, problem)
 
 
 @pytest.fixture(scope="module")
-def borne(problem: Problem) -> HeightSolution:
+def borne(problem: Problem) -> CaseSolution:
     """The unscaled robot under every kind of disturbance."""
     return solved(disturbed(problem, *EVERY), problem)
 
 
 @pytest.mark.parametrize("effort", list(OverCases))
 def test_disturbances_of_size_zero_are_none(
-    effort: OverCases, problem: Problem, undisturbed: HeightSolution
+    effort: OverCases, problem: Problem, undisturbed: CaseSolution
 ) -> None:
     nothing = (Disturbance("a"), Disturbance("b", at=PushedAt.HUMAN))
     solution = solved(disturbed(problem, *nothing, effort=effort), problem, like=undisturbed)
@@ -104,7 +104,7 @@ def test_disturbances_of_size_zero_are_none(
                 )
 
 
-def test_the_posture_is_the_same_in_every_case(borne: HeightSolution) -> None:
+def test_the_posture_is_the_same_in_every_case(borne: CaseSolution) -> None:
     assert list(borne.disturbed) == [case.name for case in EVERY]
     for postures in borne.disturbed.values():
         for agent, posture in postures.items():
@@ -113,7 +113,7 @@ def test_the_posture_is_the_same_in_every_case(borne: HeightSolution) -> None:
             assert posture.torques != borne.postures[agent].torques
 
 
-def test_hands_and_feet_bear_weight_and_push(borne: HeightSolution, problem: Problem) -> None:
+def test_hands_and_feet_bear_weight_and_push(borne: CaseSolution, problem: Problem) -> None:
     """Closed forms: forces on the load, and vertical ones on the agents (soles are flat)."""
     scene = problem.scene
     for case in EVERY:
@@ -135,7 +135,7 @@ def test_hands_and_feet_bear_weight_and_push(borne: HeightSolution, problem: Pro
             assert up == pytest.approx(mass * GRAVITY - down, abs=1e-3)
 
 
-def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: HeightSolution, problem: Problem) -> None:
+def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: CaseSolution, problem: Problem) -> None:
     """Lever rule of a beam half a metre long, but for the moment of the push between the agents."""
     hands = borne.disturbed[LEANING.name][HUMAN].hand_wrenches
     carried = -sum(float(hands[side][2]) for side in SIDES)
@@ -144,11 +144,11 @@ def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: HeightSolution, pro
     assert carried == pytest.approx(expected, abs=problem.scene.stance.push * lever / 0.5 + 1e-4)
 
 
-def test_worst_and_mean_are_each_best_at_what_they_minimise(problem: Problem, borne: HeightSolution) -> None:
+def test_worst_and_mean_are_each_best_at_what_they_minimise(problem: Problem, borne: CaseSolution) -> None:
     mean = solved(disturbed(problem, *EVERY, effort=OverCases.MEAN), problem, like=borne)
     worst = solved(disturbed(problem, *EVERY, effort=OverCases.WORST), problem, like=mean)
 
-    def efforts(solution: HeightSolution) -> list[float]:
+    def efforts(solution: CaseSolution) -> list[float]:
         cases = (solution.postures, *solution.disturbed.values())
         return [sum(p.torque_norm**2 for p in postures.values()) / TORQUE_UNIT**2 for postures in cases]
 
@@ -198,7 +198,7 @@ def changed(posture: AgentPosture, part: str) -> AgentPosture:
     [("joints", "moved"), ("torques", "torque"), ("hand", "force_balance"), ("foot", "foot_contact")],
 )
 def test_the_check_sees_what_is_wrong_under_a_disturbance(
-    agent: str, part: str, residual: str, borne: HeightSolution, problem: Problem
+    agent: str, part: str, residual: str, borne: CaseSolution, problem: Problem
 ) -> None:
     scene = disturbed(problem, *EVERY)
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
@@ -211,7 +211,7 @@ def test_the_check_sees_what_is_wrong_under_a_disturbance(
 
 @pytest.mark.parametrize("case", EVERY)
 def test_the_check_sees_a_disturbance_of_another_size(
-    case: Disturbance, borne: HeightSolution, problem: Problem
+    case: Disturbance, borne: CaseSolution, problem: Problem
 ) -> None:
     stronger = replace(
         case,
@@ -239,7 +239,7 @@ def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(
         symmetric_forms(beside)
 
 
-def test_free_postures_bear_a_sideways_push(problem: Problem, undisturbed: HeightSolution) -> None:
+def test_free_postures_bear_a_sideways_push(problem: Problem, undisturbed: CaseSolution) -> None:
     aside = Disturbance("gust", push=(0.0, 10.0, 0.0))
     solution = solved(disturbed(problem, aside), problem, Symmetry.OFF, like=undisturbed)
     hands = solution.disturbed["gust"]

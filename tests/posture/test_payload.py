@@ -12,14 +12,14 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem, Symmetry
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
 
 BOX = (0.5, 0.5, 0.025)
 
 
-def solve(problem: Problem, payload: Payload, height: float = 1.0) -> HeightSolution:
+def solve(problem: Problem, payload: Payload, height: float = 1.0) -> CaseSolution:
     scene = replace(problem.scene, payload=payload)
     values = problem.space.unscaled(scene.robot.tree)
     posture = PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
@@ -28,7 +28,7 @@ def solve(problem: Problem, payload: Payload, height: float = 1.0) -> HeightSolu
     return posture.solve(values, height, checker)
 
 
-def carried(solution: HeightSolution, agent: str) -> float:
+def carried(solution: CaseSolution, agent: str) -> float:
     """Part of the load's weight that an agent carries [N]."""
     return -float(sum(solution.postures[agent].hand_wrenches[side][2] for side in SIDES))
 

@@ -57,7 +57,7 @@ def test_height_out_of_reach_is_a_violation_and_has_no_torque(problem: Problem, 
     found = evaluator.assess(shortest).assessment
     assert found.reach is not None
     assert found.reach.highest_m is not None
-    expected = sum(max(0.0, height - found.reach.highest_m) for height in problem.heights)
+    expected = sum(max(0.0, height - found.reach.highest_m) for height in problem.tasks)
     assert expected > 0.0
     assert found.violation == pytest.approx(expected)
     assert found.status is Status.INFEASIBLE

@@ -13,13 +13,13 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem, Symmetry
 from evodesign.posture.formulations.reach import ReachProblem
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import Problem
 from evodesign.records import Status
 
 
-def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> HeightSolution:
+def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
     scene, space = problem.scene, problem.space
     values = space.unscaled(scene.robot.tree)
     checker = Checker(
@@ -30,7 +30,7 @@ def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> HeightSo
     )
 
 
-def cost(solution: HeightSolution) -> float:
+def cost(solution: CaseSolution) -> float:
     return min(attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED)
 
 

@@ -109,7 +109,7 @@ def result(problem: Problem, evaluator: Evaluator) -> DesignResult:
 def efforts(result: DesignResult) -> list[float]:
     """The largest share of a strength at each height, by a loop over the joints."""
     found = []
-    for height in result.heights:
+    for height in result.cases:
         largest = 0.0
         for joint, torque in height.postures[HUMAN].torques.items():
             both = result.scenes[height.scene].human.strengths.get(joint)

@@ -26,7 +26,7 @@ def test_three_people_with_three_loads_are_nine_pairs() -> None:
     problem = build_problem(read_source(FILES[0].parent / "three_people_three_loads.toml"))
     pairs = {(scene.human.label, scene.payload.mass) for scene in problem.scenes}
     assert pairs == {(who, mass) for who in ("short", "middle", "tall") for mass in (5.0, 10.0, 15.0)}
-    assert problem.heights == (0.8, 1.0, 1.2)
+    assert problem.tasks == (0.8, 1.0, 1.2)
 
 
 def test_the_shared_load_is_rigidly_held_and_disturbed() -> None:
@@ -37,6 +37,6 @@ def test_the_shared_load_is_rigidly_held_and_disturbed() -> None:
         assert (scene.payload.grasp, scene.payload.mass) == (Grasp.RIGID, 10.0)
         found = [(case.mass_share, case.push) for case in scene.disturbances.cases]
         assert found == [(0.2, (0.0, 0.0, 0.0)), (0.0, (20.0, 0.0, 0.0)), (0.0, (-20.0, 0.0, 0.0))]
-    assert (min(problem.heights), max(problem.heights)) == (0.4, 1.6)
+    assert (min(problem.tasks), max(problem.tasks)) == (0.4, 1.6)
     assert problem.symmetry is Symmetry.ON
-    assert "policy.effort_ratio" in [parameter.name for parameter in problem.space.parameters]
+    assert "allocation.effort_ratio" in [parameter.name for parameter in problem.space.parameters]

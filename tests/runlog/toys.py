@@ -16,13 +16,13 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
+    CaseDetail,
+    CaseOutcome,
     Detail,
     Evaluation,
     Front,
     Generation,
     Genome,
-    HeightDetail,
-    HeightOutcome,
     Objective,
     Parameter,
     ProblemSource,
@@ -74,7 +74,7 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
     violation = max(0.0, 0.3 - genome[0])
     solved = violation == 0.0
     torque = 30.0 * (1.0 + (genome[0] - 0.5) ** 2 + genome[1] / 3.0)
-    height = HeightOutcome(
+    height = CaseOutcome(
         height_m=1.0,
         status=Status.SOLVED if solved else Status.INFEASIBLE,
         reason="" if solved else "too high by a third",
@@ -90,11 +90,11 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
         status=height.status,
         reason=height.reason,
         reach=ReachOutcome(lowest_m=None, highest_m=reach, status=Status.SOLVED, reason=""),
-        heights=(height,) * 3,
+        cases=(height,) * 3,
     )
 
 
-def toy_heights(genome: Genome) -> tuple[HeightDetail, ...]:
+def toy_cases(genome: Genome) -> tuple[CaseDetail, ...]:
     """A posture of one joint that follows from the genome."""
     wrenches = dict.fromkeys(("left", "right"), (0.0, 0.0, 12.5, 0.0, 0.0, 0.0))
     agent = AgentDetail(
@@ -105,16 +105,16 @@ def toy_heights(genome: Genome) -> tuple[HeightDetail, ...]:
         hand_wrenches=wrenches,
         foot_wrenches=wrenches,
     )
-    return (HeightDetail(height_m=1.0, agents={"robot": agent, "human": agent}),)
+    return (CaseDetail(height_m=1.0, agents={"robot": agent, "human": agent}),)
 
 
 def toy_assessed(genome: Genome, header: RunHeader) -> Assessed:
     assessment = toy_assessment(genome, header)
-    return Assessed(assessment=assessment, heights=toy_heights(genome))
+    return Assessed(assessment=assessment, cases=toy_cases(genome))
 
 
 def toy_detail(evaluation: Evaluation) -> Detail:
-    return Detail(evaluation=evaluation.number, heights=toy_heights(evaluation.genome))
+    return Detail(evaluation=evaluation.number, cases=toy_cases(evaluation.genome))
 
 
 def toy_evaluations(header: RunHeader, count: int) -> list[Evaluation]:

@@ -31,13 +31,13 @@ from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.codesign_start import drawn_postures, standard_postures
 from evodesign.posture.limit_groups import Enforced
-from evodesign.posture.results import AgentPosture, Attempt, HeightSolution
+from evodesign.posture.results import AgentPosture, Attempt, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.agent import AgentBlock, agent_block
 from evodesign.posture.terms.load import load_constraints
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
 from evodesign.posture.terms.torque import TORQUE_UNIT
-from evodesign.records import Genome, Status
+from evodesign.records import Genome, Status, Task
 
 __all__ = ["JointProblem", "JointSettings", "JointSolution"]
 
@@ -76,13 +76,13 @@ class JointSolution:
 
     Args:
         design: value of each parameter, of the optimum or of the last iterate.
-        heights: a solution per height, all solved or none; residuals are those that the problem enforces.
-        violations: what the check found of limits that the problem does not enforce, per height, by name.
+        cases: a solution per task, all solved or none; residuals are those that the problem enforces.
+        violations: what the check found of limits that the problem does not enforce, per case, by name.
         attempt: how the solve ended; its cost is that of Eq. 14 [(10 N m)^2].
     """
 
     design: tuple[float, ...]
-    heights: tuple[HeightSolution, ...]
+    cases: tuple[CaseSolution, ...]
     violations: tuple[Mapping[str, float], ...]
     attempt: Attempt
 
@@ -98,7 +98,7 @@ class JointProblem:
     Args:
         scene: agents, load, ground and stance.
         space: design parameters.
-        heights: of the load's centre [m].
+        tasks: of the problem.
         settings: costs and limits.
         fixed: a genome that the design is held at; None to optimise it.
     Raises:
@@ -109,19 +109,19 @@ class JointProblem:
         self,
         scene: Scene,
         space: DesignSpace,
-        heights: Sequence[float],
+        tasks: Sequence[Task],
         settings: JointSettings,
         fixed: Genome | None = None,
     ) -> None:
         self._scene = scene
         self._space = space
-        self._heights = tuple(heights)
+        self._tasks = tuple(tasks)
         self._enforced = settings.enforced
         both = (whole(scene.robot), whole(scene.human))
         self._forms = symmetric_forms(scene) if settings.symmetric else both
         self._human = AgentModel.of(scene.human, scene.human.tree)
         design = _design_variable(space, settings.enforced, fixed)
-        self.program = _program(self._forms, scene, space, design, self._heights, settings)
+        self.program = _program(self._forms, scene, space, design, self._tasks, settings)
         self._solver = Solver(self.program, settings.options)
 
     def solve(self, genome: Genome, *, drawn: bool) -> JointSolution:
@@ -131,7 +131,7 @@ class JointProblem:
             genome: the design that it begins with.
             drawn: whether its postures are drawn for the genome, or the standard ones.
         """
-        count = len(self._heights)
+        count = len(self._tasks)
         postures = (
             drawn_postures(self._forms, count, genome) if drawn else standard_postures(self._forms, count)
         )
@@ -161,29 +161,32 @@ class JointProblem:
 
     def _failed(self, design: tuple[float, ...], attempt: Attempt) -> JointSolution:
         reason = f"the joint problem was not solved: {attempt.reason}"
-        heights = tuple(
-            HeightSolution(height, attempt.status, reason, {}, {}, (attempt,), "") for height in self._heights
+        cases = tuple(
+            CaseSolution(self._scene.case(task), attempt.status, reason, attempts=(attempt,))
+            for task in self._tasks
         )
-        return JointSolution(design, heights, ({},) * len(heights), attempt)
+        return JointSolution(design, cases, ({},) * len(cases), attempt)
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
         checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
-        postures = [self._postures(raw, index) for index in range(len(self._heights))]
-        found = [checker.residuals(p, h) for p, h in zip(postures, self._heights, strict=True)]
+        postures = [self._postures(raw, index) for index in range(len(self._tasks))]
+        found = [checker.residuals(p, t.height_m) for p, t in zip(postures, self._tasks, strict=True)]
         kept = [self._enforced.kept(residuals) for residuals in found]
         everywhere = {
-            f"{h:g} m, {n}": x for h, of in zip(self._heights, kept, strict=True) for n, x in of.items()
+            f"{task}, {n}": x for task, of in zip(self._tasks, kept, strict=True) for n, x in of.items()
         }
         attempt = checked(name, raw, everywhere)
         if attempt.status is not Status.SOLVED:
             return self._failed(design, attempt)
-        heights = tuple(
-            HeightSolution(h, Status.SOLVED, "solved", p, of, (attempt,), name)
-            for h, p, of in zip(self._heights, postures, kept, strict=True)
+        cases = tuple(
+            CaseSolution(
+                self._scene.case(task), Status.SOLVED, "solved", (Instant(0.0, p),), of, (attempt,), name
+            )
+            for task, p, of in zip(self._tasks, postures, kept, strict=True)
         )
         missed = tuple(self._enforced.missed(residuals) for residuals in found)
-        return JointSolution(design, heights, missed, attempt)
+        return JointSolution(design, cases, missed, attempt)
 
     def _postures(self, raw: RawSolution, index: int) -> dict[str, AgentPosture]:
         return {f.agent.name: f.expand(raw.of(f"{_prefix(index)}{f.agent.name}")) for f in self._forms}
@@ -224,7 +227,7 @@ def _program(
     scene: Scene,
     space: DesignSpace,
     design: Variable,
-    heights: Sequence[float],
+    tasks: Sequence[Task],
     settings: JointSettings,
 ) -> Program:
     values = _values(space, ca.vertsplit(design.value))
@@ -232,9 +235,9 @@ def _program(
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
     variables, constraints = [design], list[Constraint]()
-    for index, height in enumerate(heights):
-        robot = agent_block(forms[0], tree, scene, height)
-        human = agent_block(forms[1], scene.human.tree, scene, height)
+    for index, task in enumerate(tasks):
+        robot = agent_block(forms[0], tree, scene, task.height_m)
+        human = agent_block(forms[1], scene.human.tree, scene, task.height_m)
         hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}
         load = load_constraints(scene, hands, symmetric=forms[0].mirror is not None)
         rows = _asked((*robot.constraints, *human.constraints, *load), (robot, human), settings.enforced)

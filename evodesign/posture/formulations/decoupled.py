@@ -12,7 +12,7 @@ Source: DESIGN 3.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -35,7 +35,7 @@ from evodesign.posture.terms.grasp import free_hands
 from evodesign.posture.terms.load import any_load, load_constraints, push_of
 from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
-from evodesign.records import Status, worst_status
+from evodesign.records import Status, Task, worst_status
 
 __all__ = ["DECOUPLED", "DecoupledPostures", "robot_program"]
 
@@ -47,7 +47,7 @@ AT_LIMIT = 1e-6
 
 
 class DecoupledPostures:
-    """The robot's program against the person's value function, for the heights that have one."""
+    """The robot's program against the person's value function, for the tasks that have one."""
 
     def __init__(
         self,
@@ -56,12 +56,12 @@ class DecoupledPostures:
         space: DesignSpace,
         weights: tuple[float, float],
         options: IpoptOptions,
-        values: Sequence[HumanValue],
+        values: Mapping[Task, HumanValue],
         solvers: SolverCache,
     ) -> None:
         self._forms = forms
         self._scene = scene
-        self._values = {value.height: value for value in values}
+        self._values = values
         self._robot = solvers.solver(
             (DECOUPLED, program_key(scene)),
             lambda: robot_program(forms[0], scene, space, weights[0]),
@@ -70,23 +70,21 @@ class DecoupledPostures:
         self._human = HumanProblem(forms[1], scene, weights[1], options, solvers)
         self._fixed = fixed_starts(self._robot)
 
-    def landscape(self, height: float) -> Landscape:
-        """The robot's cost at a height [m], with V(X)."""
-        return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
+    def landscape(self, task: Task) -> Landscape:
+        """The robot's cost at a task, with V(X)."""
+        return Landscape(self._robot, self._beside(task), self._fixed, *NEAR)
 
-    def trial(
-        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
-    ) -> Trial:
+    def trial(self, values: Sequence[float], task: Task, seeds: Sequence[Start], checker: Checker) -> Trial:
         """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
-        parameters = [*values, *self._beside(height)]
+        parameters = [*values, *self._beside(task)]
         starts = named_starts(DECOUPLED, self._robot, seeds, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        return cheapest(ends, partial(self._candidate, task, checker))
 
     def from_neighbour(
         self,
         values: Sequence[float],
-        height: float,
+        task: Task,
         seeds: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
@@ -95,29 +93,29 @@ class DecoupledPostures:
 
         With the same load the other person's V(X) is all that differs, and no seed is needed.
         """
-        parameters = [*values, *self._beside(height)]
+        parameters = [*values, *self._beside(task)]
         known = start_from(self._forms, self._robot.program, neighbour.solution.postures)
         ends = [(f"{DECOUPLED}: neighbour", self._robot.near.solve(parameters, known))]
         if not neighbour.same_load:
             starts = named_starts(DECOUPLED, self._robot, seeds, self._fixed)[:SEEDS_BESIDE]
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        return cheapest(ends, partial(self._candidate, task, checker))
 
-    def _beside(self, height: float) -> tuple[float, ...]:
+    def _beside(self, task: Task) -> tuple[float, ...]:
         """The robot's parameters beside the design's."""
-        return (height, self._scene.payload.mass, *self._values[height].coefficients)
+        return (task.height_m, self._scene.payload.mass, *self._values[task].coefficients)
 
-    def _candidate(self, height: float, checker: Checker, start: str, robot: RawSolution) -> Candidate:
+    def _candidate(self, task: Task, checker: Checker, start: str, robot: RawSolution) -> Candidate:
         """The robot's posture with the person's at the push that was found."""
-        value = self._values[height]
+        value = self._values[task]
         push = self._push(robot)
-        human = self._human.best(height, push, value)
+        human = self._human.best(task.height_m, push, value)
         both = _joined(robot, human, float(value.cost(push)))
         if human.status is not Status.SOLVED:
             return Candidate(checked(start, both, {}), {}, {})
         solutions = ((self._forms[0], robot), (self._forms[1], human))
         postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form, raw in solutions}
-        residuals = checker.residuals(postures, height)
+        residuals = checker.residuals(postures, task.height_m)
         return Candidate(checked(start, both, residuals), postures, residuals)
 
     def _push(self, robot: RawSolution) -> float:

@@ -30,18 +30,19 @@ from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Start
 from evodesign.nlp.solver_cache import SolverCache, program_key
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.allocation import EffortWeights, shared_scene, shared_weights
-from evodesign.posture.candidate import Candidate, Trial, cheapest, checked, height_solution
+from evodesign.posture.candidate import Candidate, Trial, case_solution, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.decoupled import DecoupledPostures
 from evodesign.posture.load_cases import aggregated, cases_of, filled, postures_in_cases, with_cases
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution, Neighbour
+from evodesign.posture.results import AgentPosture, CaseSolution, Neighbour
 from evodesign.posture.starts import SEEDS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.agent import AgentBlock, agent_block
 from evodesign.posture.terms.load import any_load, load_constraints
 from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
+from evodesign.records import Task
 
 __all__ = ["SYMMETRIC", "PostureProblem", "Symmetry", "posture_program"]
 
@@ -58,7 +59,7 @@ class Symmetry(StrEnum):
 
 
 class PostureProblem:
-    """One posture program for all designs and heights of a scene.
+    """One posture program for all designs and tasks of a scene.
 
     Args:
         scene: agents, load, ground and stance.
@@ -66,7 +67,7 @@ class PostureProblem:
         weights: of the agents' efforts.
         options: of the solver.
         symmetry: which postures are looked for.
-        known: seeds, and the person's part at the heights where it is known.
+        known: seeds, and the person's part at the tasks where it is known.
         shelf: of solvers, if other scenes have programs in common with this one.
     Raises:
         ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
@@ -86,62 +87,62 @@ class PostureProblem:
         self._symmetry = symmetry
         self._ingredients = (scene, space, weights, options)
         self._known = known
-        self._decoupled_heights = frozenset(value.height for value in known.values)
+        self._decoupled_tasks = known.values_of(scene)
         if symmetry is not Symmetry.OFF:
             space.check_mirror(scene.robot.tree)
             self._forms = symmetric_forms(scene)
-            if known.values:
+            if self._decoupled_tasks:
                 both = (weights.robot, weights.human)
                 self._decoupled = DecoupledPostures(
-                    self._forms, scene, space, both, options, known.values, self._solvers
+                    self._forms, scene, space, both, options, self._decoupled_tasks, self._solvers
                 )
 
     def solve(
         self,
         values: Sequence[float],
-        height: float,
+        task: Task,
         checker: Checker,
         neighbour: Neighbour | None = None,
-    ) -> HeightSolution:
-        """The best checked posture of a design at one height.
+    ) -> CaseSolution:
+        """The best checked posture of a design at one task.
 
         Args:
             values: one number per design parameter.
-            height: of the load's centre [m].
+            task: of the problem.
             checker: the independent check, made for this design.
             neighbour: what the same design led to in a similar scene; fewer starts do beside it.
         """
         trials: list[Trial] = []
-        for trial in self._trials(values, height, checker, neighbour):
+        for trial in self._trials(values, task, checker, neighbour):
             trials.append(trial)
             if trial.best is not None:
                 break
         best = trials[-1].best
         if self._symmetry is Symmetry.POLISH and best is not None:
-            trials.append(self._full.polish(values, height, best.postures, checker))
-        return height_solution(height, trials)
+            trials.append(self._full.polish(values, task, best.postures, checker))
+        return case_solution(self._ingredients[0].case(task), trials)
 
     def _trials(
-        self, values: Sequence[float], height: float, checker: Checker, neighbour: Neighbour | None
+        self, values: Sequence[float], task: Task, checker: Checker, neighbour: Neighbour | None
     ) -> Iterator[Trial]:
         """What each program leads to, in turn."""
-        for program, seeds in self._programs(height):
+        for program, seeds in self._programs(task):
             if neighbour is not None:
-                yield program.from_neighbour(values, height, seeds, neighbour, checker)
-            yield program.trial(values, height, seeds, checker)
+                yield program.from_neighbour(values, task, seeds, neighbour, checker)
+            yield program.trial(values, task, seeds, checker)
 
-    def landscape(self, height: float) -> Landscape:
-        """The cost at a height [m] of the program that is solved first, of which seeds are made."""
-        program, _ = next(self._programs(height))
-        return program.landscape(height)
+    def landscape(self, task: Task) -> Landscape:
+        """The cost at a task of the program that is solved first, of which seeds are made."""
+        program, _ = next(self._programs(task))
+        return program.landscape(task)
 
-    def _programs(self, height: float) -> Iterator[tuple[DecoupledPostures | _Postures, tuple[Start, ...]]]:
+    def _programs(self, task: Task) -> Iterator[tuple[DecoupledPostures | _Postures, tuple[Start, ...]]]:
         """The programs to be solved in turn until one succeeds, with their seeds; a refuge has none."""
-        seeds = self._known.seeds(height)
+        seeds = self._known.seeds(task)
         if self._symmetry is Symmetry.OFF:
             yield self._full, seeds
             return
-        if height in self._decoupled_heights:
+        if task in self._decoupled_tasks:
             yield self._decoupled, seeds
             yield self._half, ()
         else:
@@ -151,7 +152,7 @@ class PostureProblem:
     @cached_property
     def _half(self) -> _Postures:
         """The symmetric program over both agents, built when it is first needed."""
-        return _Postures(SYMMETRIC, self._forms, *self._ingredients_of(refuge=bool(self._decoupled_heights)))
+        return _Postures(SYMMETRIC, self._forms, *self._ingredients_of(refuge=bool(self._decoupled_tasks)))
 
     @cached_property
     def _full(self) -> _Postures:
@@ -189,22 +190,20 @@ class _Postures:
         self._solver = solvers.solver(key, lambda: posture_program(forms, scene, space, weights), options)
         self._fixed = fixed_starts(self._solver)
 
-    def landscape(self, height: float) -> Landscape:
-        """The program's cost at a height [m]."""
-        return Landscape(self._solver, (height, self._mass), self._fixed, *NEAR)
+    def landscape(self, task: Task) -> Landscape:
+        """The program's cost at a task."""
+        return Landscape(self._solver, (task.height_m, self._mass), self._fixed, *NEAR)
 
-    def trial(
-        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
-    ) -> Trial:
+    def trial(self, values: Sequence[float], task: Task, seeds: Sequence[Start], checker: Checker) -> Trial:
         """What the seeds lead to, or the fixed starts if there are none."""
         starts = named_starts(self._name, self._solver, seeds, self._fixed)
-        ends = [(name, self._solve(values, height, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        ends = [(name, self._solve(values, task, start)) for name, start in starts]
+        return cheapest(ends, partial(self._candidate, task, checker))
 
     def from_neighbour(
         self,
         values: Sequence[float],
-        height: float,
+        task: Task,
         seeds: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
@@ -216,24 +215,24 @@ class _Postures:
             (f"{self._name}: neighbour", known),
             *named_starts(self._name, self._solver, seeds, self._fixed)[:SEEDS_BESIDE],
         ]
-        ends = [(name, self._solve(values, height, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        ends = [(name, self._solve(values, task, start)) for name, start in starts]
+        return cheapest(ends, partial(self._candidate, task, checker))
 
     def polish(
-        self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
+        self, values: Sequence[float], task: Task, postures: Mapping[str, AgentPosture], checker: Checker
     ) -> Trial:
         """What known whole postures lead to."""
         start = start_from(self._forms, self._solver.program, postures)
-        end = self._solve(values, height, start)
-        return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
+        end = self._solve(values, task, start)
+        return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, task, checker))
 
-    def _solve(self, values: Sequence[float], height: float, start: Start) -> RawSolution:
-        return self._solver.solve([*values, height, self._mass], filled(start, self._solver.program))
+    def _solve(self, values: Sequence[float], task: Task, start: Start) -> RawSolution:
+        return self._solver.solve([*values, task.height_m, self._mass], filled(start, self._solver.program))
 
-    def _candidate(self, height: float, checker: Checker, start: str, raw: RawSolution) -> Candidate:
+    def _candidate(self, task: Task, checker: Checker, start: str, raw: RawSolution) -> Candidate:
         postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form in self._forms}
         disturbed = postures_in_cases(self._scene, self._forms, raw.values)
-        residuals = checker.residuals(postures, height, disturbed)
+        residuals = checker.residuals(postures, task.height_m, disturbed)
         return Candidate(checked(start, raw, residuals), postures, residuals, disturbed)
 
 
