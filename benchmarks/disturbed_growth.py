@@ -28,9 +28,10 @@ from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 HEIGHT = 1.0
+HOLD = Hold(height_m=HEIGHT)
 SIZES = (2.0, 1.5, 1.0, 0.75, 0.5, 0.25, 0.0)
 
 Postures = Mapping[str, AgentPosture]
@@ -56,7 +57,7 @@ class Bench:
         self._problem, self._scene, self._shelf = problem, scene, SolverCache()
         options = replace(problem.options, compiled=False)
         self._ingredients = (scene, problem.space, problem.weights, options, problem.symmetry)
-        self._landscape = PostureProblem(*self._ingredients, shelf=self._shelf).landscape(HEIGHT)
+        self._landscape = PostureProblem(*self._ingredients, shelf=self._shelf).landscape(HOLD)
         self._human = AgentModel.of(scene.human, scene.human.tree)
 
     def best(self, design: Design, like: Postures | None) -> CaseSolution:
@@ -66,9 +67,9 @@ class Bench:
         if like is not None:
             known = start_from(symmetric_forms(self._scene), self._landscape.solver.program, like)
             starts = (known, *starts)
-        seeds = Precomputed(postures={HEIGHT: StartPortfolio(starts, Coverage(0, 0, 0.0))})
+        seeds = Precomputed(postures={HOLD: StartPortfolio(starts, Coverage(0, 0, 0.0))})
         postures = PostureProblem(*self._ingredients, seeds, self._shelf)
-        return postures.solve(design, HEIGHT, Checker(self._scene, tree, self._human))
+        return postures.solve(design, HOLD, Checker(self._scene, tree, self._human))
 
 
 def cost_of(solution: CaseSolution) -> float:

@@ -30,9 +30,11 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem
+from evodesign.records import Hold
 from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure
 
 HEIGHTS = (0.8, 1.0, 1.2)
+HOLDS = tuple(Hold(height_m=height) for height in HEIGHTS)
 DISTURBANCES = Disturbances(
     (
         Disturbance("20 % more load", mass_share=0.2),
@@ -90,7 +92,7 @@ class Judge:
         found = []
         for scene, postures in zip(self._scenes, self._postures, strict=True):
             checker = Checker(scene, tree, self._human)
-            found.append([postures.solve(design, height, checker) for height in HEIGHTS])
+            found.append([postures.solve(design, task, checker) for task in HOLDS])
         if not all(solution.solved for solutions in found for solution in solutions):
             return None
         quiet, shaken = found
@@ -114,11 +116,11 @@ def _norms(solution: CaseSolution, agent: str) -> dict[str, float]:
 def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
     """A posture problem whose solves begin at the program's own starts and at some random ones."""
     ingredients = (scene, problem.space, problem.weights, problem.options, problem.symmetry)
-    landscape = PostureProblem(*ingredients).landscape(HEIGHTS[0])
+    landscape = PostureProblem(*ingredients).landscape(HOLDS[0])
     rng = np.random.default_rng(0)
     starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
     seeds = StartPortfolio(starts, Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Precomputed(postures=dict.fromkeys(HEIGHTS, seeds)))
+    return PostureProblem(*ingredients, Precomputed(postures=dict.fromkeys(HOLDS, seeds)))
 
 
 def judge(load: str, designs: list[Design], starts: int) -> list[Row | None]:

@@ -23,7 +23,7 @@ from evodesign.mechanics.scene import Scene
 from evodesign.posture.formulations.joint import PostureProblem
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 DISTURBANCES = (
     Disturbance("heavier", mass_share=0.2),
@@ -57,7 +57,7 @@ def measured(problem: Problem, scene: Scene, designs: list[Design]) -> Cost:
     """The cost of a scene's programs."""
     space, options = problem.space, problem.options
     postures = PostureProblem(scene, space, problem.weights, options, problem.symmetry)
-    landscapes = [postures.landscape(height) for height in HEIGHTS]
+    landscapes = [postures.landscape(Hold(height_m=height)) for height in HEIGHTS]
     reach = ReachProblem(scene, space, options, symmetric=True)
     times, counts, statuses, reach_times = [], [], [], []
     for design in designs:

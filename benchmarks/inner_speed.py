@@ -33,8 +33,9 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
+HOLD = Hold(height_m=1.0)
 DEFAULT_HEIGHTS = (0.8, 1.0, 1.2)
 
 
@@ -74,9 +75,9 @@ def _landscapes(
     yield "highest load", reach.landscape(HIGHEST), known.highest.seeds
     yield "lowest load", reach.landscape(LOWEST), known.lowest.seeds
     split = PostureProblem(scene, space, weights, options, Symmetry.ON, known)
-    yield "robot against V(X), 1.0 m", split.landscape(1.0), known.seeds(1.0)
+    yield "robot against V(X), 1.0 m", split.landscape(HOLD), known.seeds(HOLD)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
-        joint = PostureProblem(scene, space, weights, options, symmetry).landscape(1.0)
+        joint = PostureProblem(scene, space, weights, options, symmetry).landscape(HOLD)
         yield name, joint, joint.starts
 
 

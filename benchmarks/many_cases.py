@@ -22,7 +22,7 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_designs
 from evodesign.posture.results import CaseSolution
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.source import read_source
@@ -65,23 +65,12 @@ class _Apart:
 
     def __init__(self, whole: Evaluator) -> None:
         self._parts = [
-            Evaluator(_alone(whole.problem, number), _first(whole, number))
-            for number in range(len(whole.problem.scenes))
+            Evaluator(replace(whole.problem, scenes=(scene,)), whole.known) for scene in whole.problem.scenes
         ]
 
     def solve(self, values: Sequence[float]) -> list[CaseSolution]:
         """Every case of a design, in the order of the whole."""
-        return [height for part in self._parts for height in part.solve(values).cases]
-
-
-def _alone(problem: Problem, number: int) -> Problem:
-    return replace(problem, scenes=(problem.scenes[number],))
-
-
-def _first(whole: Evaluator, number: int) -> Any:
-    """What is known of one scene, as the first of a problem."""
-    known = whole.known.of_scene(number)
-    return replace(known, values=tuple(replace(value, scene=0) for value in known.values))
+        return [case for part in self._parts for case in part.solve(values).cases]
 
 
 def _timed(evaluator: Evaluator | _Apart, designs: Sequence[Design]) -> dict[str, Any]:
@@ -114,8 +103,8 @@ def _compared(
     }
 
 
-def _cost(height: CaseSolution) -> float:
-    return min(a.cost for a in height.attempts if a.status is Status.SOLVED)
+def _cost(case: CaseSolution) -> float:
+    return min(a.cost for a in case.attempts if a.status is Status.SOLVED)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """What an allocation trades: robot torque against human torque, with rigid grasps and the unscaled robot.
 
-For each height and value of an allocation the best of many starts of the symmetric program, among them the optimum
-at the value before; every posture passes the independent check. Torque norms are printed in N m.
+For each height and value of an allocation the best of many starts of the symmetric program, among them the
+optimum at the value before; every posture passes the independent check. Torque norms are printed in N m.
 
     python -m benchmarks.sharing [--allocation effort_ratio] [--moment 7] [--mass 10] [--starts 8]
 """
@@ -26,7 +26,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 HEIGHTS = (0.4, 0.6, 0.8, 1.0, 1.2, 1.3)
 VALUES = {
@@ -45,7 +45,7 @@ def sweep(problem: Problem, allocation: str, height: float, starts: int) -> Iter
     parameter = DesignParameter(ParameterKind.ALLOCATION, allocation, (), bounds.lowest, bounds.highest)
     space = DesignSpace((parameter,))
     postures = PostureProblem(scene, space, EffortWeights(), problem.options, Symmetry.ON)
-    landscape, rng = postures.landscape(height), np.random.default_rng(1)
+    landscape, rng = postures.landscape(Hold(height_m=height)), np.random.default_rng(1)
     tried = [*landscape.starts, *(random_start(landscape, rng) for _ in range(starts))]
     person = AgentModel.of(scene.human, scene.human.tree)
     for value in VALUES[allocation]:

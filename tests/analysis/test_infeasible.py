@@ -5,13 +5,13 @@ from __future__ import annotations
 import msgspec
 
 from evodesign.analysis.infeasible import causes_of_infeasibility
-from evodesign.records import CaseOutcome, Evaluation, Status
+from evodesign.records import Case, CaseOutcome, Evaluation, Hold, Status
 from tests.runlog.toys import toy_evaluations, toy_header
 
 
-def height(height_m: float, status: Status) -> CaseOutcome:
+def height(height_m: float, status: Status, person: str = "", payload: str = "") -> CaseOutcome:
     return CaseOutcome(
-        height_m=height_m,
+        case=Case(person=person, payload=payload, task=Hold(height_m=height_m)),
         status=status,
         reason="",
         robot_torque_norm=None,
@@ -57,7 +57,7 @@ def test_several_heights_are_one_cause() -> None:
 
 def test_a_cause_names_a_height_once_and_with_whom_it_failed() -> None:
     def case(human: str, status: Status) -> CaseOutcome:
-        return msgspec.structs.replace(height(1.2, status), human_name=human, payload_name="5 kg")
+        return height(1.2, status, human, "5 kg")
 
     def cause(*statuses: Status) -> str:
         cases = [case(human, status) for human, status in zip("abc", statuses, strict=True)]

@@ -91,7 +91,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
         assert [row[1] for row in rows if row[0] == name] == [figure(value)]
     for outcome in evaluation.assessment.cases:
         expected = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
-        assert [row[1:3] for row in rows if row[0] == figure(outcome.height_m)] == [expected]
+        assert [row[1:3] for row in rows if row[0] == figure(outcome.case.task.height_m)] == [expected]
     for agent in ("robot", "human"):
         torques = [height.agents[agent].torques_n_m for height in detail.cases]
         shown = {row[1]: row[2:] for row in rows if row[0] == agent and row[1] in torques[0]}
@@ -121,14 +121,14 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
         assert one["movement"] == way.movement
         assert one["effort"] == pytest.approx(abs(torque) / way.moment)
         assert one["held_kg"] == pytest.approx(2.5, abs=1e-3), "half of 5 kg, with point grasps"
-        assert one["hands_height_m"] == pytest.approx(detail.height_m + 0.0125, abs=1e-4)
+        assert one["hands_height_m"] == pytest.approx(detail.case.task.height_m + 0.0125, abs=1e-4)
         assert one["lifting_index"] == pytest.approx(one["held_kg"] / one["recommended_weight_kg"])
     show_design(run, 0, jobs=1, json=False, plot=None)
     text = capsys.readouterr().out
     rows = {row[0]: row[1:] for row in cells(text) if row[0].endswith(" m")}
-    assert set(rows) == {f"{detail.height_m:g} m" for detail in details}
+    assert set(rows) == {f"{detail.case.task.height_m:g} m" for detail in details}
     for one, detail in zip(told, details, strict=True):
-        row = rows[f"{detail.height_m:g} m"]
+        row = rows[f"{detail.case.task.height_m:g} m"]
         assert row[0].startswith(one["hardest_joint"])
         assert row[1:3] == [f"{one['effort']:.1%}", f"{one['hands_ahead_m']:.2f}"]
         assert row[-2:] == [f"{one['recommended_weight_kg']:.1f}", f"{one['lifting_index']:.2f}"]

@@ -24,7 +24,9 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.problem.build import Problem, build_problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
+
+ONE = Hold(height_m=1.0)
 
 NO_POLICY = DesignSpace(())
 MASS = 10.0
@@ -53,7 +55,7 @@ def solve(
     """The unscaled robot's posture; everything that is checked holds."""
     options = replace(problem.options, tolerance=1e-10)
     posture = PostureProblem(scene, space, weights, options, symmetry)
-    found = posture.solve(values, height, checker(shared_scene(scene, space, values)))
+    found = posture.solve(values, Hold(height_m=height), checker(shared_scene(scene, space, values)))
     assert found.solved, found.reason
     assert max(found.residuals.values()) <= TOLERANCE
     return found
@@ -206,7 +208,11 @@ def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> Non
     scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene, space=space, values=(0.3,))
     joint = JointProblem(
-        scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True)), (0.3,)
+        scene,
+        space,
+        (ONE,),
+        replace(problem.joint, options=replace(problem.options, near=True)),
+        (0.3,),
     )
     together = joint.polish((0.3,), [alone.postures])
     assert together.solved, together.attempt.reason
@@ -219,7 +225,10 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene)
     joint = JointProblem(
-        scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True))
+        scene,
+        space,
+        (ONE,),
+        replace(problem.joint, options=replace(problem.options, near=True)),
     )
     together = joint.polish((share(alone),), [alone.postures])
     assert together.solved, together.attempt.reason

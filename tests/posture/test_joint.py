@@ -92,10 +92,12 @@ def test_the_check_sees_what_is_wrong(
 ) -> None:
     height = unscaled.cases[1]
     postures = {**height.postures, agent: shifted(height.postures[agent], part)}
-    found = checker.residuals(postures, height.height)
+    found = checker.residuals(postures, height.case.task.height_m)
     large = {name.split(".")[1] for name, value in found.items() if value > TOLERANCE}
     assert residuals & large
-    assert all(value <= TOLERANCE for value in checker.residuals(height.postures, height.height).values())
+    assert all(
+        value <= TOLERANCE for value in checker.residuals(height.postures, height.case.task.height_m).values()
+    )
 
 
 def test_an_evaluation_does_not_depend_on_what_was_evaluated_before(
@@ -114,7 +116,7 @@ def test_mirrored_wrenches_and_joints_are_as_good(
     """Robot, person and load are mirror-symmetric, so the mirror image of a posture holds too."""
     height = unscaled.cases[0]
     images = {name: mirrored(posture) for name, posture in height.postures.items()}
-    assert max(checker.residuals(images, height.height).values()) <= TOLERANCE
+    assert max(checker.residuals(images, height.case.task.height_m).values()) <= TOLERANCE
     for name, image in images.items():
         assert image.torque_norm == pytest.approx(height.postures[name].torque_norm)
 

@@ -23,7 +23,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 HEAVIER = Disturbance("heavier", mass_share=0.2)
 AWAY = Disturbance("pushed away", push=(20.0, 0.0, 0.0))
@@ -32,6 +32,7 @@ ROBOT_BACK = Disturbance("robot pushed", push=(-15.0, 0.0, 0.0), at=PushedAt.ROB
 HUMAN_BACK = Disturbance("human pushed", push=(15.0, 0.0, -5.0), at=PushedAt.HUMAN)
 EVERY = (HEAVIER, AWAY, LEANING, ROBOT_BACK, HUMAN_BACK)
 HEIGHT = 1.0
+HOLD = Hold(height_m=HEIGHT)
 
 Postures = Mapping[str, AgentPosture]
 
@@ -48,10 +49,10 @@ def postures_in(
     bare = PostureProblem(*ingredients, solvers=solvers)
     if like is None:
         return bare
-    landscape = bare.landscape(HEIGHT)
+    landscape = bare.landscape(HOLD)
     forms = symmetric_forms(scene) if symmetry is Symmetry.ON else (whole(scene.robot), whole(scene.human))
     seeds = StartPortfolio((start_from(forms, landscape.solver.program, like),), Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Precomputed(postures={HEIGHT: seeds}), solvers)
+    return PostureProblem(*ingredients, Precomputed(postures={HOLD: seeds}), solvers)
 
 
 def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Checker:
@@ -66,7 +67,7 @@ def solved(
     values = problem.space.unscaled(scene.robot.tree)
     checker = checker_of(scene, problem, values)
     postures = postures_in(scene, problem, symmetry, None if like is None else like.postures)
-    solution = postures.solve(values, HEIGHT, checker)
+    solution = postures.solve(values, HOLD, checker)
     assert solution.status is Status.SOLVED, solution.reason
     assert max(solution.residuals.values()) < TOLERANCE
     return solution
@@ -171,9 +172,7 @@ def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, prob
             Disturbance("away", push=(20.0 * size, 0.0, 0.0)),
         )
         scene = disturbed(problem, *cases)
-        best = postures_in(scene, problem, like=like).solve(
-            values, HEIGHT, checker_of(scene, problem, values)
-        )
+        best = postures_in(scene, problem, like=like).solve(values, HOLD, checker_of(scene, problem, values))
         costs.append(cost_of(best))
         like = best.postures
     assert costs[0] > costs[1] > costs[2]
@@ -276,4 +275,4 @@ def test_a_reach_with_disturbances_is_one_that_postures_bear(problem: Problem) -
     assert shaken.highest is not None
     assert quiet.lowest + 0.05 < shaken.lowest < shaken.highest < quiet.highest - 0.01
     postures, checker = postures_in(scenes[2], problem), checker_of(scenes[2], problem, values)
-    assert postures.solve(values, shaken.lowest + 0.01, checker).solved
+    assert postures.solve(values, Hold(height_m=shaken.lowest + 0.01), checker).solved

@@ -14,7 +14,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.joint import PostureProblem, Symmetry
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem, build_problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 BOX = (0.5, 0.5, 0.025)
 
@@ -25,7 +25,7 @@ def solve(problem: Problem, payload: Payload, height: float = 1.0) -> CaseSoluti
     posture = PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
     tree = problem.space.resized(scene.robot.tree, values)
     checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
-    return posture.solve(values, height, checker)
+    return posture.solve(values, Hold(height_m=height), checker)
 
 
 def carried(solution: CaseSolution, agent: str) -> float:

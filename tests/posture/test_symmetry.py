@@ -16,7 +16,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 
 def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
@@ -26,7 +26,7 @@ def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> CaseSolu
         scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
     )
     return PostureProblem(scene, space, problem.weights, problem.options, symmetry).solve(
-        values, height, checker
+        values, Hold(height_m=height), checker
     )
 
 

@@ -15,6 +15,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
+from evodesign.records import Hold
 
 HEIGHT = 1.2
 
@@ -23,7 +24,7 @@ def limited(problem: Problem, limits: Mapping[str, float], height: float = HEIGH
     """The default problem at one height, with a robot whose joints bear no more than this [N m]."""
     robot = replace(problem.scene.robot, torque_limits=limits, limits_torques=bool(limits))
     scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
-    return replace(problem, scenes=scenes, cases=(height,))
+    return replace(problem, scenes=scenes, tasks=(Hold(height_m=height),))
 
 
 def unscaled(problem: Problem) -> tuple[float, ...]:

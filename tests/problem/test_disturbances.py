@@ -132,15 +132,14 @@ def test_disturbed_cases_count_as_cases(result: DesignResult) -> None:
 
 def test_records_hold_what_is_borne_and_nothing_where_nothing_is(result: DesignResult) -> None:
     (height,) = result.cases
-    scene = result.scenes[0]
-    outcome, detail = case_outcome(height, scene), detail_of(height, scene)
+    outcome, detail = case_outcome(height), detail_of(height)
     posture = height.disturbed["heavier"][ROBOT]
     assert outcome.disturbed["heavier"][ROBOT] == posture.torque_norm
-    assert detail.disturbed["heavier"][ROBOT].torques_n_m == posture.torques
+    assert detail.instants[0].disturbed["heavier"][ROBOT].torques_n_m == posture.torques
     for record, kind in ((outcome, CaseOutcome), (detail, CaseDetail)):
         assert msgspec.json.decode(msgspec.json.encode(record), type=kind) == record
-    quiet = replace(height, disturbed={})
-    for record in (case_outcome(quiet, scene), detail_of(quiet, scene)):
+    quiet = replace(height, instants=(replace(height.instants[0], disturbed={}),))
+    for record in (case_outcome(quiet), detail_of(quiet)):
         assert b"disturbed" not in msgspec.json.encode(record)
 
 
@@ -185,12 +184,12 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
 ) -> None:
     subjects = {
         piece.subject
-        for stage in stages(precompute_setting(shaken), (1.0,), seeds=True, person_reaches=False)
+        for stage in stages(precompute_setting(shaken), shaken.tasks, seeds=True, person_reaches=False)
         for piece in stage
     }
     assert Subject.PERSON not in subjects
     quiet = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
-    for stage in stages(precompute_setting(shaken), (1.0,), seeds=True, person_reaches=False):
+    for stage in stages(precompute_setting(shaken), shaken.tasks, seeds=True, person_reaches=False):
         for piece in stage:
             same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(quiet), piece)
             assert same is (piece.subject is not Subject.POSTURE), "quiet seeds of reach do"

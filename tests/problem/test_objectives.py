@@ -45,7 +45,7 @@ def test_mass_and_its_height_agree_with_pinocchio(result: DesignResult) -> None:
 
 
 def test_torques_of_a_design_that_misses_a_height_are_absent(result: DesignResult) -> None:
-    missed = CaseSolution(1.2, Status.INFEASIBLE, "out of reach", {}, {}, (), "")
+    missed = CaseSolution(result.cases[2].case, Status.INFEASIBLE, "out of reach")
     broken = replace(result, cases=(*result.cases[:2], missed))
     for name in ("robot_torque", "human_torque", "worst_robot_torque", "worst_human_torque"):
         assert OBJECTIVES[name].value(broken) is None

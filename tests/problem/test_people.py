@@ -112,7 +112,7 @@ def efforts(result: DesignResult) -> list[float]:
     for height in result.cases:
         largest = 0.0
         for joint, torque in height.postures[HUMAN].torques.items():
-            both = result.scenes[height.scene].human.strengths.get(joint)
+            both = result.scene_of(height.case).human.strengths.get(joint)
             way = both and (both.negative if torque < 0.0 else both.positive)
             if way:
                 largest = max(largest, abs(torque) / way.moment)

@@ -52,15 +52,13 @@ def outcome(detail: CaseDetail) -> CaseOutcome:
         name: float(np.linalg.norm([*agent.torques_n_m.values()])) for name, agent in detail.agents.items()
     }
     return CaseOutcome(
-        height_m=detail.height_m,
+        case=detail.case,
         status=Status.SOLVED,
         reason="solved",
         robot_torque_norm=norms["robot"],
         human_torque_norm=norms["human"],
         iterations=7,
         residual=1e-9,
-        human_name=detail.human_name,
-        payload_name=detail.payload_name,
     )
 
 

@@ -224,7 +224,7 @@ def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: Run
     known = quantities(run.header, run.evaluations[0])
     for evaluation in run.evaluations:
         outcomes = evaluation.assessment.cases
-        norms = [one.robot_torque_norm for one in outcomes if one.height_m == 0.8]
+        norms = [one.robot_torque_norm for one in outcomes if one.case.task.height_m == 0.8]
         assert len(norms) == 4
         assert known["robot_torque@0.8"](evaluation) == max(each for each in norms if each is not None)
         assert known["human_torque@tall@[crate]@1"](evaluation) == outcomes[-1].human_torque_norm

@@ -16,6 +16,7 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
+    Case,
     CaseDetail,
     CaseOutcome,
     Detail,
@@ -23,6 +24,8 @@ from evodesign.records import (
     Front,
     Generation,
     Genome,
+    Hold,
+    InstantDetail,
     Objective,
     Parameter,
     ProblemSource,
@@ -74,8 +77,8 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
     violation = max(0.0, 0.3 - genome[0])
     solved = violation == 0.0
     torque = 30.0 * (1.0 + (genome[0] - 0.5) ** 2 + genome[1] / 3.0)
-    height = CaseOutcome(
-        height_m=1.0,
+    outcome = CaseOutcome(
+        case=Case(task=Hold(height_m=1.0)),
         status=Status.SOLVED if solved else Status.INFEASIBLE,
         reason="" if solved else "too high by a third",
         robot_torque_norm=torque if solved else None,
@@ -87,10 +90,10 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
         design=design_of(header.parameters, genome),
         objectives={"reach_height": reach} | ({"robot_torque": torque} if solved else {}),
         violation=violation,
-        status=height.status,
-        reason=height.reason,
+        status=outcome.status,
+        reason=outcome.reason,
         reach=ReachOutcome(lowest_m=None, highest_m=reach, status=Status.SOLVED, reason=""),
-        cases=(height,) * 3,
+        cases=(outcome,) * 3,
     )
 
 
@@ -105,7 +108,8 @@ def toy_cases(genome: Genome) -> tuple[CaseDetail, ...]:
         hand_wrenches=wrenches,
         foot_wrenches=wrenches,
     )
-    return (CaseDetail(height_m=1.0, agents={"robot": agent, "human": agent}),)
+    instant = InstantDetail(time_s=0.0, agents={"robot": agent, "human": agent})
+    return (CaseDetail(case=Case(task=Hold(height_m=1.0)), instants=(instant,)),)
 
 
 def toy_assessed(genome: Genome, header: RunHeader) -> Assessed:

@@ -134,9 +134,10 @@ def test_keyframes_are_the_postures(exported: tuple[ExportedDesign, Path]) -> No
     model = mujoco.MjModel.from_xml_path(str(folder / "robot.xml"))
     data = mujoco.MjData(model)
     assert model.nkey == 3
-    for height in design.cases:
-        mujoco.mj_resetDataKeyframe(model, data, model.key(f"load at {height.height_m:g} m").id)
-        posture = height.agents[ROBOT]
+    for detail in design.cases:
+        height = detail.case.task.height_m
+        mujoco.mj_resetDataKeyframe(model, data, model.key(f"load at {height:g} m").id)
+        posture = detail.agents[ROBOT]
         assert data.qpos[:3].tolist() == pytest.approx(posture.base_position_m)
         for joint, position in posture.joints_rad.items():
             assert data.joint(joint).qpos[0] == position
@@ -146,9 +147,10 @@ def test_tables_hold_the_logged_numbers(exported: tuple[ExportedDesign, Path]) -
     design, folder = exported
     rows = list(csv.DictReader(io.StringIO((folder / "postures.csv").read_text())))
     wrenches = list(csv.DictReader(io.StringIO((folder / "wrenches.csv").read_text())))
-    for height in design.cases:
-        for agent, posture in height.agents.items():
-            own = [row for row in rows if (float(row["height_m"]), row["agent"]) == (height.height_m, agent)]
+    for detail in design.cases:
+        height = detail.case.task.height_m
+        for agent, posture in detail.agents.items():
+            own = [row for row in rows if (float(row["height_m"]), row["agent"]) == (height, agent)]
             base = [float(row["position"]) for row in own if row["kind"] == "base"]
             assert base == [*posture.base_position_m, *posture.base_rpy_rad]
             joints = [row for row in own if row["kind"] != "base"]
@@ -161,7 +163,7 @@ def test_tables_hold_the_logged_numbers(exported: tuple[ExportedDesign, Path]) -
                         row
                         for row in wrenches
                         if (float(row["height_m"]), row["agent"], row["contact"])
-                        == (height.height_m, agent, f"{side}_{part}")
+                        == (height, agent, f"{side}_{part}")
                     )
                     numbers = [float(value) for key, value in row.items() if key.endswith(("_n", "_n_m"))]
                     assert numbers == list(wrench)

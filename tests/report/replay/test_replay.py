@@ -113,12 +113,13 @@ def stripped(message: object) -> str:
 
 
 def test_frames_stand_where_pinocchio_puts_the_links(replay: Replay) -> None:
-    for height in replay.detail.cases:
-        world_from = frames(replay.at("/tf", height.height_m))
-        assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, height.height_m], rtol=0.0, atol=TOLERANCE)
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
+        world_from = frames(replay.at("/tf", at))
+        assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, at], rtol=0.0, atol=TOLERANCE)
         for agent in replay.models.agents:
             tree = replay.models.trees[agent.name]
-            state = AgentModel.of(agent, tree).at(posture_of(height.agents[agent.name]))
+            state = AgentModel.of(agent, tree).at(posture_of(detail.agents[agent.name]))
             turn = np.diag([agent.sign, agent.sign, 1.0])
             for link in tree.link_by_name:
                 rotation, origin = state.pose(link)
@@ -150,12 +151,13 @@ def matrix(position: object, quaternion: object) -> np.ndarray:
 
 
 def test_scenes_hold_every_shape_at_its_place(replay: Replay) -> None:
-    for height in replay.detail.cases:
-        world_from = frames(replay.at("/tf", height.height_m))
-        expected = placed_scene(replay.models, height).solids
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
+        world_from = frames(replay.at("/tf", at))
+        expected = placed_scene(replay.models, detail).solids
         found = []
         for topic in ("/scene/robot", "/scene/human", "/scene/load"):
-            for entity in replay.at(topic, height.height_m).entities:
+            for entity in replay.at(topic, at).entities:
                 assert entity.frame_locked
                 for primitive in (*entity.spheres, *entity.cylinders, *entity.cubes):
                     size = (primitive.size.x, primitive.size.y, primitive.size.z)
@@ -182,10 +184,11 @@ def size_of(shape: Box | Cylinder | Sphere) -> tuple[float, float, float]:
 
 
 def test_arrows_are_the_wrenches(replay: Replay) -> None:
-    for height in replay.detail.cases:
-        entities = {entity.id: entity for entity in replay.at("/scene/wrenches", height.height_m).entities}
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
+        entities = {entity.id: entity for entity in replay.at("/scene/wrenches", at).entities}
         assert len(entities) == 8
-        for wrench in placed_scene(replay.models, height).wrenches:
+        for wrench in placed_scene(replay.models, detail).wrenches:
             entity = entities[f"{wrench.agent}/{wrench.contact}"]
             assert entity.frame_id == "world"
             force, moment = entity.arrows
@@ -202,10 +205,11 @@ def test_arrows_are_the_wrenches(replay: Replay) -> None:
 
 
 def test_joint_states_are_the_posture(replay: Replay) -> None:
-    for height in replay.detail.cases:
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
         for agent in ("robot", "human"):
-            posture = height.agents[agent]
-            joints = replay.at(f"/joint_states/{agent}", height.height_m).joints
+            posture = detail.agents[agent]
+            joints = replay.at(f"/joint_states/{agent}", at).joints
             assert {joint.name: joint.position for joint in joints} == posture.joints_rad
             assert {joint.name: joint.effort for joint in joints} == posture.torques_n_m
             assert not any(joint.HasField("velocity") for joint in joints)
@@ -236,7 +240,7 @@ def test_layout_shows_topics_frames_and_joints_that_exist(replay: Replay) -> Non
     known = {"world", *(t.child_frame_id for t in replay.at("/tf", 1.0).transforms)}
     assert {name.removeprefix("frame:") for name in scene["transforms"]} == known
     for agent in ("robot", "human"):
-        torques = [height.agents[agent].torques_n_m for height in replay.detail.cases]
+        torques = [detail.agents[agent].torques_n_m for detail in replay.detail.cases]
         largest = sorted(torques[0], key=lambda joint: -max(abs(at[joint]) for at in torques))[:6]
         labels = [path["label"] for path in panels[f"Plot!{agent}"]["paths"]]
         assert labels == largest
