@@ -25,12 +25,14 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution, Instant
+from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
+from evodesign.records import Hold
 
 HEIGHT = 1.0
+HOLD = Hold(height_m=HEIGHT)
 SIZES = (2.0, 1.5, 1.0, 0.75, 0.5, 0.25, 0.0)
 
 Postures = Mapping[str, AgentPosture]
@@ -57,10 +59,10 @@ class Bench:
         options = replace(problem.options, compiled=False)
         self._setting = Setting(scene, problem.space, problem.weights, options)
         bare = PostureProblem(self._setting, problem.symmetry, solvers=self._solvers)
-        self._landscape = bare.landscape(HEIGHT)
+        self._landscape = bare.landscape(HOLD)
         self._human = AgentModel.of(scene.human, scene.human.tree)
 
-    def best(self, design: Design, like: Postures | None) -> HeightSolution:
+    def best(self, design: Design, like: Postures | None) -> CaseSolution:
         """The cheapest checked posture from the program's own starts and from a known posture."""
         tree = self._problem.space.resized(self._scene.robot.tree, design)
         starts = self._landscape.starts
@@ -69,12 +71,12 @@ class Bench:
                 self._landscape.solver.program, symmetric_forms(self._scene), [Instant(0.0, like)]
             )
             starts = (like_known, *starts)
-        known = Precomputed(postures={HEIGHT: StartPortfolio(starts, Coverage(0, 0, 0.0))})
+        known = Precomputed(postures={HOLD: StartPortfolio(starts, Coverage(0, 0, 0.0))})
         postures = PostureProblem(self._setting, self._problem.symmetry, known, self._solvers)
-        return postures.solve(design, HEIGHT, Checker(self._scene, tree, self._human))
+        return postures.solve(design, HOLD, Checker(self._scene, tree, self._human))
 
 
-def cost_of(solution: HeightSolution) -> float:
+def cost_of(solution: CaseSolution) -> float:
     """The cost of the start that won; infinite where none did."""
     return solution.attempt.cost if solution.attempt else float("inf")
 

@@ -29,11 +29,13 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem
+from evodesign.records import Hold
 from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure
 
 HEIGHTS = (0.8, 1.0, 1.2)
+HOLDS = tuple(Hold(height_m=height) for height in HEIGHTS)
 DISTURBANCES = Disturbances(
     (
         Disturbance("20 % more load", mass_share=0.2),
@@ -93,7 +95,7 @@ class Judge:
         found = []
         for scene, postures in zip(self._scenes, self._postures, strict=True):
             checker = Checker(scene, tree, self._human)
-            found.append([postures.solve(design, height, checker) for height in HEIGHTS])
+            found.append([postures.solve(design, task, checker) for task in HOLDS])
         if not all(solution.solved for solutions in found for solution in solutions):
             return None
         undisturbed, shaken = found
@@ -108,7 +110,7 @@ class Judge:
         )
 
 
-def _norms(solution: HeightSolution, agent: str) -> dict[str, float]:
+def _norms(solution: CaseSolution, agent: str) -> dict[str, float]:
     """Torque norms of an agent [N m], by case."""
     cases = {"nothing": solution.postures, **solution.disturbed}
     return {name: postures[agent].torque_norm for name, postures in cases.items()}
@@ -117,11 +119,11 @@ def _norms(solution: HeightSolution, agent: str) -> dict[str, float]:
 def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
     """A posture problem whose solves begin at the program's own starts and at some random ones."""
     setting = Setting(scene, problem.space, problem.weights, problem.options)
-    landscape = PostureProblem(setting, problem.symmetry).landscape(HEIGHTS[0])
+    landscape = PostureProblem(setting, problem.symmetry).landscape(HOLDS[0])
     rng = np.random.default_rng(0)
     starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
     portfolio = StartPortfolio(starts, Coverage(0, 0, 0.0))
-    known = Precomputed(postures=dict.fromkeys(HEIGHTS, portfolio))
+    known = Precomputed(postures=dict.fromkeys(HOLDS, portfolio))
     return PostureProblem(setting, problem.symmetry, known)
 
 

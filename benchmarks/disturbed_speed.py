@@ -24,7 +24,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 DISTURBANCES = (
     Disturbance("heavier", mass_share=0.2),
@@ -58,7 +58,7 @@ def measured(problem: Problem, scene: Scene, designs: list[Design]) -> Cost:
     """The cost of a scene's programs."""
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     postures = PostureProblem(setting, problem.symmetry)
-    landscapes = [postures.landscape(height) for height in HEIGHTS]
+    landscapes = [postures.landscape(Hold(height_m=height)) for height in HEIGHTS]
     reach = ReachProblem(setting, symmetric=True)
     times, counts, statuses, reach_times = [], [], [], []
     for design in designs:

@@ -67,7 +67,7 @@ class Comparer:
     def compare(self, values: Sequence[float], directions: Sequence[Sequence[float]]) -> Comparison:
         """Errors of a design's gradients along directions of the unit cube."""
         result = self._evaluator.solve(values)
-        if not all(height.solved for height in result.heights):
+        if not all(height.solved for height in result.cases):
             return Comparison({}, "a height is out of reach")
         derivative = self._sensitivities.at(values, result)
         left_out = self._kink(derivative, np.array(directions))
@@ -98,7 +98,7 @@ class Comparer:
     def _kink(self, derivative: DesignDerivative, directions: np.ndarray) -> str:
         """Why a design is left out before any difference is taken; empty for most."""
         ranges = np.array([p.upper - p.lower for p in self._problem.space.parameters])
-        for part in (*derivative.heights, derivative.highest):
+        for part in (*derivative.cases, derivative.highest):
             if not hasattr(part, "limits"):
                 return part.reason
             for limit in part.limits:
@@ -121,7 +121,7 @@ def _elsewhere(result: DesignResult, neighbour: DesignResult) -> bool:
     """Whether a neighbour's postures or reach are others, and not the same ones a little moved."""
     return abs(result.reach.highest - neighbour.reach.highest) > OTHER_REACH or any(
         not other.solved or abs(other.postures[agent].joints[joint] - position) > OTHER
-        for height, other in zip(result.heights, neighbour.heights, strict=True)
+        for height, other in zip(result.cases, neighbour.cases, strict=True)
         for agent, posture in height.postures.items()
         for joint, position in posture.joints.items()
     )

@@ -65,15 +65,15 @@ class Judge:
         result = self._evaluator.solve(design)
         rng = np.random.default_rng(number)
         found = []
-        for solution in result.heights:
-            if result.reach.distance(solution.height) != 0.0:
+        for solution in result.cases:
+            if result.reach.distance(solution.case.task.height_m) != 0.0:
                 continue
-            own = self._decoupled.landscape(solution.height)
+            own = self._decoupled.landscape(solution.case.task)
             costs = [attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED]
             best = self._best(own, design, rng)
-            both = self._best(self._joint.landscape(solution.height), design, rng) if joint else np.nan
+            both = self._best(self._joint.landscape(solution.case.task), design, rng) if joint else np.nan
             row = Row(
-                solution.height,
+                solution.case.task.height_m,
                 str(solution.status),
                 min(costs, default=np.inf),
                 solution.attempt.cost if solution.attempt else np.inf,

@@ -35,8 +35,9 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
+HOLD = Hold(height_m=1.0)
 DEFAULT_HEIGHTS = (0.8, 1.0, 1.2)
 
 
@@ -76,9 +77,9 @@ def _landscapes(
     yield "highest load", reach.landscape(HIGHEST), known.highest.starts
     yield "lowest load", reach.landscape(LOWEST), known.lowest.starts
     decoupled = PostureProblem(setting, Symmetry.ON, known)
-    yield "robot against V(X), 1.0 m", decoupled.landscape(1.0), known.starts(1.0)
+    yield "robot against V(X), 1.0 m", decoupled.landscape(HOLD), known.starts(HOLD)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
-        joint = PostureProblem(setting, symmetry).landscape(1.0)
+        joint = PostureProblem(setting, symmetry).landscape(HOLD)
         yield name, joint, joint.starts
 
 

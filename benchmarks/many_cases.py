@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_designs
-from evodesign.posture.results import HeightSolution
-from evodesign.problem.build import Problem, build_problem
+from evodesign.posture.results import CaseSolution
+from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.source import read_source
@@ -48,7 +48,7 @@ def main() -> None:
     apart = _timed(_Apart(several), designs)
     found = {
         "designs": options.designs,
-        "cases": len(problem.scenes) * len(problem.heights),
+        "cases": len(problem.scenes) * len(problem.tasks),
         **{f"together_{name}": value for name, value in together.items() if name != "results"},
         **{f"apart_{name}": value for name, value in apart.items() if name != "results"},
         "single_case_designs_per_second_processor": _timed(single, random_designs(default, options.designs))[
@@ -66,23 +66,12 @@ class _Apart:
 
     def __init__(self, whole: Evaluator) -> None:
         self._parts = [
-            Evaluator(_alone(whole.problem, number), _first(whole, number))
-            for number in range(len(whole.problem.scenes))
+            Evaluator(replace(whole.problem, scenes=(scene,)), whole.known) for scene in whole.problem.scenes
         ]
 
-    def solve(self, values: Sequence[float]) -> list[HeightSolution]:
+    def solve(self, values: Sequence[float]) -> list[CaseSolution]:
         """Every case of a design, in the order of the whole."""
-        return [height for part in self._parts for height in part.solve(values).heights]
-
-
-def _alone(problem: Problem, number: int) -> Problem:
-    return replace(problem, scenes=(problem.scenes[number],))
-
-
-def _first(whole: Evaluator, number: int) -> Any:
-    """What is known of one scene, as the first of a problem."""
-    known = whole.known.of_scene(number)
-    return replace(known, values=tuple(replace(value, scene=0) for value in known.values))
+        return [case for part in self._parts for case in part.solve(values).cases]
 
 
 def _timed(evaluator: Evaluator | _Apart, designs: Sequence[Design]) -> dict[str, Any]:
@@ -94,12 +83,12 @@ def _timed(evaluator: Evaluator | _Apart, designs: Sequence[Design]) -> dict[str
     return {
         "designs_per_second_wall": len(designs) / wall,
         "designs_per_second_processor": len(designs) / processor,
-        "results": [r.heights if isinstance(r, DesignResult) else r for r in results],
+        "results": [r.cases if isinstance(r, DesignResult) else r for r in results],
     }
 
 
 def _compared(
-    together: Sequence[Sequence[HeightSolution]], apart: Sequence[Sequence[HeightSolution]]
+    together: Sequence[Sequence[CaseSolution]], apart: Sequence[Sequence[CaseSolution]]
 ) -> dict[str, float]:
     """Costs of the same cases both ways."""
     pairs = [
@@ -115,8 +104,8 @@ def _compared(
     }
 
 
-def _cost(height: HeightSolution) -> float:
-    return min(a.cost for a in height.attempts if a.status is Status.SOLVED)
+def _cost(case: CaseSolution) -> float:
+    return min(a.cost for a in case.attempts if a.status is Status.SOLVED)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.source import read_source
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 __all__ = ["BOUNDED", "TOLERANCE", "Figures", "measure", "measure_ours", "reaching_designs"]
 
@@ -98,12 +98,12 @@ def measure_ours(
     scene, space = problem.scene, problem.space
     ours = PostureProblem(Setting(scene, space, problem.weights, problem.options), problem.symmetry, known)
     human = AgentModel.of(scene.human, scene.human.tree)
-    ours.landscape(height)  # builds the program
+    ours.landscape(Hold(height_m=height))  # builds the program
     seconds, iterations, solved = 0.0, [], 0
     for values in designs:
         checker = Checker(scene, space.resized(scene.robot.tree, values), human)
         began = time.process_time()
-        solution = ours.solve(values, height, checker)
+        solution = ours.solve(values, Hold(height_m=height), checker)
         seconds += time.process_time() - began
         iterations += [attempt.iterations for attempt in solution.attempts]
         solved += solution.solved

@@ -28,7 +28,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import instant_of, layout_of
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 HEIGHTS = (0.4, 0.6, 0.8, 1.0, 1.2, 1.3)
 VALUES = {
@@ -44,10 +44,10 @@ def sweep(problem: Problem, allocation: str, height: float, starts: int) -> Iter
     """A point for each value of an allocation parameter; None where nothing was found."""
     scene = problem.scene
     bounds = ALLOCATIONS[allocation]
-    parameter = DesignParameter(ParameterKind.POLICY, allocation, (), bounds.lowest, bounds.highest)
+    parameter = DesignParameter(ParameterKind.ALLOCATION, allocation, (), bounds.lowest, bounds.highest)
     space = DesignSpace((parameter,))
     postures = PostureProblem(Setting(scene, space, EffortWeights(), problem.options), Symmetry.ON)
-    landscape, rng = postures.landscape(height), np.random.default_rng(1)
+    landscape, rng = postures.landscape(Hold(height_m=height)), np.random.default_rng(1)
     tried = [*landscape.starts, *(random_start(landscape, rng) for _ in range(starts))]
     person = AgentModel.of(scene.human, scene.human.tree)
     for value in VALUES[allocation]:

@@ -2,13 +2,14 @@
 
 Every record is immutable, refuses unknown fields, and is written as JSON. Units are SI; torque norms
 are Euclidean norms over an agent's moving joints [N m]. A value that does not exist (the torque of a
-height that was not reached) is absent or None, never a large number.
+case that was not solved) is absent or None, never a large number.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import StrEnum
+from typing import Any
 
 import msgspec
 
@@ -17,13 +18,16 @@ __all__ = [
     "AgentDetail",
     "Assessed",
     "Assessment",
+    "Case",
+    "CaseDetail",
+    "CaseOutcome",
     "Detail",
     "Evaluation",
     "Front",
     "Generation",
     "Genome",
-    "HeightDetail",
-    "HeightOutcome",
+    "Hold",
+    "InstantDetail",
     "LoadCaseDetail",
     "Objective",
     "Parameter",
@@ -34,16 +38,18 @@ __all__ = [
     "SearchStage",
     "Sense",
     "Status",
+    "Task",
     "Turn",
     "choice_at",
     "design_of",
+    "hold_names",
     "materials_of",
     "middle_of",
     "worst_status",
 ]
 
-FORMAT_VERSION = 1
-"""Version of the records below; a reader refuses a log of a later one."""
+FORMAT_VERSION = 2
+"""Version of the records below; a reader refuses a log of a later one, and upgrades an earlier one."""
 
 Genome = tuple[float, ...]
 """A point of the unit cube, one coordinate per design parameter."""
@@ -77,6 +83,53 @@ class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Base of all records: immutable, strict, keyword-only."""
 
 
+class Hold(Record, frozen=True, tag_field="kind", tag="hold"):
+    """A task: the load held still, its centre at a height [m]."""
+
+    height_m: float
+
+    def __str__(self) -> str:
+        return f"{self.height_m:g} m"
+
+
+Task = Hold
+"""What is done with the load: a union of tagged records as soon as there is a second kind."""
+
+
+class Case(Record, frozen=True, kw_only=True, omit_defaults=True):
+    """A person who does a task with a load, undisturbed or under a disturbance.
+
+    Person, load and disturbance are names of the problem, empty where there is one person or load, or no
+    disturbance.
+    """
+
+    person: str = ""
+    payload: str = ""
+    task: Task
+    disturbance: str = ""
+
+    @property
+    def pair(self) -> tuple[str, str]:
+        """Names of person and load."""
+        return self.person, self.payload
+
+    @property
+    def label(self) -> str:
+        """Person and load, such as `short, 5 kg`; empty where there is one of each."""
+        return ", ".join(name for name in self.pair if name)
+
+    @property
+    def name(self) -> str:
+        """Everything that tells it from other cases, such as `short, 5 kg, 0.8 m, pushed`."""
+        return ", ".join(name for name in (self.label, str(self.task), self.disturbance) if name)
+
+
+def hold_names(case: Case) -> dict[str, Any]:
+    """The case of a load held still as JSON files for others tell it: names only where there are several."""
+    names = {"human_name": case.person, "payload_name": case.payload}
+    return {"height_m": case.task.height_m, **{key: name for key, name in names.items() if name}}
+
+
 class Objective(Record, frozen=True):
     """One objective of a problem, in its natural sense and unit."""
 
@@ -86,7 +139,7 @@ class Objective(Record, frozen=True):
 
 
 class Parameter(Record, frozen=True, omit_defaults=True):
-    """One design parameter: a length multiplier (unit "1") or a density (unit "kg/m^3").
+    """One design parameter: a length multiplier or an allocation (unit "1"), or a density (unit "kg/m^3").
 
     A genome's coordinate u in [0, 1] stands for (1 - u) lower + u upper. With n choices, it stands for the
     choice in whose n-th part of [0, 1] it lies, and is the middle of that part.
@@ -152,21 +205,19 @@ class ReachOutcome(Record, frozen=True):
     reason: str
 
 
-class HeightOutcome(Record, frozen=True, omit_defaults=True):
-    """One posture problem of one design, in short; person and load are named where there are several.
+class CaseOutcome(Record, frozen=True, omit_defaults=True):
+    """One undisturbed case of one design, in short.
 
     `disturbed` holds torque norms by disturbance and agent, where the problem has disturbances.
     """
 
-    height_m: float
+    case: Case
     status: Status
     reason: str
     robot_torque_norm: float | None
     human_torque_norm: float | None
     iterations: int
     residual: float | None
-    human_name: str = ""
-    payload_name: str = ""
     disturbed: dict[str, dict[str, float]] = {}
 
 
@@ -184,7 +235,7 @@ class Assessment(Record, frozen=True):
     status: Status
     reason: str
     reach: ReachOutcome | None = None
-    heights: tuple[HeightOutcome, ...] = ()
+    cases: tuple[CaseOutcome, ...] = ()
 
 
 class AgentDetail(Record, frozen=True):
@@ -215,31 +266,43 @@ class LoadCaseDetail(Record, frozen=True):
     foot_wrenches: dict[str, tuple[float, ...]]
 
 
-class HeightDetail(Record, frozen=True, omit_defaults=True):
-    """The postures at one height of the load, by the agents' names; who and what as in `HeightOutcome`.
+class InstantDetail(Record, frozen=True, omit_defaults=True):
+    """The postures at one moment of a task, by the agents' names.
 
-    `disturbed` holds torques and wrenches in the same postures, by disturbance and agent.
+    `time_s` is counted from the task's beginning, 0 for a load held still; `disturbed` holds torques and
+    wrenches in the same postures, by disturbance and agent.
     """
 
-    height_m: float
+    time_s: float
     agents: dict[str, AgentDetail]
-    human_name: str = ""
-    payload_name: str = ""
     disturbed: dict[str, dict[str, LoadCaseDetail]] = {}
 
 
+class CaseDetail(Record, frozen=True):
+    """The postures of an undisturbed case that was solved: one instant of a load held still."""
+
+    case: Case
+    instants: tuple[InstantDetail, ...]
+
+    @property
+    def agents(self) -> dict[str, AgentDetail]:
+        """The postures of the only instant, by the agents' names."""
+        (instant,) = self.instants
+        return instant.agents
+
+
 class Assessed(Record, frozen=True):
-    """What a worker gives back: the results of a genome, and its postures at the heights that were solved."""
+    """What a worker gives back: the results of a genome, and its postures in the cases that were solved."""
 
     assessment: Assessment
-    heights: tuple[HeightDetail, ...] = ()
+    cases: tuple[CaseDetail, ...] = ()
 
 
 class Detail(Record, frozen=True):
     """The postures of an evaluation that no earlier one dominates: every design of a front has one."""
 
     evaluation: int
-    heights: tuple[HeightDetail, ...]
+    cases: tuple[CaseDetail, ...]
 
 
 class Turn(Record, frozen=True):

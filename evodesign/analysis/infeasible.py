@@ -1,7 +1,7 @@
 """Why designs of a run are not feasible, counted by cause.
 
-A cause is the log's own status with the heights that ended so: "infeasible at 1.2 m", and with whom, where
-others could hold their load there. A design counts once, whatever the number of cases that it misses.
+A cause is the log's own status with the tasks that ended so: "infeasible at 1.2 m", and with whom, where
+others could do them with their load. A design counts once, whatever the number of cases that it misses.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from evodesign.analysis.cases import pair_name
 from evodesign.records import Assessment, Evaluation, Status
 
 __all__ = ["Cause", "causes_of_infeasibility"]
@@ -20,7 +19,7 @@ class Cause:
     """A cause and the designs that failed by it.
 
     Args:
-        cause: status and heights, in words.
+        cause: status and tasks, in words.
         count: designs.
         example: number of the first of them.
         reason: the log's sentence on that one.
@@ -45,16 +44,16 @@ def causes_of_infeasibility(evaluations: Iterable[Evaluation]) -> tuple[Cause, .
 
 
 def _cause(assessment: Assessment) -> str:
-    """A design's status, with the heights that ended in it if some heights ended well."""
-    ended = [case for case in assessment.heights if case.status is assessment.status]
+    """A design's status, with the tasks that ended in it if some ended well."""
+    ended = [outcome.case for outcome in assessment.cases if outcome.status is assessment.status]
     if assessment.status is Status.SOLVED or not ended:
         return str(assessment.status)
-    if len(ended) == len(assessment.heights) > 1:
+    if len(ended) == len(assessment.cases) > 1:
         return f"{assessment.status} at every height"
-    heights = dict.fromkeys(case.height_m for case in ended)
-    place = f"{assessment.status} at {' and '.join(f'{height:g}' for height in heights)} m"
-    there = [case for case in assessment.heights if case.height_m in heights]
+    tasks = dict.fromkeys(case.task for case in ended)
+    place = f"{assessment.status} at {' and '.join(f'{task.height_m:g}' for task in tasks)} m"
+    there = [outcome for outcome in assessment.cases if outcome.case.task in tasks]
     if len(there) == len(ended):
         return place
-    pairs = [*dict.fromkeys(pair_name(case) for case in ended)]
+    pairs = [*dict.fromkeys(case.label for case in ended)]
     return f"{place} with {pairs[0] if len(pairs) == 1 else f'{len(pairs)} pairs of person and load'}"

@@ -15,16 +15,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from evodesign.analysis.cases import case_name, named_people_or_loads
 from evodesign.errors import InputError, nearest_name
-from evodesign.records import Evaluation, HeightOutcome, RunHeader
+from evodesign.records import Case, CaseOutcome, Evaluation, RunHeader, Task
 
 __all__ = ["Quantity", "quantities", "quantity"]
 
 Quantity = Callable[[Evaluation], float | None]
 """A number of an evaluation; None where it does not exist."""
 
-Norm = Callable[[HeightOutcome], float | None]
+Norm = Callable[[CaseOutcome], float | None]
 """The torque norm of one of the agents [N m]."""
 
 
@@ -35,17 +34,15 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
         header: of the run; its objectives and parameters have names.
         example: any evaluation of the run, for its cases; None for a run that has none yet.
     """
-    outcomes = () if example is None else example.assessment.heights
+    cases = () if example is None else tuple(outcome.case for outcome in example.assessment.cases)
     found: dict[str, Quantity] = {"lowest_reach": _lowest_reach, "highest_reach": _highest_reach}
-    for outcome in outcomes:
-        found[f"robot_torque@{outcome.height_m:g}"] = partial(_largest, _robot_norm, outcome.height_m)
-        found[f"human_torque@{outcome.height_m:g}"] = partial(_largest, _human_norm, outcome.height_m)
-    if named_people_or_loads(outcomes):
-        for outcome in outcomes:
-            names = (outcome.human_name, outcome.payload_name, f"{outcome.height_m:g}")
-            place = "@".join(name for name in names if name)
-            found[f"robot_torque@{place}"] = partial(_of_case, _robot_norm, outcome)
-            found[f"human_torque@{place}"] = partial(_of_case, _human_norm, outcome)
+    for case in cases:
+        found[f"robot_torque@{case.task.height_m:g}"] = partial(_largest, _robot_norm, case.task)
+        found[f"human_torque@{case.task.height_m:g}"] = partial(_largest, _human_norm, case.task)
+    for case in cases if any(case.label for case in cases) else ():
+        place = "@".join(name for name in (*case.pair, f"{case.task.height_m:g}") if name)
+        found[f"robot_torque@{place}"] = partial(_of_case, _robot_norm, case)
+        found[f"human_torque@{place}"] = partial(_of_case, _human_norm, case)
     for parameter in header.parameters:
         found[parameter.name] = partial(_parameter, parameter.name)
     for objective in header.objectives:
@@ -86,24 +83,21 @@ def _highest_reach(evaluation: Evaluation) -> float | None:
     return None if reach is None else reach.highest_m
 
 
-def _robot_norm(outcome: HeightOutcome) -> float | None:
+def _robot_norm(outcome: CaseOutcome) -> float | None:
     return outcome.robot_torque_norm
 
 
-def _human_norm(outcome: HeightOutcome) -> float | None:
+def _human_norm(outcome: CaseOutcome) -> float | None:
     return outcome.human_torque_norm
 
 
-def _largest(norm: Norm, height_m: float, evaluation: Evaluation) -> float | None:
-    """The largest over all cases of a height; None unless each of them has one."""
-    outcomes = [outcome for outcome in evaluation.assessment.heights if outcome.height_m == height_m]
+def _largest(norm: Norm, task: Task, evaluation: Evaluation) -> float | None:
+    """The largest over all cases of a task; None unless each of them has one."""
+    outcomes = [outcome for outcome in evaluation.assessment.cases if outcome.case.task == task]
     norms = [norm(outcome) for outcome in outcomes]
     known = [value for value in norms if value is not None]
     return max(known) if known and len(known) == len(norms) else None
 
 
-def _of_case(norm: Norm, wanted: HeightOutcome, evaluation: Evaluation) -> float | None:
-    for outcome in evaluation.assessment.heights:
-        if case_name(outcome) == case_name(wanted):
-            return norm(outcome)
-    return None
+def _of_case(norm: Norm, case: Case, evaluation: Evaluation) -> float | None:
+    return next((norm(outcome) for outcome in evaluation.assessment.cases if outcome.case == case), None)

@@ -68,5 +68,5 @@ class RunState:
 
 def _bare(evaluation: Evaluation) -> Evaluation:
     """An evaluation with no more than what a front needs."""
-    assessment = msgspec.structs.replace(evaluation.assessment, design={}, reach=None, heights=())
+    assessment = msgspec.structs.replace(evaluation.assessment, design={}, reach=None, cases=())
     return msgspec.structs.replace(evaluation, genome=(), assessment=assessment)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from evodesign.records import Assessment, HeightDetail, HeightOutcome, ReachOutcome, Status
+from evodesign.records import Assessment, CaseDetail, CaseOutcome, ReachOutcome, Status
 
 __all__ = ["Design"]
 
@@ -17,17 +17,17 @@ class Design:
     Args:
         number: of the evaluation in its run; None for a design that was evaluated outside of one.
         assessment: the whole record.
-        postures: at every height that was solved, of robot and person, with torques and wrenches; empty if
+        postures: of every case that was solved, of robot and person, with torques and wrenches; empty if
             they were not kept.
     """
 
     number: int | None
     assessment: Assessment
-    postures: tuple[HeightDetail, ...] = ()
+    postures: tuple[CaseDetail, ...] = ()
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """Values by name: length multipliers, densities [kg/m^3]."""
+        """Values by name: length multipliers, densities [kg/m^3], allocations."""
         return self.assessment.design
 
     @property
@@ -61,6 +61,6 @@ class Design:
         return self.assessment.reach
 
     @property
-    def heights(self) -> tuple[HeightOutcome, ...]:
-        """Each required height in short."""
-        return self.assessment.heights
+    def cases(self) -> tuple[CaseOutcome, ...]:
+        """Each case in short."""
+        return self.assessment.cases

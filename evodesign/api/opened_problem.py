@@ -73,7 +73,7 @@ class OpenedProblem:
                 unscaled robot's where there are materials.
         """
         found = self._evaluator.assess_values(self._values(design))
-        return Design(None, found.assessment, found.heights)
+        return Design(None, found.assessment, found.cases)
 
     def _values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
         names = [parameter.name for parameter in self.parameters]
@@ -89,7 +89,7 @@ class OpenedProblem:
             raise InputError("design", "", f"{len(names)} values", f"{len(design)}")
         for name in names:
             kind, _, group = name.partition(".")
-            if kind == ParameterKind.POLICY:
+            if kind == ParameterKind.ALLOCATION:
                 wanted, sound = ALLOCATIONS[group].wanted, ALLOCATIONS[group].means(values[name])
             else:
                 wanted, sound = "a positive number", math.isfinite(values[name]) and values[name] > 0.0

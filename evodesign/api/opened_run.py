@@ -15,7 +15,7 @@ from evodesign.analysis.conditions import conditions
 from evodesign.analysis.quantities import Quantity, quantities
 from evodesign.api.design import Design
 from evodesign.errors import InputError
-from evodesign.records import Evaluation, HeightDetail, Objective, Parameter
+from evodesign.records import CaseDetail, Evaluation, Objective, Parameter
 from evodesign.runlog.run import Run, read_run
 
 __all__ = ["OpenedRun", "open_run"]
@@ -39,7 +39,7 @@ class OpenedRun:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self._details = {detail.evaluation: detail.heights for detail in run.details}
+        self._details = {detail.evaluation: detail.cases for detail in run.details}
 
     def __repr__(self) -> str:
         return (
@@ -152,7 +152,7 @@ class OpenedRun:
         return columns | {name: [value(row) for row in rows] for name, value in self._quantities.items()}
 
     def cases(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
-        """Every case of designs as columns, a row per design, person, load and height.
+        """Every case of designs as columns, a row per design, person, load and task.
 
         Args:
             designs: of this run; left out, all evaluations.
@@ -161,21 +161,21 @@ class OpenedRun:
             reason, robot_torque and human_torque [N m], residual; None where a value does not exist.
         """
         chosen = self.designs if designs is None else designs
-        rows = [(design.number, case) for design in chosen for case in design.heights]
+        rows = [(design.number, outcome) for design in chosen for outcome in design.cases]
         return {
             "number": [number for number, _ in rows],
-            "human": [case.human_name for _, case in rows],
-            "payload": [case.payload_name for _, case in rows],
-            "height": [case.height_m for _, case in rows],
-            "status": [str(case.status) for _, case in rows],
-            "reason": [case.reason for _, case in rows],
-            "robot_torque": [case.robot_torque_norm for _, case in rows],
-            "human_torque": [case.human_torque_norm for _, case in rows],
-            "residual": [case.residual for _, case in rows],
+            "human": [outcome.case.person for _, outcome in rows],
+            "payload": [outcome.case.payload for _, outcome in rows],
+            "height": [outcome.case.task.height_m for _, outcome in rows],
+            "status": [str(outcome.status) for _, outcome in rows],
+            "reason": [outcome.reason for _, outcome in rows],
+            "robot_torque": [outcome.robot_torque_norm for _, outcome in rows],
+            "human_torque": [outcome.human_torque_norm for _, outcome in rows],
+            "residual": [outcome.residual for _, outcome in rows],
         }
 
-    def postures(self, number: int) -> tuple[HeightDetail, ...]:
-        """How robot and person of a design stand at each height that was solved, with torques and wrenches.
+    def postures(self, number: int) -> tuple[CaseDetail, ...]:
+        """How robot and person of a design stand in each case that was solved, with torques and wrenches.
 
         The log holds them for every design that was on the front when it was found. For another one they are
         solved anew, which takes seconds and needs the solver.

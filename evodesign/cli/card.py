@@ -11,7 +11,6 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
@@ -19,7 +18,7 @@ from evodesign.cli.person_table import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables import heading
 from evodesign.cli.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
-from evodesign.records import Assessment, HeightDetail, Parameter, materials_of
+from evodesign.records import Assessment, CaseDetail, Parameter, materials_of
 from evodesign.report.ranked_joints import ranked_joints
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
         asked: of the people by each of its postures; none to leave it out.
     """
     assessment = opened.evaluation.assessment
-    several = named_people_or_loads(assessment.heights)
+    several = any(outcome.case.label for outcome in assessment.cases)
     reach = f"reach: {_reach(assessment)}"
     sections: dict[str, Table] = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
     if several:
@@ -47,14 +46,14 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
         sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
     else:
         sections[f"the load at each height ({reach})"] = heights_table(assessment, "")
-    if opened.heights and several:
-        sections["largest joint torques [N m]"] = worst_torques(opened.heights)
-        sections["contact forces [N]"] = worst_forces(opened.heights)
-    elif opened.heights:
-        sections["largest joint torques [N m]"] = _torques(opened.heights)
-        sections["contact forces [N]"] = _contacts(opened.heights)
+    if opened.cases and several:
+        sections["largest joint torques [N m]"] = worst_torques(opened.cases)
+        sections["contact forces [N]"] = worst_forces(opened.cases)
+    elif opened.cases:
+        sections["largest joint torques [N m]"] = _torques(opened.cases)
+        sections["contact forces [N]"] = _contacts(opened.cases)
     if asked:
-        cases = [*zip(opened.heights, asked, strict=True)]
+        cases = [*zip((detail.case for detail in opened.cases), asked, strict=True)]
         sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)
     parts: list[RenderableType] = [_title(opened)]
     for title, table in sections.items():
@@ -126,10 +125,10 @@ def _bar(parameter: Parameter, value: float) -> str:
     return "─" * place + "●" + "─" * (BAR - 1 - place)
 
 
-def _torques(heights: Sequence[HeightDetail]) -> Table:
-    table = _height_table(("agent", "joint"), heights)
-    for agent in heights[0].agents:
-        by_height = [detail.agents[agent].torques_n_m for detail in heights]
+def _torques(cases: Sequence[CaseDetail]) -> Table:
+    table = _height_table(("agent", "joint"), cases)
+    for agent in cases[0].agents:
+        by_height = [detail.agents[agent].torques_n_m for detail in cases]
         shown = ranked_joints(by_height)[:JOINTS_SHOWN]
         for joint in shown:
             row = [figure(torques.get(joint)) for torques in by_height]
@@ -137,19 +136,19 @@ def _torques(heights: Sequence[HeightDetail]) -> Table:
     return table
 
 
-def _contacts(heights: Sequence[HeightDetail]) -> Table:
-    table = _height_table(("agent", "contact"), heights)
-    for agent in heights[0].agents:
-        rows = list(_forces(heights, agent))
+def _contacts(cases: Sequence[CaseDetail]) -> Table:
+    table = _height_table(("agent", "contact"), cases)
+    for agent in cases[0].agents:
+        rows = list(_forces(cases, agent))
         for position, (contact, forces) in enumerate(rows):
             last = position == len(rows) - 1
             table.add_row(agent, escape(contact), *map(figure, forces), end_section=last)
     return table
 
 
-def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, list[float]]]:
+def _forces(cases: Sequence[CaseDetail], agent: str) -> Iterator[tuple[str, list[float]]]:
     """Size of the force on each hand and foot, by height."""
-    postures = [detail.agents[agent] for detail in heights]
+    postures = [detail.agents[agent] for detail in cases]
     for part, wrenches in (
         ("hand", [posture.hand_wrenches for posture in postures]),
         ("foot", [posture.foot_wrenches for posture in postures]),
@@ -158,10 +157,10 @@ def _forces(heights: Sequence[HeightDetail], agent: str) -> Iterator[tuple[str, 
             yield f"{side} {part}", [math.hypot(*wrench[side][:3]) for wrench in wrenches]
 
 
-def _height_table(columns: Sequence[str], heights: Sequence[HeightDetail]) -> Table:
+def _height_table(columns: Sequence[str], cases: Sequence[CaseDetail]) -> Table:
     table = _table(*columns)
-    for detail in heights:
-        table.add_column(f"{detail.height_m:g} m", justify="right")
+    for detail in cases:
+        table.add_column(str(detail.case.task), justify="right")
     return table
 
 

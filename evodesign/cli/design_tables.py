@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
 from evodesign.cli.person_table import people_table
@@ -38,7 +37,7 @@ def assessment_tables(
         summary.add_row(escape(heading(objective)), figure(value))
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
-    if not named_people_or_loads(assessment.heights):
+    if not any(outcome.case.label for outcome in assessment.cases):
         return summary, heights_table(assessment, "the load at each height")
     return (
         summary,
@@ -49,13 +48,12 @@ def assessment_tables(
 
 def asked_table(result: DesignResult) -> Table:
     """What the solved postures of a design ask of the people."""
-    cases = []
-    for height in result.heights:
-        if height.solved:
-            scene = result.scenes[height.scene]
-            detail = detail_of(height, scene)
-            cases.append((detail, ergonomics(scene.human, detail.agents[HUMAN])))
-    return people_table(cases, titled=True)
+    solved = [solution for solution in result.cases if solution.solved]
+    asked = [
+        (one.case, ergonomics(result.scene_of(one.case).human, detail_of(one).agents[HUMAN]))
+        for one in solved
+    ]
+    return people_table(asked, titled=True)
 
 
 def sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:

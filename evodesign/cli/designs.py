@@ -35,7 +35,7 @@ def evaluate_design(
         print_json(evaluation_json(built, values, result, assessment, moves))
         return
     tables = assessment_tables(built, chosen, result, assessment)
-    asked = [asked_table(result)] if any(height.solved for height in result.heights) else []
+    asked = [asked_table(result)] if any(solution.solved for solution in result.cases) else []
     for table in (*tables, *asked, *([sensitivity_table(built, moves)] if moves else [])):
         console().print(table)
 

@@ -18,7 +18,7 @@ def export_run_design(directory: Path, number: int, to: Path, jobs: int) -> None
     opened = open_design(directory, number, jobs)
     run, evaluation = opened.run, opened.evaluation
     design = ExportedDesign(
-        directory.resolve().name, run.header, evaluation, scene_set_of(opened), opened.heights
+        directory.resolve().name, run.header, evaluation, scene_set_of(opened), opened.cases
     )
     done = export_design(design, to, on_front=opened.on_front)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterator, Sequence
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.cases import pair_name
 from evodesign.cli.output import figure, shown
 from evodesign.errors import on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.records import Assessment, HeightOutcome
+from evodesign.records import Assessment, CaseOutcome
 
 __all__ = ["cases_table", "heights_table", "summary_table"]
 
@@ -22,9 +21,9 @@ def heights_table(assessment: Assessment, title: str) -> Table:
     for column in ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual"):
         table.add_column(escape(column), justify="right")
     table.add_column("status", overflow="fold")
-    for outcome in assessment.heights:
+    for outcome in assessment.cases:
         table.add_row(
-            figure(outcome.height_m),
+            figure(outcome.case.task.height_m),
             figure(outcome.robot_torque_norm),
             figure(outcome.human_torque_norm),
             str(outcome.iterations),
@@ -44,7 +43,7 @@ def heights_table(assessment: Assessment, title: str) -> Table:
 
 def cases_table(assessment: Assessment, title: str) -> Table:
     """A design's postures in short, case by case: columns for people and loads where there are several."""
-    outcomes = assessment.heights
+    outcomes = assessment.cases
     names = _name_columns(outcomes)
     table = Table(title=title or None, title_justify="left")
     for name in names:
@@ -64,16 +63,16 @@ def cases_table(assessment: Assessment, title: str) -> Table:
         for name, norms in outcome.disturbed.items():
             bore = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
             table.add_row(*("" for _ in names), "", *bore, "", shown(f"under '{name}'"))
-        if following is not None and pair_name(outcome) != pair_name(following):
+        if following is not None and outcome.case.pair != following.case.pair:
             table.add_section()
     return table
 
 
-def _residual(outcome: HeightOutcome) -> str:
+def _residual(outcome: CaseOutcome) -> str:
     return "-" if outcome.residual is None else f"{outcome.residual:.1e}"
 
 
-def _status(outcome: HeightOutcome) -> str:
+def _status(outcome: CaseOutcome) -> str:
     status = outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
     return escape(on_one_line(status))
 
@@ -88,7 +87,7 @@ def summary_table(assessment: Assessment, title: str) -> Table:
     table.add_column("solved", justify="right")
     for column in ("robot mean", "worst", "human mean", "worst"):
         table.add_column(column, justify="right")
-    outcomes = assessment.heights
+    outcomes = assessment.cases
     _add_summary(table, "all", outcomes, last=True)
     groups = [*_name_columns(outcomes).values(), _height]
     for name_of in groups:
@@ -99,7 +98,7 @@ def summary_table(assessment: Assessment, title: str) -> Table:
     return table
 
 
-def _add_summary(table: Table, name: str, outcomes: Sequence[HeightOutcome], *, last: bool) -> None:
+def _add_summary(table: Table, name: str, outcomes: Sequence[CaseOutcome], *, last: bool) -> None:
     solved = [outcome for outcome in outcomes if outcome.robot_torque_norm is not None]
     numbers = [
         number
@@ -110,7 +109,7 @@ def _add_summary(table: Table, name: str, outcomes: Sequence[HeightOutcome], *, 
     table.add_row(shown(name), share, *map(figure, numbers), end_section=last)
 
 
-def _norms(outcome: HeightOutcome, agent: str) -> Iterator[float]:
+def _norms(outcome: CaseOutcome, agent: str) -> Iterator[float]:
     """An agent's torque norms in a case, quiet and disturbed."""
     quiet = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
     if quiet is not None:
@@ -124,19 +123,19 @@ def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:
     yield max(norms, default=None)
 
 
-def _name_columns(outcomes: Sequence[HeightOutcome]) -> dict[str, Callable[[HeightOutcome], str]]:
+def _name_columns(outcomes: Sequence[CaseOutcome]) -> dict[str, Callable[[CaseOutcome], str]]:
     """Columns of names that tell cases apart, with what stands in them."""
     columns = {"person": _human, "load": _payload}
     return {column: name for column, name in columns.items() if any(map(name, outcomes))}
 
 
-def _human(outcome: HeightOutcome) -> str:
-    return outcome.human_name
+def _human(outcome: CaseOutcome) -> str:
+    return outcome.case.person
 
 
-def _payload(outcome: HeightOutcome) -> str:
-    return outcome.payload_name
+def _payload(outcome: CaseOutcome) -> str:
+    return outcome.case.payload
 
 
-def _height(outcome: HeightOutcome) -> str:
-    return f"{outcome.height_m:g} m"
+def _height(outcome: CaseOutcome) -> str:
+    return str(outcome.case.task)

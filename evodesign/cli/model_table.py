@@ -39,7 +39,7 @@ def model_json(problem: Problem) -> dict[str, Any]:
         "problem": problem.name,
         "agents": [_agent(scene.robot), *_people(problem)],
         **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
-        "heights_m": list(problem.heights),
+        "heights_m": [task.height_m for task in problem.tasks],
         **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],

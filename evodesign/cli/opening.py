@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from evodesign.analysis.front import front
 from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
-from evodesign.records import Evaluation, HeightDetail, RunHeader
+from evodesign.records import CaseDetail, Evaluation, RunHeader
 from evodesign.report.scene_set import SceneSet
 from evodesign.runlog.run import Run, read_run
 from evodesign.search.base import JOINT_STARTS
@@ -56,14 +56,14 @@ class OpenedDesign:
     Args:
         run: that holds it.
         evaluation: as logged.
-        heights: its postures, from the log or solved anew.
+        cases: its postures, from the log or solved anew.
         on_front: whether no design of the run beats it.
         rebuilt: the run's problem.
     """
 
     run: Run
     evaluation: Evaluation
-    heights: tuple[HeightDetail, ...]
+    cases: tuple[CaseDetail, ...]
     on_front: bool
     rebuilt: RebuiltProblem
 
@@ -90,24 +90,20 @@ def open_design(directory: Path, number: int, jobs: int) -> OpenedDesign:
     evaluation = by_number[number]
     best = front(run.header.objectives, run.evaluations)
     rebuilt = RebuiltProblem(run.header)
-    return OpenedDesign(
-        run, evaluation, _heights(run, evaluation, rebuilt, jobs), evaluation in best, rebuilt
-    )
+    return OpenedDesign(run, evaluation, _cases(run, evaluation, rebuilt, jobs), evaluation in best, rebuilt)
 
 
-def _heights(
-    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int
-) -> tuple[HeightDetail, ...]:
+def _cases(run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int) -> tuple[CaseDetail, ...]:
     logged = {detail.evaluation: detail for detail in run.details}
     if evaluation.number in logged:
-        return logged[evaluation.number].heights
+        return logged[evaluation.number].cases
     from evodesign.cli.ready import evaluator_of  # CasADi takes its time to load
     from evodesign.problem.baseline import Baseline
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
     if run.header.search.algorithm == JOINT_STARTS:
-        return Baseline(rebuilt.problem).assess(evaluation.genome).heights
-    return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
+        return Baseline(rebuilt.problem).assess(evaluation.genome).cases
+    return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).cases
 
 
 def scene_set_of(opened: OpenedDesign) -> SceneSet:
@@ -120,7 +116,7 @@ def scene_set_of(opened: OpenedDesign) -> SceneSet:
 
 def asked_of_people(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
     """What the design's postures ask of the people, one for each; none if the people cannot be told."""
-    if not opened.heights:
+    if not opened.cases:
         return ()
     from evodesign.mechanics.scene import HUMAN
     from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
@@ -130,4 +126,4 @@ def asked_of_people(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
     except InputError as error:
         show_notes([f"what the postures ask of the person is left out ({error})"])
         return ()
-    return tuple(ergonomics(people[detail.human_name], detail.agents[HUMAN]) for detail in opened.heights)
+    return tuple(ergonomics(people[detail.case.person], detail.agents[HUMAN]) for detail in opened.cases)

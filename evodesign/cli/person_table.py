@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.cases import Case, case_name, named_people_or_loads
 from evodesign.cli.output import shown
+from evodesign.records import Case
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
@@ -32,10 +32,8 @@ CAPTION = (
 
 def people_table(asked: Sequence[Asked], *, titled: bool) -> Table:
     """A row for each case; of several people or loads, each person's hardest ones."""
-    several = named_people_or_loads(case for case, _ in asked)
-    rows = [
-        (case_name(case), ergonomics) for case, ergonomics in (hardest_cases(asked) if several else asked)
-    ]
+    several = any(case.label for case, _ in asked)
+    rows = [(case.name, ergonomics) for case, ergonomics in (hardest_cases(asked) if several else asked)]
     title = TITLE_OF_SEVERAL if several else TITLE
     return person_table(rows, title if titled else "")
 
@@ -43,8 +41,8 @@ def people_table(asked: Sequence[Asked], *, titled: bool) -> Table:
 def hardest_cases(asked: Sequence[Asked]) -> list[Asked]:
     """Of each person the case of largest effort and that of the largest lifting index, often the same."""
     chosen: list[Asked] = []
-    for name in dict.fromkeys(case.human_name for case, _ in asked):
-        own = [one for one in asked if one[0].human_name == name]
+    for name in dict.fromkeys(case.person for case, _ in asked):
+        own = [one for one in asked if one[0].person == name]
         for size in (_effort, _index):
             hardest = max(own, key=size)
             if hardest not in chosen:

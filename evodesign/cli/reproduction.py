@@ -174,7 +174,7 @@ def _searched(problem: Problem, name: str, directory: Path, effort: Effort, bega
 
 def _robot_norm(evaluation: Evaluation, height: float) -> float:
     """The robot's torque norm at a height [N m]; infinite where there is none."""
-    norms = {outcome.height_m: outcome.robot_torque_norm for outcome in evaluation.assessment.heights}
+    norms = {o.case.task.height_m: o.robot_torque_norm for o in evaluation.assessment.cases}
     found = norms.get(height)
     return math.inf if found is None else found
 
@@ -182,7 +182,7 @@ def _robot_norm(evaluation: Evaluation, height: float) -> float:
 def _published(problem: Problem) -> Published:
     """The setting without limits: the unscaled robot at the heights of the paper, and the optimised one."""
     unscaled = problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))
-    held = held_at(problem, unscaled, tuple(height for height in problem.heights if height in PAPER_ORIGINAL))
+    held = held_at(problem, unscaled, [task for task in problem.tasks if task.height_m in PAPER_ORIGINAL])
     baseline = Baseline(problem)
     search = make_search(problem.settings(JOINT_STARTS, PUBLISHED_STARTS, problem.search.seed))
     ended: list[JointSolution] = []
@@ -203,17 +203,15 @@ def _published(problem: Problem) -> Published:
 
 def _robot(problem: Problem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
     tree = problem.space.resized(problem.scene.robot.tree, solution.design)
-    heights = tuple(detail_of(height, problem.scene) for height in solution.heights if height.solved)
-    return ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), heights)
+    cases = tuple(detail_of(case) for case in solution.cases if case.solved)
+    return ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), cases)
 
 
 def _original(problem: Problem, jobs: int) -> tuple[ReproducedRobot, float | None]:
     """The unscaled robot at its own best postures, and its reach [m]."""
     result = evaluator_of(problem, jobs).solve(problem.space.unscaled(problem.scene.robot.tree))
-    heights = tuple(detail_of(height, problem.scene) for height in result.heights if height.solved)
-    robot = ReproducedRobot(
-        ORIGINAL, "the robot as it is", SceneModels.of(problem.scene, result.tree), heights
-    )
+    cases = tuple(detail_of(case) for case in result.cases if case.solved)
+    robot = ReproducedRobot(ORIGINAL, "the robot as it is", SceneModels.of(problem.scene, result.tree), cases)
     return robot, result.reach.highest
 
 
@@ -254,7 +252,7 @@ def _best(problem: Problem, run: Run, name: str) -> Found:
             {},
         )
     design = best[0].assessment.design
-    details = {detail.evaluation: detail.heights for detail in run.details}
+    details = {detail.evaluation: detail.cases for detail in run.details}
     tree = problem.space.resized(problem.scene.robot.tree, list(design.values()))
     robot = ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), details[best[0].number])
     return Found(robot, run, best[0].assessment.objectives[objective.name], design)

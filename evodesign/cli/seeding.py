@@ -17,6 +17,7 @@ from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.source import read_source
+from evodesign.records import Case
 
 __all__ = ["show_seeds"]
 
@@ -35,12 +36,12 @@ def show_seeds(path: Path, jobs: int, json: bool) -> None:
 
 def _landscapes(problem: Problem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
     """Each portfolio with what it is for and the unit in which it misses."""
-    if not problem.seeds:
+    if not problem.start_portfolio:
         return
     yield "highest load", known.highest, "m"
     yield "lowest load", known.lowest, "m"
-    for height in problem.heights:
-        yield f"posture at {height:g} m", known.postures[height], "100 N^2 m^2"
+    for task in problem.tasks:
+        yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
 
 
 def _seeds_table(problem: Problem, known: Precomputed) -> Table:
@@ -63,19 +64,17 @@ def _people_table(problem: Problem, known: Precomputed) -> Table:
         table.add_column("person and load")
     for column in ("height", "known", "largest error"):
         table.add_column(column, justify="right")
-    for label, height, error in _errors(problem, known):
+    for case, error in _errors(problem, known):
         shown = "-" if error is None else f"{figure(error)} N^2 m^2"
-        row = (f"{height:g} m", "no: solved jointly" if error is None else "yes", shown)
-        table.add_row(*([escape(label)] if several else []), *row)
+        row = (str(case.task), "no: solved jointly" if error is None else "yes", shown)
+        table.add_row(*([escape(case.label)] if several else []), *row)
     return table
 
 
-def _errors(problem: Problem, known: Precomputed) -> Iterator[tuple[str, float, float | None]]:
-    """Each scene's label and height [m] with the error of its value function [N^2 m^2], if it has one."""
-    errors = {(value.scene, value.height): value.error * COST_UNIT for value in known.values}
-    for number, scene in enumerate(problem.scenes):
-        for height in problem.heights:
-            yield scene.label, height, errors.get((number, height))
+def _errors(problem: Problem, known: Precomputed) -> Iterator[tuple[Case, float | None]]:
+    """Each case with the error of its value function [N^2 m^2], if it has one."""
+    for case in problem.cases:
+        yield case, known.values[case].error * COST_UNIT if case in known.values else None
 
 
 def _json(problem: Problem, known: Precomputed) -> dict[str, Any]:
@@ -94,11 +93,11 @@ def _json(problem: Problem, known: Precomputed) -> dict[str, Any]:
         ],
         "human_values": [
             {
-                **({"scene": label} if label else {}),
-                "height_m": height,
+                **({"scene": case.label} if case.label else {}),
+                "height_m": case.task.height_m,
                 "known": error is not None,
                 "error_n2_m2": error,
             }
-            for label, height, error in _errors(problem, known)
+            for case, error in _errors(problem, known)
         ],
     }

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.card import card
 from evodesign.cli.opening import OpenedDesign, asked_of_people, open_design, scene_set_of
 from evodesign.cli.output import console, print_json, show_notes
@@ -25,7 +24,7 @@ def show_design(directory: Path, number: int, jobs: int, json: bool, plot: Path 
     if json:
         from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
 
-        told = design_json(opened.run.header, opened.evaluation, opened.heights, on_front=opened.on_front)
+        told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in asked_of_people(opened)]
         print_json({"run": str(directory), **told, "ergonomics": asked})
         return
@@ -49,12 +48,12 @@ def _write_figures(opened: OpenedDesign, directory: Path) -> None:
     name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
     scene_set = scene_set_of(opened)
     torques = {
-        agent: [(detail.height_m, detail.agents[agent].torques_n_m) for detail in opened.heights]
+        agent: [(detail.case.task.height_m, detail.agents[agent].torques_n_m) for detail in opened.cases]
         for agent in scene_set.models[0].trees
     }
-    several = named_people_or_loads(opened.heights)
+    several = any(detail.case.label for detail in opened.cases)
     whom = " with all people and loads" if several else ""
-    stages = [scene_set.placed_scene(detail) for detail in opened.heights]
+    stages = [scene_set.placed_scene(detail) for detail in opened.cases]
     figures = {
         "torques": torque_boxes(_by_height(torques), f"{name}: joint torques{whom}"),
         "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint{whom}"),

@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 
 from rich.table import Table
 
-from evodesign.analysis.cases import case_name
 from evodesign.cli.output import figure, shown
-from evodesign.records import AgentDetail, HeightDetail
+from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.ranked_joints import ranked_joints
 
 __all__ = ["JOINTS_SHOWN", "worst_forces", "worst_torques"]
@@ -20,26 +19,26 @@ JOINTS_SHOWN = 6
 CONTACTS = ("hand", "foot")
 
 
-def worst_torques(heights: Sequence[HeightDetail]) -> Table:
+def worst_torques(cases: Sequence[CaseDetail]) -> Table:
     """The joints that bear most: the mean size of their torques, the largest torque, and in which case."""
     table = _table("agent", "joint", ("mean size", "worst"))
-    for agent in heights[0].agents:
-        torques = [detail.agents[agent].torques_n_m for detail in heights]
+    for agent in cases[0].agents:
+        torques = [detail.agents[agent].torques_n_m for detail in cases]
         joints = ranked_joints(torques)[:JOINTS_SHOWN]
         for joint in joints:
-            _add(table, agent, joint, heights, [by[joint] for by in torques], last=joint == joints[-1])
+            _add(table, agent, joint, cases, [by[joint] for by in torques], last=joint == joints[-1])
     return table
 
 
-def worst_forces(heights: Sequence[HeightDetail]) -> Table:
+def worst_forces(cases: Sequence[CaseDetail]) -> Table:
     """Sizes of the forces on hands and feet: the mean, the largest, and in which case."""
     table = _table("agent", "contact", ("mean", "largest"))
-    for agent in heights[0].agents:
-        postures = [detail.agents[agent] for detail in heights]
+    for agent in cases[0].agents:
+        postures = [detail.agents[agent] for detail in cases]
         contacts = [(part, side) for part in CONTACTS for side in _wrenches(part)(postures[0])]
         for part, side in contacts:
             forces = [math.hypot(*_wrenches(part)(posture)[side][:3]) for posture in postures]
-            _add(table, agent, f"{side} {part}", heights, forces, last=(part, side) == contacts[-1])
+            _add(table, agent, f"{side} {part}", cases, forces, last=(part, side) == contacts[-1])
     return table
 
 
@@ -47,7 +46,7 @@ def _add(
     table: Table,
     agent: str,
     name: str,
-    heights: Sequence[HeightDetail],
+    cases: Sequence[CaseDetail],
     values: Sequence[float],
     *,
     last: bool,
@@ -58,7 +57,7 @@ def _add(
         shown(name),
         figure(sum(map(abs, values)) / len(values)),
         figure(values[worst]),
-        shown(case_name(heights[worst])),
+        shown(cases[worst].case.name),
         end_section=last,
     )
 

@@ -29,10 +29,10 @@ class ParameterKind(StrEnum):
 
     LENGTH = "length"
     DENSITY = "density"
-    POLICY = "policy"
+    ALLOCATION = "allocation"
 
 
-UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.POLICY: "1"}
+UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.ALLOCATION: "1"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,12 +141,12 @@ class DesignSpace:
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The allocation parameters among a design's values, by their own names."""
         pairs = zip(self.parameters, values, strict=True)
-        return {p.group: value for p, value in pairs if p.kind is ParameterKind.POLICY}
+        return {p.group: value for p, value in pairs if p.kind is ParameterKind.ALLOCATION}
 
     @property
     def allocation_names(self) -> frozenset[str]:
         """Names of the allocation parameters that a design chooses."""
-        return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
+        return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.ALLOCATION)
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -160,7 +160,7 @@ class DesignSpace:
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
         if parameter.kind is ParameterKind.LENGTH:
             return 1.0
-        if parameter.kind is ParameterKind.POLICY:
+        if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
         solids = [
             solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids

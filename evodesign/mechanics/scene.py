@@ -8,7 +8,7 @@ and person obey the same constraints.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
@@ -18,9 +18,10 @@ from evodesign.body.shape import Box
 from evodesign.human.strength import JointStrength
 from evodesign.mechanics.contact import Ground, SoleSize
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
+from evodesign.records import Case, Task
 from evodesign.tree.model import Tree
 
-__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
+__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits", "scene_of"]
 
 ROBOT, HUMAN = "robot", "human"
 SIDES = ("left", "right")
@@ -167,6 +168,20 @@ class Scene:
     robot_share: float | None = None
 
     @property
+    def pair(self) -> tuple[str, str]:
+        """Names of person and load, each empty where there is one."""
+        return self.human.label, self.payload.label
+
+    @property
     def label(self) -> str:
         """Who holds what, where there are several people or loads."""
-        return ", ".join(label for label in (self.human.label, self.payload.label) if label)
+        return ", ".join(name for name in self.pair if name)
+
+    def case(self, task: Task) -> Case:
+        """Its person with its load at a task, undisturbed."""
+        return Case(person=self.human.label, payload=self.payload.label, task=task)
+
+
+def scene_of(scenes: Iterable[Scene], pair: tuple[str, str]) -> Scene:
+    """The scene of a person and a load, by their names."""
+    return next(scene for scene in scenes if scene.pair == pair)

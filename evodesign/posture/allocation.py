@@ -1,7 +1,7 @@
 """How robot and person divide the work: the weights of their efforts, and the robot's share of the load.
 
-Both are fixed by the problem or chosen by the design, as policies among its parameters. With the policy
-effort_ratio e = log10(w_r / w_h) and w_r + w_h = 2,
+Both are fixed by the problem or chosen by the design, as allocations among its parameters. With the
+allocation effort_ratio e = log10(w_r / w_h) and w_r + w_h = 2,
 
     w_r = 2 / (1 + 10^-e)        w_h = 2 / (1 + 10^e)
 """

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from evodesign.nlp.solver import RawSolution
 from evodesign.posture.check import TOLERANCE, sizes
-from evodesign.posture.results import Attempt, HeightSolution, Instant
+from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.terms.base import Residual
-from evodesign.records import Status, worst_status
+from evodesign.records import Case, Status, worst_status
 
-__all__ = ["Candidate", "Trial", "cheapest", "checked", "height_solution"]
+__all__ = ["Candidate", "Trial", "case_solution", "cheapest", "checked"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,23 +75,21 @@ def cheapest(
     return Trial(tuple(attempts), None)
 
 
-def height_solution(height: float, trials: Sequence[Trial]) -> HeightSolution:
-    """The cheapest checked posture at a height [m], or why there is none."""
+def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:
+    """The cheapest checked posture in a case, or why there is none."""
     attempts = tuple(attempt for trial in trials for attempt in trial.attempts)
     found = [trial.best for trial in trials if trial.best is not None]
     if not found:
         status = worst_status([attempt.status for attempt in attempts])
-        reason = f"no posture found at {height:g} m: " + "; ".join(a.reason for a in attempts)
-        return HeightSolution(height, status, reason, {}, {}, attempts)
+        reason = f"no posture found at {case.task}: " + "; ".join(a.reason for a in attempts)
+        return CaseSolution(case, status, reason, attempts=attempts)
     best = min(found, key=lambda candidate: candidate.attempt.cost)
-    (instant,) = best.instants
-    return HeightSolution(
-        height=height,
+    return CaseSolution(
+        case=case,
         status=Status.SOLVED,
         reason="solved",
-        postures=instant.postures,
+        instants=best.instants,
         residuals=sizes(best.residuals),
         attempts=attempts,
         attempt=best.attempt,
-        disturbed=instant.disturbed,
     )

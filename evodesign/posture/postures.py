@@ -1,4 +1,4 @@
-"""The posture of a design at a height: formulations in turn, until the check accepts a result.
+"""The posture of a design in a case: formulations in turn, until the check accepts a result.
 
 A scene that is its own mirror image is solved for symmetric postures: half the variables and far fewer local
 minima. Where the person's value function is known, robot and person are even solved one after the other. The
@@ -18,15 +18,16 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import Landscape
-from evodesign.posture.candidate import Trial, height_solution
+from evodesign.posture.candidate import Trial, case_solution
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.base import Formulation, Setting
 from evodesign.posture.formulations.decoupled import DecoupledPostures
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.results import HeightSolution, Neighbour
+from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.records import Task
 
 __all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
 
@@ -37,7 +38,9 @@ Maker = Callable[[str, Setting, Precomputed, SolverCache], Formulation]
 
 
 def _decoupled(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> Formulation:
-    return DecoupledPostures(name, symmetric_forms(setting.scene), setting, known.values, solvers)
+    return DecoupledPostures(
+        name, symmetric_forms(setting.scene), setting, known.values_of(setting.scene), solvers
+    )
 
 
 def _symmetric(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> Formulation:
@@ -81,7 +84,7 @@ class PostureProblem:
     ) -> None:
         self._setting, self._symmetry, self._known = setting, symmetry, known
         self._solvers = solvers or SolverCache()
-        self._decoupled_heights = frozenset(value.height for value in known.values)
+        self._values = known.values_of(setting.scene)
         self._made: dict[str, Formulation] = {}
         if symmetry is not Symmetry.OFF:
             setting.space.check_mirror(setting.scene.robot.tree)
@@ -90,58 +93,58 @@ class PostureProblem:
     def solve(
         self,
         design: Sequence[float],
-        height: float,
+        task: Task,
         checker: Checker,
         neighbour: Neighbour | None = None,
-    ) -> HeightSolution:
-        """The best checked posture of a design at one height.
+    ) -> CaseSolution:
+        """The best checked posture of a design in one case.
 
         Args:
             design: one number per design parameter.
-            height: of the load's centre [m].
+            task: of the problem.
             checker: the independent check, made for this design.
             neighbour: what the same design led to in a similar scene; fewer starts do beside it.
         """
         trials: list[Trial] = []
-        for trial in self._trials(design, height, checker, neighbour):
+        for trial in self._trials(design, task, checker, neighbour):
             trials.append(trial)
             if trial.best is not None:
                 break
         best = trials[-1].best
         if self._symmetry is Symmetry.POLISH and best is not None:
-            trials.append(self._whole.polish(design, height, best.instants[0], checker))
-        return height_solution(height, trials)
+            trials.append(self._whole.polish(design, task, best.instants[0], checker))
+        return case_solution(self._setting.scene.case(task), trials)
 
     def derivative(
-        self, design: Sequence[float], solution: HeightSolution
+        self, design: Sequence[float], solution: CaseSolution
     ) -> PostureDerivative | NotDifferentiable:
         """How a solved posture moves with the design, or why it has no derivative."""
         if solution.attempt is None:
             return NotDifferentiable(solution.reason)
         return self._formulation(solution.attempt.formulation).derivative(design, solution)
 
-    def landscape(self, height: float) -> Landscape:
-        """The cost at a height [m] of the formulation that is tried first, of which portfolios are made."""
-        name, _ = next(self._in_turn(height))
-        return self._formulation(name).landscape(height)
+    def landscape(self, task: Task) -> Landscape:
+        """The cost for a task of the formulation that is tried first, of which portfolios are made."""
+        name, _ = next(self._in_turn(task))
+        return self._formulation(name).landscape(task)
 
     def _trials(
-        self, design: Sequence[float], height: float, checker: Checker, neighbour: Neighbour | None
+        self, design: Sequence[float], task: Task, checker: Checker, neighbour: Neighbour | None
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn."""
-        for name, portfolio in self._in_turn(height):
+        for name, portfolio in self._in_turn(task):
             formulation = self._formulation(name)
             if neighbour is not None:
-                yield formulation.solve_beside(design, height, portfolio, neighbour, checker)
-            yield formulation.solve(design, height, portfolio, checker)
+                yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
+            yield formulation.solve(design, task, portfolio, checker)
 
-    def _in_turn(self, height: float) -> Iterator[tuple[str, tuple[Start, ...]]]:
+    def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""
-        portfolio = self._known.starts(height)
+        portfolio = self._known.starts(task)
         if self._symmetry is Symmetry.OFF:
             yield WHOLE, portfolio
             return
-        if height in self._decoupled_heights:
+        if task in self._values:
             yield DECOUPLED, portfolio
             yield SYMMETRIC, ()
         else:
@@ -162,7 +165,7 @@ class PostureProblem:
         """The setting of a formulation; one that is seldom solved is not worth compiling."""
         refuge = {
             DECOUPLED: False,
-            SYMMETRIC: bool(self._decoupled_heights),
+            SYMMETRIC: bool(self._values),
             WHOLE: self._symmetry is Symmetry.ON,
         }[name]
         options = self._setting.options

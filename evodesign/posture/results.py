@@ -1,4 +1,4 @@
-"""What a posture problem gives: postures, or the reason why there is none."""
+"""What a posture problem gives for a case: postures, or the reason why there is none."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.records import Status
+from evodesign.records import Case, Status
 
-__all__ = ["AgentPosture", "Attempt", "HeightSolution", "Instant", "Neighbour"]
+__all__ = ["AgentPosture", "Attempt", "CaseSolution", "Instant", "Neighbour"]
 
 Array = NDArray[np.float64]
 
@@ -43,22 +43,6 @@ class AgentPosture:
 
 
 @dataclass(frozen=True, slots=True)
-class Instant:
-    """A moment of a task; a hold has one.
-
-    Args:
-        time: since the task began [s].
-        postures: by agent name.
-        disturbed: by disturbance and agent name, the same base and joints with what is carried then; empty
-            without disturbances.
-    """
-
-    time: float
-    postures: Mapping[str, AgentPosture]
-    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
 class Attempt:
     """One start of a posture problem and how it ended.
 
@@ -87,46 +71,69 @@ class Attempt:
 
 
 @dataclass(frozen=True, slots=True)
-class HeightSolution:
-    """The best checked posture at one height, or why there is none.
+class Instant:
+    """How the agents stand at one moment of a task, and what they carry.
 
     Args:
-        height: of the load's centre [m].
+        time: since the task began [s]; 0 for a load held still.
+        postures: by agent name.
+        disturbed: by disturbance and agent name, the same base and joints with what is carried then; empty
+            without disturbances.
+    """
+
+    time: float
+    postures: Mapping[str, AgentPosture]
+    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class CaseSolution:
+    """The best checked posture in a case, or why there is none.
+
+    Args:
+        case: undisturbed; what is carried under disturbances goes with its instants.
         status: solved, or why not.
         reason: a sentence.
-        postures: by agent name; empty unless solved.
+        instants: of the task, one for a load held still; none unless solved.
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         attempt: that led to the postures; None unless solved.
-        disturbed: by disturbance and agent name, the same base and joints with what is carried then; empty
-            without disturbances.
-        scene: which of the problem's scenes it is in, from zero.
     """
 
-    height: float
+    case: Case
     status: Status
     reason: str
-    postures: Mapping[str, AgentPosture]
-    residuals: Mapping[str, float]
-    attempts: tuple[Attempt, ...]
+    instants: tuple[Instant, ...] = ()
+    residuals: Mapping[str, float] = field(default_factory=dict)
+    attempts: tuple[Attempt, ...] = ()
     attempt: Attempt | None = None
-    scene: int = 0
-    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
 
     @property
     def solved(self) -> bool:
         """Whether there is a checked posture."""
         return self.status is Status.SOLVED
 
+    @property
+    def postures(self) -> Mapping[str, AgentPosture]:
+        """Those of the only instant, by agent name."""
+        (instant,) = self.instants
+        return instant.postures
+
+    @property
+    def disturbed(self) -> Mapping[str, Mapping[str, AgentPosture]]:
+        """What is borne in the only instant, by disturbance and agent name."""
+        (instant,) = self.instants
+        return instant.disturbed
+
 
 @dataclass(frozen=True, slots=True)
 class Neighbour:
-    """What is known when the same design was solved at the same height in a similar scene.
+    """What is known when the same design did the same task in a similar scene.
 
     Args:
         solution: solved; its person has the joints of the one sought.
         same_load: whether only the person differs.
     """
 
-    solution: HeightSolution
+    solution: CaseSolution
     same_load: bool

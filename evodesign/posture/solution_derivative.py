@@ -16,11 +16,11 @@ import numpy as np
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
-from evodesign.posture.results import HeightSolution, Instant
+from evodesign.posture.results import CaseSolution, Instant
 from evodesign.posture.symmetry import Form
 from evodesign.posture.warm_start import Layout, instant_of
 
-__all__ = ["PostureDerivative", "ReachDerivative", "found_again", "known_instant"]
+__all__ = ["PostureDerivative", "ReachDerivative", "found_again"]
 
 SAME = 1e-2
 """Difference of torques [N m] below which a posture that is found again is the same one."""
@@ -58,13 +58,8 @@ class PostureDerivative:
         return instant_of(self.layout, self.forms, self.scene, moved)
 
 
-def known_instant(solution: HeightSolution) -> Instant:
-    """The postures of a solution."""
-    return Instant(0.0, solution.postures, solution.disturbed)
-
-
 def found_again(
-    derivative: PostureDerivative, solution: HeightSolution
+    derivative: PostureDerivative, solution: CaseSolution
 ) -> PostureDerivative | NotDifferentiable:
     """The derivative, if its posture is the one that was solved and everything of the agents has a slope."""
     found = derivative.moved(np.zeros_like(derivative.cost_slope)).postures

@@ -1,6 +1,6 @@
 """From values of single cases to one value of a design.
 
-A case is a person with a load at a height, undisturbed or under one of the problem's disturbances. A
+A case is a person with a load at a task, undisturbed or under one of the problem's disturbances. A
 quantity has a value in every case; an objective is its mean over the cases, its largest value, or a quantile,
 so that a front may be asked to hold for everyone and not only on average. The way stands before the
 quantity's name: `human_torque` is the mean, and there are `worst_human_torque` and `q90_human_torque`.
@@ -9,7 +9,7 @@ quantity's name: `human_torque` is the mean, and there are `worst_human_torque` 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,7 +23,6 @@ __all__ = [
     "CaseValue",
     "ObjectiveKind",
     "aggregate",
-    "undisturbed",
     "values_over_cases",
 ]
 
@@ -50,23 +49,17 @@ class ObjectiveKind:
     value: Callable[[DesignResult], float | None]
 
 
-def values_over_cases(value: CaseValue, result: DesignResult) -> list[float] | None:
-    """A quantity in every case, in the order of the results; None unless all are solved.
-
-    A height's undisturbed case is followed by its disturbed ones.
-    """
-    if not all(height.solved for height in result.heights):
+def values_over_cases(
+    value: CaseValue, result: DesignResult, *, disturbed: bool = True
+) -> list[float] | None:
+    """A quantity in every case, or in every undisturbed one, in their order; None unless all are solved."""
+    if not all(solution.solved for solution in result.cases):
         return None
     return [
-        value(result.scenes[height.scene], postures)
-        for height in result.heights
-        for postures in (height.postures, *height.disturbed.values())
+        value(result.scene_of(case), postures)
+        for case, postures in result.every_case()
+        if disturbed or not case.disturbance
     ]
-
-
-def undisturbed(result: DesignResult) -> DesignResult:
-    """A design's results without the load cases of disturbances."""
-    return replace(result, heights=tuple(replace(height, disturbed={}) for height in result.heights))
 
 
 def aggregate(quantity: CaseQuantity, way: str) -> ObjectiveKind:

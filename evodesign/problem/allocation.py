@@ -27,19 +27,19 @@ def check_allocations(tables: ProblemFile, source: ProblemSource) -> None:
     """
     fixed = {ROBOT_SHARE: tables.task.robot_share, EFFORT_RATIO: tables.task.effort_weights}
     keys = {ROBOT_SHARE: "task.robot_share", EFFORT_RATIO: "task.effort_weights"}
-    for position, table in enumerate(tables.design.policy):
-        key = f"design.policy[{position}]"
+    for position, table in enumerate(tables.design.allocation):
+        key = f"design.allocation[{position}]"
         if table.name not in ALLOCATIONS:
             wanted = f"one of {', '.join(ALLOCATIONS)}"
             found = f"'{table.name}'{nearest_name(table.name, ALLOCATIONS)}"
             raise InputError(source.path, f"{key}.name", wanted, found)
-        policy = ALLOCATIONS[table.name]
+        allocation = ALLOCATIONS[table.name]
         for bound, value in (("lower", table.lower), ("upper", table.upper)):
-            if not policy.means(value):
-                raise InputError(source.path, f"{key}.{bound}", policy.wanted, f"{value:g}")
+            if not allocation.means(value):
+                raise InputError(source.path, f"{key}.{bound}", allocation.wanted, f"{value:g}")
         if fixed[table.name] is not None:
-            found = f"both this and [[design.policy]] {table.name}"
-            raise InputError(source.path, keys[table.name], "either a fixed value or a policy", found)
+            found = f"both this and [[design.allocation]] {table.name}"
+            raise InputError(source.path, keys[table.name], "either a fixed value or an allocation", found)
 
 
 def effort_weights(tables: ProblemFile) -> EffortWeights:
@@ -76,12 +76,14 @@ def _asked(tables: ProblemFile) -> Mapping[str, float]:
     """Every share that is asked for, by its key."""
     if tables.task.robot_share is not None:
         return {"task.robot_share": tables.task.robot_share}
-    allocations = [(i, table) for i, table in enumerate(tables.design.policy) if table.name == ROBOT_SHARE]
+    allocations = [
+        (i, table) for i, table in enumerate(tables.design.allocation) if table.name == ROBOT_SHARE
+    ]
     return {key: value for i, table in allocations for key, value in _ends(i, table)}
 
 
 def _ends(position: int, table: AllocationTable) -> tuple[tuple[str, float], ...]:
-    key = f"design.policy[{position}]"
+    key = f"design.allocation[{position}]"
     return (f"{key}.lower", table.lower), (f"{key}.upper", table.upper)
 
 

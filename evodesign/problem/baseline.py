@@ -16,11 +16,10 @@ from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
 from evodesign.posture.formulations.codesign import JointProblem, JointSolution
 from evodesign.posture.formulations.reach import Reach
-from evodesign.posture.results import HeightSolution
-from evodesign.posture.solution_derivative import known_instant
+from evodesign.posture.results import CaseSolution
 from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import detail_of, height_outcome, reach_of
+from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
 from evodesign.problem.materials import refuse_choices
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -39,7 +38,7 @@ def refuse_unsuited(problem: Problem) -> None:
     refuse_choices(problem.space, problem.source)
     if EFFORT_RATIO in problem.space.allocation_names:
         wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"
-        raise InputError(problem.source.path, "design.policy", wanted, f"'{EFFORT_RATIO}'")
+        raise InputError(problem.source.path, "design.allocation", wanted, f"'{EFFORT_RATIO}'")
     if len(problem.scenes) > 1:
         found = f"{len(problem.scenes)} pairs of a person and a load"
         wanted = "one person and one load in the joint problem"
@@ -62,39 +61,39 @@ class Baseline:
     def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
         refuse_unsuited(problem)
         self._problem = problem
-        self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
+        self._joint = JointProblem(problem.scene, problem.space, problem.tasks, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
         """The result of a start; named designs begin with standard postures, others with drawn ones."""
         return self._joint.solve(start, drawn=start not in self._problem.joint_start)
 
     def polish(self, result: DesignResult) -> JointSolution:
-        """The local optimum next to a design whose postures are known at every height.
+        """The local optimum next to a design whose postures are known in every case.
 
         Args:
-            result: of an evaluation; all its heights are solved.
+            result: of an evaluation; all its cases are solved.
         """
         genome = self._problem.space.genome(result.values)
-        return self._joint.polish(genome, [known_instant(height) for height in result.heights])
+        return self._joint.polish(genome, [solution.instants[0] for solution in result.cases])
 
     def assess(self, start: Genome) -> Assessed:
         """The results of the design in which a start ended, with its postures."""
         solution = self.solve(start)
         result = self.result(solution)
-        heights = tuple(detail_of(height, self._problem.scene) for height in result.heights if height.solved)
+        details = tuple(detail_of(case) for case in result.cases if case.solved)
         assessment = Assessment(
             design=dict(self._problem.space.named(solution.design)),
             objectives=objective_values(self._problem.objectives, result) if solution.solved else {},
             violation=0.0 if solution.solved else None,
             status=solution.attempt.status,
-            reason="solved" if solution.solved else solution.heights[0].reason,
+            reason="solved" if solution.solved else solution.cases[0].reason,
             reach=reach_of(result.reach),
-            heights=tuple(
-                height_outcome(replace(height, reason=_reason(height, violations)), self._problem.scene)
-                for height, violations in zip(result.heights, solution.violations, strict=True)
+            cases=tuple(
+                case_outcome(replace(case, reason=_reason(case, violations)))
+                for case, violations in zip(result.cases, solution.violations, strict=True)
             ),
         )
-        return Assessed(assessment=assessment, heights=heights)
+        return Assessed(assessment=assessment, cases=details)
 
     def result(self, solution: JointSolution) -> DesignResult:
         """A solution as the result of its design."""
@@ -105,26 +104,24 @@ class Baseline:
             values=solution.design,
             tree=problem.space.resized(problem.scene.robot.tree, solution.design),
             reach=_reach(solution),
-            heights=solution.heights,
+            cases=solution.cases,
             paper=problem.joint,
         )
 
 
 def _reach(solution: JointSolution) -> Reach:
     """The heights that a solution holds; beyond them nothing was tried."""
-    heights = [height.height for height in solution.heights]
+    heights = [case.case.task.height_m for case in solution.cases]
     if not solution.solved:
         return Reach(None, None, solution.attempt.status, solution.attempt.reason)
     reason = f"holds loads at {', '.join(f'{height:g}' for height in heights)} m; no others were tried"
     return Reach(min(heights), max(heights), Status.SOLVED, reason)
 
 
-def _reason(height: HeightSolution, violations: Sequence[Residual]) -> str:
-    """A solved height's reason, with every limit that is not enforced and does not hold."""
+def _reason(case: CaseSolution, violations: Sequence[Residual]) -> str:
+    """A solved case's reason, with every limit that is not enforced and does not hold."""
     beyond = [f"{r.name} by {r.size:.3g}" for r in violations if r.size > TOLERANCE]
-    return (
-        f"{height.reason}; limits not enforced and exceeded: {', '.join(beyond)}" if beyond else height.reason
-    )
+    return f"{case.reason}; limits not enforced and exceeded: {', '.join(beyond)}" if beyond else case.reason
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ import msgspec
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
-from evodesign.mechanics.scene import Scene, StanceLimits
+from evodesign.mechanics.scene import Scene, StanceLimits, scene_of
 from evodesign.nlp.solver import IpoptOptions
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import EffortWeights
@@ -29,7 +29,7 @@ from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
 from evodesign.problem.torque_limits import refuse_unlimited
-from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
+from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, SearchSettings, Sense, Task
 from evodesign.search.base import JOINT_STARTS
 from evodesign.tree.model import Tree
 
@@ -40,20 +40,20 @@ GIGABYTE = 10**9
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """A robot, a person, a load, the heights, and the hardware that may change.
+    """A robot, people, loads, tasks, and the hardware that may change.
 
     Args:
         name: of the problem.
         source: its files, from which any worker builds it again.
         scenes: every person with every load, the robot, ground and stance; all loads of a person in a row.
         space: design parameters.
-        heights: required load heights [m].
+        tasks: what everyone does with every load.
         weights: of the agents' efforts in the posture problem.
         objectives: in the file's order, minimised ones first.
         options: of the inner solver.
         limits: of one evaluation.
         symmetry: which postures are looked for.
-        seeds: whether solves begin at the problem's start portfolios.
+        start_portfolio: whether solves begin at the problem's start portfolio.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
         joint: the paper's joint problem.
@@ -64,13 +64,13 @@ class Problem:
     source: ProblemSource
     scenes: tuple[Scene, ...]
     space: DesignSpace
-    heights: tuple[float, ...]
+    tasks: tuple[Task, ...]
     weights: EffortWeights
     objectives: tuple[Objective, ...]
     options: IpoptOptions
     limits: Limits
     symmetry: Symmetry
-    seeds: bool
+    start_portfolio: bool
     search: SearchTable
     start: tuple[Genome, ...]
     joint: JointSettings
@@ -84,13 +84,22 @@ class Problem:
     @property
     def person_reaches(self) -> bool:
         """Whether the people's own reach counts: it is an objective, or there are several of them."""
-        several = len({id(scene.human) for scene in self.scenes}) > 1
+        several = len({scene.human.label for scene in self.scenes}) > 1
         return several or any(objective.name == SHARED_REACH for objective in self.objectives)
 
     @property
-    def middle(self) -> int:
+    def middle(self) -> Scene:
         """The scene in the middle of the list, which stands for all where one must do."""
-        return len(self.scenes) // 2
+        return self.scenes[len(self.scenes) // 2]
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """Every undisturbed case: all tasks of a person with a load in a row."""
+        return tuple(scene.case(task) for scene in self.scenes for task in self.tasks)
+
+    def scene_of(self, case: Case) -> Scene:
+        """The scene of a case."""
+        return scene_of(self.scenes, case.pair)
 
     def settings(
         self, algorithm: str, population: int, seed: int, asynchronous: bool = False
@@ -143,7 +152,7 @@ def build_problem(source: ProblemSource) -> Problem:
         source=source,
         scenes=scenes,
         space=space,
-        heights=_heights(tables, source),
+        tasks=_tasks(tables, source),
         weights=weights,
         objectives=_objectives(tables, source, scenes),
         options=IpoptOptions(
@@ -151,7 +160,7 @@ def build_problem(source: ProblemSource) -> Problem:
         ),
         limits=_limits(tables),
         symmetry=symmetry,
-        seeds=tables.solver.seeds,
+        start_portfolio=tables.solver.start_portfolio,
         search=tables.search,
         start=tuple(start.values()),
         joint=joint_settings(tables, source, space, weights),
@@ -204,14 +213,14 @@ def _limits(tables: ProblemFile) -> Limits:
     return Limits(seconds=solver.evaluation_seconds, memory=int(solver.evaluation_memory_gb * GIGABYTE))
 
 
-def _heights(tables: ProblemFile, source: ProblemSource) -> tuple[float, ...]:
+def _tasks(tables: ProblemFile, source: ProblemSource) -> tuple[Task, ...]:
     heights = tables.task.heights_m
     for position, height in enumerate(heights):
         if height in heights[:position]:
             raise InputError(
                 source.path, f"task.heights_m[{position}]", "each height once", f"{height:g} twice"
             )
-    return heights
+    return tuple(Hold(height_m=height) for height in heights)
 
 
 def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpace:
@@ -220,10 +229,11 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
     ]
     parameters += density_parameters(tables, source)
     parameters += [
-        DesignParameter(ParameterKind.POLICY, t.name, (), t.lower, t.upper) for t in tables.design.policy
+        DesignParameter(ParameterKind.ALLOCATION, t.name, (), t.lower, t.upper)
+        for t in tables.design.allocation
     ]
     if not parameters:
-        raise InputError(source.path, "design", "a length, density or policy parameter", "none")
+        raise InputError(source.path, "design", "a length, density or allocation parameter", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
     for parameter in parameters:

@@ -14,6 +14,9 @@ from evodesign.errors import InputError, nearest_name
 
 __all__ = ["decode_toml"]
 
+RENAMED = {"policy": "allocation", "seeds": "start_portfolio"}
+"""Keys of earlier versions, and what they are called now."""
+
 DEEPEST = 16
 """Tables and arrays inside each other; a problem has four."""
 
@@ -71,7 +74,8 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
     for key, value in raw.items():
         path = f"{prefix}.{key}" if prefix else key
         if key not in fields:
-            hint = nearest_name(key, fields)
+            now = RENAMED.get(key)
+            hint = f"; it is called '{now}' now" if now in fields else nearest_name(key, fields)
             raise InputError(source, path, f"one of the keys {', '.join(fields)}", f"'{key}'{hint}")
         _refuse_unknown_keys(value, fields[key].type, source, path)
 

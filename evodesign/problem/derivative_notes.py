@@ -12,7 +12,7 @@ import numpy as np
 
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.records import Status
@@ -27,12 +27,11 @@ DISTINCT = 1e-5
 
 
 def posture_notes(
-    problem: Problem, height: HeightSolution, derivative: PostureDerivative | NotDifferentiable
+    problem: Problem, solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable
 ) -> Iterator[str]:
-    """What is to be said of the posture at one height that was solved."""
-    label = problem.scenes[height.scene].label
-    place = f"at {height.height:g} m" + (f", {label}" if label else "")
-    yield f"{place}: {_winner(height, derivative)}"
+    """What is to be said of the posture in one case that was solved."""
+    place = ", ".join(part for part in (f"at {solution.case.task}", solution.case.label) if part)
+    yield f"{place}: {_winner(solution, derivative)}"
     if isinstance(derivative, NotDifferentiable):
         yield f"{place}: no gradient, for {derivative.reason}"
     else:
@@ -56,13 +55,13 @@ def reach_notes(
     yield from _near(problem, place, derivative.limits)
 
 
-def _winner(height: HeightSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
+def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
     """Which start won, and how far behind the next best optimum of the same program is."""
-    best = height.attempt
+    best = solution.attempt
     won = f"{best.name if best else 'no start'} won"
     if best is None or isinstance(derivative, NotDifferentiable):
         return won
-    others = [a for a in height.attempts if a.formulation == best.formulation and a.start != best.start]
+    others = [a for a in solution.attempts if a.formulation == best.formulation and a.start != best.start]
     behind = [a.cost / derivative.compared - 1.0 for a in others if a.status is Status.SOLVED]
     distinct = [share for share in behind if share > DISTINCT]
     if not others:

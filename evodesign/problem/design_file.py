@@ -21,7 +21,7 @@ class DesignEntry(Table, frozen=True):
     name: Name
     length: dict[str, Positive] = msgspec.field(default_factory=dict)
     density_kg_per_m3: dict[str, Positive] = msgspec.field(default_factory=dict)
-    policy: dict[str, float] = msgspec.field(default_factory=dict)
+    allocation: dict[str, float] = msgspec.field(default_factory=dict)
     material: dict[str, Name] = msgspec.field(default_factory=dict)
 
 

@@ -20,7 +20,7 @@ __all__ = ["designs_text", "read_designs", "start_genomes"]
 TABLES = {
     ParameterKind.LENGTH: "length",
     ParameterKind.DENSITY: "density_kg_per_m3",
-    ParameterKind.POLICY: "policy",
+    ParameterKind.ALLOCATION: "allocation",
 }
 """A design's table for each kind of parameter."""
 
@@ -54,8 +54,8 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
             if name not in known:
                 groups = [other.split(".", 1)[1] for other in known if other.startswith(f"{kind}.")]
                 found = f"'{group}'{nearest_name(group, groups)}"
-                raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
-            if kind is ParameterKind.POLICY and not ALLOCATIONS[group].means(value):
+                raise InputError(source, f"{key}.{table}", f"one of the problem's {kind} parameters", found)
+            if kind is ParameterKind.ALLOCATION and not ALLOCATIONS[group].means(value):
                 raise InputError(source, f"{key}.{table}.{group}", ALLOCATIONS[group].wanted, f"{value:g}")
             refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value

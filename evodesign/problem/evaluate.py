@@ -1,4 +1,4 @@
-"""The evaluation of one design: reach first, then a posture per height, then the objectives.
+"""The evaluation of one design: reach first, then the postures of every case, then the objectives.
 
 An evaluation depends on problem and design alone: no state is carried from one to the next.
 """
@@ -6,9 +6,9 @@ An evaluation depends on problem and design alone: no state is carried from one 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.solver_cache import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
@@ -17,7 +17,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import Reach, ReachProblem, common_reach
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.results import AgentPosture, Array, HeightSolution, Neighbour
+from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -25,9 +25,11 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
+    Case,
+    CaseDetail,
+    CaseOutcome,
     Genome,
-    HeightDetail,
-    HeightOutcome,
+    InstantDetail,
     LoadCaseDetail,
     ProblemSource,
     ReachOutcome,
@@ -35,7 +37,7 @@ from evodesign.records import (
     worst_status,
 )
 
-__all__ = ["AssessmentFactory", "Evaluator", "detail_of", "height_outcome", "reach_of"]
+__all__ = ["AssessmentFactory", "Evaluator", "case_outcome", "detail_of", "reach_of"]
 
 
 class Evaluator:
@@ -51,58 +53,50 @@ class Evaluator:
         self.known = known
         space, options, symmetry = problem.space, problem.options, problem.symmetry
         solvers = SolverCache()
-        self._postures = [
-            PostureProblem(
-                Setting(scene, space, problem.weights, options), symmetry, known.of_scene(number), solvers
-            )
-            for number, scene in enumerate(problem.scenes)
-        ]
+        settings = [Setting(scene, space, problem.weights, options) for scene in problem.scenes]
+        self._postures = {
+            setting.scene.pair: PostureProblem(setting, symmetry, known, solvers) for setting in settings
+        }
         symmetric = symmetry is not Symmetry.OFF
         self._reaches = {
-            id(scene.payload): ReachProblem(
-                Setting(scene, space, problem.weights, options),
-                symmetric=symmetric,
-                known=known,
-                solvers=solvers,
+            setting.scene.payload.label: ReachProblem(
+                setting, symmetric=symmetric, known=known, solvers=solvers
             )
-            for scene in problem.scenes
+            for setting in settings
         }
-        self._people = {id(s.human): AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
+        self._people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
         problem = self.problem
         tree = problem.space.resized(problem.scene.robot.tree, values)
-        scenes = [shared_scene(scene, problem.space, values) for scene in problem.scenes]
-        check = Checker(problem.scene, tree, self._people[id(problem.scene.human)])
+        check = Checker(problem.scene, tree, self._people[problem.scene.human.label])
         reach = common_reach([reach.solve(values) for reach in self._reaches.values()])
-        heights: list[HeightSolution] = []
-        for number, scene in enumerate(scenes):
-            checker = check.elsewhere(scene, self._people[id(scene.human)])
-            for height in problem.heights:
-                found = self._at_height(values, number, height, reach, checker, heights)
-                heights.append(replace(found, scene=number))
+        cases: list[CaseSolution] = []
+        for case in problem.cases:
+            scene = shared_scene(problem.scene_of(case), problem.space, values)
+            checker = check.elsewhere(scene, self._people[case.person])
+            cases.append(self._in_case(values, case, reach, checker, cases))
         return DesignResult(
             scenes=problem.scenes,
             space=problem.space,
             values=tuple(values),
             tree=tree,
             reach=reach,
-            heights=tuple(heights),
+            cases=tuple(cases),
             paper=problem.joint,
-            people_highest=min((stretch.highest for stretch in self.known.person_reaches), default=None),
+            people_highest=min(
+                (person.highest for person in self.known.person_reaches.values()), default=None
+            ),
         )
 
-    def _scene(self, height: HeightSolution) -> Scene:
-        return self.problem.scenes[height.scene]
-
-    def _neighbour(self, before: Sequence[HeightSolution], number: int, height: float) -> Neighbour | None:
-        """The most similar case at a height [m] of those solved before: of the same load if there is one."""
-        scene, best = self.problem.scenes[number], None
+    def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
+        """The most similar case of the same task that was solved before: of the same load if there is one."""
+        joints, best = self.problem.scene_of(case).human.joints, None
         for solution in before:
-            other = self._scene(solution)
-            if solution.solved and solution.height == height and other.human.joints == scene.human.joints:
-                same_load = other.payload is scene.payload
+            other = self.problem.scene_of(solution.case)
+            if solution.solved and solution.case.task == case.task and other.human.joints == joints:
+                same_load = solution.case.payload == case.payload
                 if best is None or same_load >= best.same_load:
                     best = Neighbour(solution, same_load)
         return best
@@ -114,50 +108,48 @@ class Evaluator:
     def assess_values(self, values: Sequence[float]) -> Assessed:
         """The results of a design given as one number per parameter, with its postures."""
         result = self.solve(values)
-        heights = tuple(detail_of(height, self._scene(height)) for height in result.heights if height.solved)
-        return Assessed(assessment=self.assessment(values, result), heights=heights)
+        details = tuple(detail_of(solution) for solution in result.cases if solution.solved)
+        return Assessed(assessment=self.assessment(values, result), cases=details)
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
-        heights = tuple(height_outcome(height, self._scene(height)) for height in result.heights)
-        failed = [height for height in result.heights if not height.solved]
+        failed = [solution for solution in result.cases if not solution.solved]
         return Assessment(
             design=dict(self.problem.space.named(values)),
             objectives=objective_values(self.problem.objectives, result),
             violation=_violation(result),
-            status=worst_status([result.reach.status, *(height.status for height in result.heights)]),
+            status=worst_status([result.reach.status, *(solution.status for solution in result.cases)]),
             reason=failed[0].reason if failed else "solved",
             reach=reach_of(result.reach),
-            heights=heights,
+            cases=tuple(map(case_outcome, result.cases)),
         )
 
-    def _at_height(
+    def _in_case(
         self,
         values: Sequence[float],
-        scene: int,
-        height: float,
+        case: Case,
         reach: Reach,
         checker: Checker,
-        before: Sequence[HeightSolution],
-    ) -> HeightSolution:
-        distance = reach.distance(height)
+        before: Sequence[CaseSolution],
+    ) -> CaseSolution:
+        distance = reach.distance(case.task.height_m)
         if distance is None:
-            return HeightSolution(height, reach.status, reach.reason, {}, {}, ())
+            return CaseSolution(case, reach.status, reach.reason)
         if distance > 0.0:
-            reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, ())
-        neighbour = self._neighbour(before, scene, height)
-        return self._postures[scene].solve(values, height, checker, neighbour)
+            reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
+            return CaseSolution(case, Status.INFEASIBLE, reason)
+        neighbour = self._neighbour(before, case)
+        return self._postures[case.pair].solve(values, case.task, checker, neighbour)
 
 
 def _violation(result: DesignResult) -> float | None:
-    """Sum over heights of the distance to the reachable interval [m]; None when a failure hides it."""
+    """Sum over tasks of the distance to the reachable interval [m]; None when a failure hides it."""
     total = 0.0
-    for height in result.heights:
-        distance = result.reach.distance(height.height)
-        if distance is None or (distance == 0.0 and not height.solved):
+    for solution in result.cases:
+        distance = result.reach.distance(solution.case.task.height_m)
+        if distance is None or (distance == 0.0 and not solution.solved):
             return None
-        total += distance if height.scene == 0 else 0.0  # the interval is the same in every scene
+        total += distance if solution.case.pair == result.scenes[0].pair else 0.0  # the same for everyone
     return total
 
 
@@ -168,27 +160,29 @@ def reach_of(reach: Reach) -> ReachOutcome:
     )
 
 
-def height_outcome(height: HeightSolution, scene: Scene) -> HeightOutcome:
-    """A height in short, as it is logged."""
-    return HeightOutcome(
-        height_m=height.height,
-        status=height.status,
-        reason=height.reason,
-        robot_torque_norm=height.postures[ROBOT].torque_norm if height.solved else None,
-        human_torque_norm=height.postures[HUMAN].torque_norm if height.solved else None,
-        iterations=sum(attempt.iterations for attempt in height.attempts),
-        residual=max(height.residuals.values()) if height.solved else None,
-        human_name=scene.human.label,
-        payload_name=scene.payload.label,
+def case_outcome(solution: CaseSolution) -> CaseOutcome:
+    """A case in short, as it is logged."""
+    return CaseOutcome(
+        case=solution.case,
+        status=solution.status,
+        reason=solution.reason,
+        robot_torque_norm=solution.postures[ROBOT].torque_norm if solution.solved else None,
+        human_torque_norm=solution.postures[HUMAN].torque_norm if solution.solved else None,
+        iterations=sum(attempt.iterations for attempt in solution.attempts),
+        residual=max(solution.residuals.values()) if solution.solved else None,
         disturbed={
             disturbance: {name: posture.torque_norm for name, posture in postures.items()}
-            for disturbance, postures in height.disturbed.items()
+            for disturbance, postures in (solution.disturbed if solution.solved else {}).items()
         },
     )
 
 
-def detail_of(height: HeightSolution, scene: Scene) -> HeightDetail:
-    """The postures at a height, as they are logged."""
+def detail_of(solution: CaseSolution) -> CaseDetail:
+    """The postures of a case, as they are logged."""
+    return CaseDetail(case=solution.case, instants=tuple(map(_instant_detail, solution.instants)))
+
+
+def _instant_detail(instant: Instant) -> InstantDetail:
     agents = {
         name: AgentDetail(
             base_position_m=tuple(posture.base_position.tolist()),
@@ -198,19 +192,13 @@ def detail_of(height: HeightSolution, scene: Scene) -> HeightDetail:
             hand_wrenches=_numbers(posture.hand_wrenches),
             foot_wrenches=_numbers(posture.foot_wrenches),
         )
-        for name, posture in height.postures.items()
+        for name, posture in instant.postures.items()
     }
     disturbed = {
         disturbance: {name: _borne(posture) for name, posture in postures.items()}
-        for disturbance, postures in height.disturbed.items()
+        for disturbance, postures in instant.disturbed.items()
     }
-    return HeightDetail(
-        height_m=height.height,
-        agents=agents,
-        human_name=scene.human.label,
-        payload_name=scene.payload.label,
-        disturbed=disturbed,
-    )
+    return InstantDetail(time_s=instant.time, agents=agents, disturbed=disturbed)
 
 
 def _borne(posture: AgentPosture) -> LoadCaseDetail:

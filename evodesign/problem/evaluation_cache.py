@@ -109,7 +109,7 @@ def _kept(cache: Cache, key: str, assessed: Assessed) -> Assessed:
 
 def _lasts(assessed: Assessed) -> bool:
     assessment = assessed.assessment
-    parts = (*assessment.heights, *((assessment.reach,) if assessment.reach else ()))
+    parts = (*assessment.cases, *((assessment.reach,) if assessment.reach else ()))
     return PASSING.isdisjoint({assessment.status, *(part.status for part in parts)})
 
 

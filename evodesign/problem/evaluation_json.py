@@ -8,10 +8,11 @@ origin and in the sole frame.
 `ergonomics` says what a posture asks of the person: `effort` is the share of its strength that the hardest
 joint needs, in the direction of `movement`; the rest is the revised NIOSH lifting equation (docs/people.md).
 
-Where a problem has several people or loads, `heights` has an entry for each case, with its `human_name` and
-`payload_name`.
+`cases` has an entry for each undisturbed case: the names of `person` and `payload`, empty where the problem
+has one, the `task`, and what came of it. `heights` tells the same of every load held still by its `height_m`
+and, where the problem has several people or loads, its `human_name` and `payload_name`.
 
-Where the problem has disturbances, a solved height's `disturbed` holds, by their names, torques and wrenches
+Where the problem has disturbances, a solved case's `disturbed` holds, by their names, torques and wrenches
 of the same posture under each. Residuals of such a case carry its name.
 
 `materials` names the material of each density that is one's; a problem without materials has no such key.
@@ -21,7 +22,7 @@ of the same posture under each. Residuals of such a case carry its name.
     {objective: {"gradient": {parameter: value} or null, "notes": [sentences]}}
 
 in the objective's unit per unit of the parameter (a length multiplier has none, a density is in kg/m^3). The
-gradient is that of the optimum that won; the sentences say which start won at each height and how far behind
+gradient is that of the optimum that won; the sentences say which start won in each case and how far behind
 the next best optimum is, which limit of a posture a small change of one parameter reaches or leaves, and,
 where the gradient is null, why there is none.
 """
@@ -31,14 +32,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from evodesign.mechanics.scene import HUMAN, SIDES, Scene
-from evodesign.posture.results import AgentPosture, HeightSolution
+import msgspec
+
+from evodesign.mechanics.scene import HUMAN, SIDES
+from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
-from evodesign.records import Assessment, materials_of
+from evodesign.records import Assessment, Case, hold_names, materials_of
 
 __all__ = ["evaluation_json"]
 
@@ -53,6 +56,7 @@ def evaluation_json(
     """The JSON object of one design."""
     design = dict(problem.space.named(values))
     materials = materials_of(problem.space.records, design)
+    shown = [_shown(solution, result) for solution in result.cases]
     return {
         "problem": problem.name,
         "design": design,
@@ -67,7 +71,8 @@ def evaluation_json(
             "status": str(result.reach.status),
             "reason": result.reach.reason,
         },
-        "heights": [_height(height, result.scenes[height.scene]) for height in result.heights],
+        "cases": [_case(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
+        "heights": [hold_names(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
         "sensitivities": {
             name: {"gradient": found.gradient, "notes": list(found.notes)}
             for name, found in sensitivities.items()
@@ -75,24 +80,26 @@ def evaluation_json(
     }
 
 
-def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
-    labels = {"human_name": scene.human.label, "payload_name": scene.payload.label}
+def _case(case: Case) -> dict[str, Any]:
+    return {"person": case.person, "payload": case.payload, "task": msgspec.to_builtins(case.task)}
+
+
+def _shown(solution: CaseSolution, result: DesignResult) -> dict[str, Any]:
+    """All of a case but its name."""
     shown: dict[str, Any] = {
-        "height_m": height.height,
-        **{name: label for name, label in labels.items() if label},
-        "status": str(height.status),
-        "reason": height.reason,
-        "start": height.attempt.name if height.attempt else "",
-        "solver": _solver(height),
+        "status": str(solution.status),
+        "reason": solution.reason,
+        "start": solution.attempt.name if solution.attempt else "",
+        "solver": _solver(solution),
     }
-    if height.solved:
-        shown.update({name: _agent(posture) for name, posture in height.postures.items()})
-        shown["wrenches"] = _contacts(height.postures)
-        if height.disturbed:
-            shown["disturbed"] = {name: _borne(postures) for name, postures in height.disturbed.items()}
-        shown["residuals"] = dict(height.residuals)
-        posture = detail_of(height, scene).agents[HUMAN]
-        shown["ergonomics"] = ergonomics_json(ergonomics(scene.human, posture))
+    if solution.solved:
+        shown.update({name: _agent(posture) for name, posture in solution.postures.items()})
+        shown["wrenches"] = _contacts(solution.postures)
+        if solution.disturbed:
+            shown["disturbed"] = {name: _borne(postures) for name, postures in solution.disturbed.items()}
+        shown["residuals"] = dict(solution.residuals)
+        person, posture = result.scene_of(solution.case).human, detail_of(solution).agents[HUMAN]
+        shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
     return shown
 
 
@@ -131,10 +138,10 @@ def _wrenches(posture: AgentPosture) -> dict[str, list[float]]:
     return {**hands, **feet}
 
 
-def _solver(height: HeightSolution) -> dict[str, Any]:
+def _solver(solution: CaseSolution) -> dict[str, Any]:
     return {
-        "iterations": sum(attempt.iterations for attempt in height.attempts),
-        "seconds": sum(attempt.seconds for attempt in height.attempts),
+        "iterations": sum(attempt.iterations for attempt in solution.attempts),
+        "seconds": sum(attempt.seconds for attempt in solution.attempts),
         "attempts": [
             {
                 "start": attempt.name,
@@ -144,6 +151,6 @@ def _solver(height: HeightSolution) -> dict[str, Any]:
                 "seconds": attempt.seconds,
                 "cost": attempt.cost,
             }
-            for attempt in height.attempts
+            for attempt in solution.attempts
         ],
     }

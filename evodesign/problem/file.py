@@ -203,7 +203,7 @@ class MaterialTable(Table, frozen=True):
 
 
 class AllocationTable(Table, frozen=True):
-    """`[[design.policy]]`: how a design shares the load; see `design.policy` for the names."""
+    """`[[design.allocation]]`: how a design shares the load; see `design.allocation` for the names."""
 
     name: Name
     lower: float
@@ -215,7 +215,7 @@ class DesignTable(Table, frozen=True):
 
     length: tuple[LengthTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
-    policy: tuple[AllocationTable, ...] = ()
+    allocation: tuple[AllocationTable, ...] = ()
 
 
 class ObjectivesTable(Table, frozen=True):
@@ -242,7 +242,7 @@ class SolverTable(Table, frozen=True):
     """`[solver]`: how the inner problems are solved; limits of a solve and of a whole evaluation."""
 
     symmetry: Symmetry = Symmetry.ON
-    seeds: bool = True
+    start_portfolio: bool = True
     compile: bool = True
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0

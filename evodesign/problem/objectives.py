@@ -1,7 +1,7 @@
 """Objectives: pure functions of a design's results.
 
 Adding one is a function here and a line in `QUANTITIES`, for a value of every case (a person with a load at
-a height, undisturbed or not), or in `WHOLE`, for one of the design; the problem file then knows its name.
+a task, undisturbed or not), or in `WHOLE`, for one of the design; the problem file then knows its name.
 What does not exist (no posture, no reach) is absent, never large.
 """
 
@@ -23,7 +23,6 @@ from evodesign.problem.aggregate import (
     CaseQuantity,
     ObjectiveKind,
     aggregate,
-    undisturbed,
     values_over_cases,
 )
 from evodesign.problem.result import DesignResult
@@ -85,9 +84,8 @@ def com_height(result: DesignResult) -> float:
 
 
 def paper_cost(result: DesignResult) -> float | None:
-    """W1 t1 + W3 t3 of all heights + W2 t2 + W4 t4 [(10 N m)^2], the paper's scalar cost (Eq. 14)."""
-    result = undisturbed(result)
-    robot, human = values_over_cases(robot_torque, result), values_over_cases(human_torque, result)
+    """W1 t1 + W3 t3 of all undisturbed cases + W2 t2 + W4 t4 [(10 N m)^2], the paper's cost (Eq. 14)."""
+    robot, human = (values_over_cases(t1, result, disturbed=False) for t1 in (robot_torque, human_torque))
     if robot is None or human is None:
         return None
     efforts, tasks = result.paper.efforts, result.paper.tasks
@@ -95,7 +93,7 @@ def paper_cost(result: DesignResult) -> float | None:
     cost = tasks.weights.torque * strain.sum() / TORQUE_UNIT**2
     cost += tasks.of_design(result.space, result.values, result.robot, result.tree)
     if tasks.weights.center_of_pressure:
-        feet = [posture.foot_wrenches for height in result.heights for posture in height.postures.values()]
+        feet = [posture.foot_wrenches for case in result.cases for posture in case.postures.values()]
         cost += tasks.weights.center_of_pressure * sum(pressure_task(wrenches) for wrenches in feet)
     return float(cost)
 

@@ -17,16 +17,14 @@ from evodesign.posture.check import TOLERANCE
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem
-from evodesign.records import Genome
+from evodesign.records import Genome, Task
 
 __all__ = ["broken_limits", "held_at", "torque_difference"]
 
 
-def held_at(problem: Problem, genome: Genome, heights: Sequence[float]) -> JointSolution:
-    """The joint problem with the design held at a genome, over some heights [m], from the standard start."""
-    return Baseline(replace(problem, heights=tuple(heights), joint_start=(genome,)), fixed=genome).solve(
-        genome
-    )
+def held_at(problem: Problem, genome: Genome, tasks: Sequence[Task]) -> JointSolution:
+    """The joint problem with the design held at a genome, over some tasks, from the standard start."""
+    return Baseline(replace(problem, tasks=tuple(tasks), joint_start=(genome,)), fixed=genome).solve(genome)
 
 
 def torque_difference(problem: Problem, solution: JointSolution) -> float:
@@ -34,12 +32,12 @@ def torque_difference(problem: Problem, solution: JointSolution) -> float:
     tree = problem.space.resized(problem.scene.robot.tree, solution.design)
     model = CoupledModel(problem.scene, tree)
     worst = 0.0
-    for height in solution.heights:
+    for case in solution.cases:
         places = {
-            n: Configuration(p.base_position, p.base_angles, p.joints) for n, p in height.postures.items()
+            n: Configuration(p.base_position, p.base_angles, p.joints) for n, p in case.postures.items()
         }
-        system = model.at({**places, PAYLOAD: level_load(height.height)})
-        torques = [height.postures[agent].torques[joint] for agent, joint in system.joints]
+        system = model.at({**places, PAYLOAD: level_load(case.case.task.height_m)})
+        torques = [case.postures[agent].torques[joint] for agent, joint in system.joints]
         worst = max(worst, float(np.abs(projected_torques(system) - torques).max()))
     return worst
 

@@ -36,9 +36,8 @@ class PrecomputeProgress(Protocol):
 
 def precompute_setting(problem: Problem) -> PrecomputeSetting:
     """What a problem's pieces follow from."""
-    scenes, middle = problem.scenes, problem.middle
     return PrecomputeSetting(
-        scenes, middle, problem.space, problem.weights, problem.options, problem.symmetry
+        problem.scenes, problem.middle, problem.space, problem.weights, problem.options, problem.symmetry
     )
 
 
@@ -57,8 +56,8 @@ def precomputed(
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = precompute_setting(problem), Precomputed()
-    heights, people = problem.heights, problem.person_reaches
-    for stage in stages(setting, heights, portfolios=problem.seeds, person_reaches=people):
+    tasks, portfolios, people = problem.tasks, problem.start_portfolio, problem.person_reaches
+    for stage in stages(setting, tasks, portfolios=portfolios, person_reaches=people):
         missing = []
         for piece in stage:
             content = cache.read(key_of(setting, piece)) if cache else None
@@ -83,19 +82,18 @@ def refuse_heights(problem: Problem, known: Precomputed) -> None:
     Raises:
         InputError: naming the height and the person; or a person who cannot hold a load at any height.
     """
-    held = {stretch.scene for stretch in known.person_reaches}
-    for number, scene in enumerate(problem.scenes):
-        if problem.person_reaches and number not in held:
-            who = scene.label or "the person"
-            raise InputError(
-                problem.source.path, "human", "people who can hold every load", f"{who}, at no height"
-            )
-    for stretch in known.person_reaches:
-        for position, height in enumerate(problem.heights):
-            if not stretch.lowest <= height <= stretch.highest:
-                who = problem.scenes[stretch.scene].label or "the person"
-                wanted = f"a height that {who} can hold, from {stretch.lowest:.3f} to {stretch.highest:.3f} m"
-                raise InputError(problem.source.path, f"task.heights_m[{position}]", wanted, f"{height:g}")
+    for scene in problem.scenes:
+        who, reach = scene.label or "the person", known.person_reaches.get(scene.pair)
+        if reach is None:
+            if problem.person_reaches:
+                wanted = "people who can hold every load"
+                raise InputError(problem.source.path, "human", wanted, f"{who}, at no height")
+            continue
+        for position, task in enumerate(problem.tasks):
+            if not reach.lowest <= task.height_m <= reach.highest:
+                wanted = f"a height that {who} can hold, from {reach.lowest:.3f} to {reach.highest:.3f} m"
+                found = f"{task.height_m:g}"
+                raise InputError(problem.source.path, f"task.heights_m[{position}]", wanted, found)
 
 
 def _worked_out(

@@ -9,8 +9,8 @@ exact tangent, by five-point differences,
 which for formulas of a few operations agree with the exact derivative to about 1e-9. So an objective needs
 nothing beyond its function to have a gradient.
 
-What an objective depends on shows when it is taken away: an objective that does not exist without a height's
-posture gets that height's notes.
+What an objective depends on shows when it is taken away: an objective that does not exist without a case's
+posture gets that case's notes.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.derivative_notes import posture_notes, reach_notes
@@ -63,14 +63,14 @@ class DesignDerivative:
         problem: whose design it is.
         values: of the design, one number per parameter.
         result: what was computed of it.
-        heights: one tangent per required height; a reason where there is none.
+        cases: one derivative per case; a reason where there is none.
         highest, lowest: tangents of the reach.
     """
 
     problem: Problem
     values: tuple[float, ...]
     result: DesignResult
-    heights: tuple[PostureDerivative | NotDifferentiable, ...]
+    cases: tuple[PostureDerivative | NotDifferentiable, ...]
     highest: ReachDerivative | NotDifferentiable
     lowest: ReachDerivative | NotDifferentiable
 
@@ -78,11 +78,11 @@ class DesignDerivative:
         """To first order, the results of a design that differs by a step; what has no tangent is left out."""
         tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
-        heights = tuple(
-            _moved(height, derivative, step)
-            for height, derivative in zip(self.result.heights, self.heights, strict=True)
+        cases = tuple(
+            _moved(solution, derivative, step)
+            for solution, derivative in zip(self.result.cases, self.cases, strict=True)
         )
-        return replace(self.result, tree=tree, reach=reach, heights=heights)
+        return replace(self.result, tree=tree, reach=reach, cases=cases)
 
     def sensitivities(self) -> dict[str, ObjectiveSensitivity]:
         """How each of the problem's objectives moves that exists for the design."""
@@ -119,10 +119,10 @@ class DesignDerivative:
         """Sentences on every part of the results that an objective depends on."""
         value, result = partial(objective_value, name), self.result
         said: list[str] = []
-        for position, (height, derivative) in enumerate(zip(result.heights, self.heights, strict=True)):
-            others = [_without(h) if i == position else h for i, h in enumerate(result.heights)]
-            if height.solved and value(replace(result, heights=tuple(others))) is None:
-                said += posture_notes(self.problem, height, derivative)
+        for solution, derivative in zip(result.cases, self.cases, strict=True):
+            others = [_without(each) if each.case == solution.case else each for each in result.cases]
+            if solution.solved and value(replace(result, cases=tuple(others))) is None:
+                said += posture_notes(self.problem, solution, derivative)
         if value(replace(result, reach=replace(result.reach, highest=None))) is None:
             said += reach_notes(self.problem, "highest", self.highest)
         if value(replace(result, reach=replace(result.reach, lowest=None))) is None:
@@ -136,19 +136,19 @@ class Sensitivities:
     def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self._problem = problem
         symmetric = problem.symmetry is not Symmetry.OFF
-        loads = {id(scene.payload): number for number, scene in enumerate(problem.scenes)}
-        solvers = SolverCache()
         settings = [
             Setting(scene, problem.space, problem.weights, problem.options) for scene in problem.scenes
         ]
+        loads = {setting.scene.payload.label: setting for setting in settings}
+        solvers = SolverCache()
         self._reaches = [
-            ReachProblem(settings[number], symmetric=symmetric, known=known, solvers=solvers)
-            for number in loads.values()
+            ReachProblem(setting, symmetric=symmetric, known=known, solvers=solvers)
+            for setting in loads.values()
         ]
-        self._postures = [
-            PostureProblem(setting, problem.symmetry, known.of_scene(number), solvers)
-            for number, setting in enumerate(settings)
-        ]
+        self._postures = {
+            setting.scene.pair: PostureProblem(setting, problem.symmetry, known, solvers)
+            for setting in settings
+        }
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
@@ -156,8 +156,8 @@ class Sensitivities:
             problem=self._problem,
             values=tuple(values),
             result=result,
-            heights=tuple(
-                self._postures[height.scene].derivative(values, height) for height in result.heights
+            cases=tuple(
+                self._postures[solution.case.pair].derivative(values, solution) for solution in result.cases
             ),
             highest=self._end(values, HIGHEST),
             lowest=self._end(values, LOWEST),
@@ -180,17 +180,16 @@ def _end(derivative: ReachDerivative | NotDifferentiable, step: Array) -> float 
 
 
 def _moved(
-    height: HeightSolution, derivative: PostureDerivative | NotDifferentiable, step: Array
-) -> HeightSolution:
+    solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable, step: Array
+) -> CaseSolution:
     if isinstance(derivative, NotDifferentiable):
-        return _without(height)
-    instant = derivative.moved(step)
-    return replace(height, postures=instant.postures, disturbed=instant.disturbed)
+        return _without(solution)
+    return replace(solution, instants=(derivative.moved(step),))
 
 
-def _without(height: HeightSolution) -> HeightSolution:
-    """A height without its posture."""
-    return replace(height, status=Status.NUMERICAL_FAILURE, postures={}, residuals={}, disturbed={})
+def _without(solution: CaseSolution) -> CaseSolution:
+    """A case without its posture."""
+    return replace(solution, status=Status.NUMERICAL_FAILURE, instants=(), residuals={})
 
 
 def _slope(values: Sequence[float], step: float) -> float:

@@ -17,7 +17,7 @@ from pathlib import Path
 from evodesign.analysis.paper_claims import TorqueNorms, TorqueNormsByHeight
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.figures.torque_boxes import torque_boxes
@@ -35,23 +35,23 @@ class ReproducedRobot:
         name: short, of letters and underscores; it names files and figures.
         title: of its figure of postures.
         models: the robot, the person and the load.
-        heights: postures at the heights that were solved.
+        cases: postures in the cases that were solved.
     """
 
     name: str
     title: str
     models: SceneModels
-    heights: tuple[HeightDetail, ...]
+    cases: tuple[CaseDetail, ...]
 
     @property
     def torque_norms(self) -> TorqueNormsByHeight:
         """Torque norms of both agents by height."""
         return {
-            height.height_m: TorqueNorms(
-                robot=math.hypot(*height.agents[ROBOT].torques_n_m.values()),
-                human=math.hypot(*height.agents[HUMAN].torques_n_m.values()),
+            detail.case.task.height_m: TorqueNorms(
+                robot=math.hypot(*detail.agents[ROBOT].torques_n_m.values()),
+                human=math.hypot(*detail.agents[HUMAN].torques_n_m.values()),
             )
-            for height in self.heights
+            for detail in self.cases
         }
 
 
@@ -72,14 +72,17 @@ def write_reproduction(
     written: list[Path] = []
     for agent in (ROBOT, HUMAN):
         series = {
-            robot.name: {h.height_m: tuple(h.agents[agent].torques_n_m.values()) for h in robot.heights}
+            robot.name: {
+                detail.case.task.height_m: tuple(detail.agents[agent].torques_n_m.values())
+                for detail in robot.cases
+            }
             for robot in compared
         }
         whose = "the robots" if agent == ROBOT else "the person beside each robot"
         figure = torque_boxes(series, f"joint torques of {whose}")
         written += write_figure(figure, directory, f"{agent}_torques")
     for robot in (*compared, *others):
-        stages = [placed_scene(robot.models, height) for height in robot.heights]
+        stages = [placed_scene(robot.models, detail) for detail in robot.cases]
         written += write_figure(posture_figure(stages, robot.title), directory, f"postures_{robot.name}")
         written.append(_urdf(directory, robot))
     return tuple(written)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Shape
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
-from evodesign.records import AgentDetail, HeightDetail
+from evodesign.records import AgentDetail, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Tree
 
@@ -52,10 +52,14 @@ class SceneModels:
         return cls((scene.robot, scene.human), trees, scene.payload)
 
     @property
+    def pair(self) -> tuple[str, str]:
+        """Names of person and load, each empty where there is one."""
+        return self.agent(HUMAN).label, self.payload.label
+
+    @property
     def label(self) -> str:
         """Who holds what, where there are several people or loads."""
-        labels = (self.agent(HUMAN).label, self.payload.label)
-        return ", ".join(label for label in labels if label)
+        return ", ".join(name for name in self.pair if name)
 
     def agent(self, name: str) -> Agent:
         """The agent of a name."""
@@ -122,7 +126,7 @@ def looks_of(link: Link) -> tuple[tuple[Shape, Placement], ...]:
     return (*solids, *((look.shape, look.link_from_look) for look in link.looks))
 
 
-def placed_scene(models: SceneModels, detail: HeightDetail) -> PlacedScene:
+def placed_scene(models: SceneModels, detail: CaseDetail) -> PlacedScene:
     """The stage of a logged posture."""
     frames: dict[str, Mapping[str, Placement]] = {}
     wrenches: list[ContactWrench] = []
@@ -133,8 +137,9 @@ def placed_scene(models: SceneModels, detail: HeightDetail) -> PlacedScene:
         placed = link_frames(models.trees[agent.name], world_from_agent @ base, posture.joints_rad)
         frames[agent.name] = placed
         wrenches += _wrenches(agent, posture, world_from_agent, placed)
-    load = Placement(translation=(0.0, 0.0, detail.height_m))
-    return PlacedScene(detail.height_m, models, frames, load, tuple(wrenches))
+    height = detail.case.task.height_m
+    load = Placement(translation=(0.0, 0.0, height))
+    return PlacedScene(height, models, frames, load, tuple(wrenches))
 
 
 def _wrenches(

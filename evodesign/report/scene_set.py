@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Scene
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
 from evodesign.tree.model import Tree
 
@@ -46,13 +46,10 @@ class SceneSet:
         """Each load once, in the problem's order."""
         return tuple({models.payload.label: models.payload for models in self.models}.values())
 
-    def models_of(self, detail: HeightDetail) -> SceneModels:
+    def models_of(self, detail: CaseDetail) -> SceneModels:
         """Who stands there in a logged case."""
-        labels = (detail.human_name, detail.payload_name)
-        return next(
-            models for models in self.models if (models.agent(HUMAN).label, models.payload.label) == labels
-        )
+        return next(models for models in self.models if models.pair == detail.case.pair)
 
-    def placed_scene(self, detail: HeightDetail) -> PlacedScene:
+    def placed_scene(self, detail: CaseDetail) -> PlacedScene:
         """The stage of a logged case."""
         return placed_scene(self.models_of(detail), detail)

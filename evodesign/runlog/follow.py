@@ -23,6 +23,7 @@ from mcap.stream_reader import StreamReader
 from evodesign.errors import RunError
 from evodesign.runlog.channels import RECORDS
 from evodesign.runlog.directory import run_segments
+from evodesign.runlog.upgrade import record_of
 
 __all__ = ["Follower", "Logged"]
 
@@ -145,5 +146,5 @@ def _records(content: bytes, topics: dict[int, str]) -> Iterator[Logged]:
     for entry in reader.records:
         if isinstance(entry, Channel):
             topics[entry.id] = entry.topic
-        elif isinstance(entry, Message) and (kind := RECORDS.get(topics.get(entry.channel_id, ""))):
-            yield Logged(msgspec.json.decode(entry.data, type=kind), entry.log_time / 1e9)
+        elif isinstance(entry, Message) and (topic := topics.get(entry.channel_id, "")) in RECORDS:
+            yield Logged(record_of(topic, entry.data), entry.log_time / 1e9)

@@ -29,7 +29,7 @@ __all__ = ["EvaluationOutcome", "evaluation_outcome"]
 
 @dataclass(frozen=True, slots=True)
 class EvaluationOutcome:
-    """An evaluation and its postures; without heights where none was solved."""
+    """An evaluation and its postures; without cases where none was solved."""
 
     evaluation: Evaluation
     detail: Detail
@@ -54,7 +54,7 @@ def evaluation_outcome(
         worker=finished.worker,
         turn=turn,
     )
-    return EvaluationOutcome(evaluation, Detail(evaluation=number, heights=assessed.heights))
+    return EvaluationOutcome(evaluation, Detail(evaluation=number, cases=assessed.cases))
 
 
 def _assessed(genome: Genome, parameters: tuple[Parameter, ...], finished: Finished[Assessed]) -> Assessed:

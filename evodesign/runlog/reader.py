@@ -18,6 +18,7 @@ from evodesign.errors import RunError
 from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import HEADER_COPY, RECORDS, RUN
 from evodesign.runlog.scan import Scan, messages, scan, topics
+from evodesign.runlog.upgrade import record_of
 
 __all__ = ["Entry", "Segment", "entries", "read_content", "read_segment"]
 
@@ -53,12 +54,11 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A record of the log with its topic, its number there, its time [ns since 1970] and its JSON."""
+    """A record of the log with its topic, its number there and its time [ns since 1970]."""
 
     topic: str
     sequence: int
     time: int
-    data: bytes
     record: msgspec.Struct
 
 
@@ -117,12 +117,12 @@ def entries(path: Path, found: Scan) -> Iterator[Entry]:
             if topic == RUN:
                 _check_version(path, message.data)
             if topic in RECORDS and (record := _decoded(topic, message.data)) is not None:
-                yield Entry(topic, message.sequence, message.time, message.data, record)
+                yield Entry(topic, message.sequence, message.time, record)
 
 
 def _decoded(topic: str, data: bytes) -> msgspec.Struct | None:
     try:
-        return msgspec.json.decode(data, type=RECORDS[topic])
+        return record_of(topic, data)
     except (msgspec.MsgspecError, UnicodeDecodeError):
         return None
 
@@ -130,11 +130,10 @@ def _decoded(topic: str, data: bytes) -> msgspec.Struct | None:
 def _header_copy(path: Path, found: Scan) -> tuple[RunHeader, ...]:
     """The header from its copy beside the messages."""
     copies = [attachment.data for attachment in found.attachments if attachment.name == HEADER_COPY]
-    for copy in copies:
-        header = zstandard.ZstdDecompressor().decompress(copy)
+    headers = [zstandard.ZstdDecompressor().decompress(copy) for copy in copies[:1]]
+    for header in headers:
         _check_version(path, header)
-        return (msgspec.json.decode(header, type=RunHeader),)
-    return ()
+    return _all([record_of(RUN, header) for header in headers], RunHeader)
 
 
 def _check_version(path: Path, header: bytes) -> None:

@@ -1,7 +1,7 @@
 """Writing a run anew: all that can be read of its segments into one whole, indexed file.
 
 Recovering writes a new run beside a damaged one; merging puts one segment in the place of many. Messages keep
-their bytes and times.
+their times, and their bytes unless they are of an earlier format.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-import msgspec
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import RunError
@@ -19,7 +18,7 @@ from evodesign.runlog.directory import locked, make_directory, refuse_run, run_s
 from evodesign.runlog.reader import Entry, entries, read_content
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.scan import scan
-from evodesign.runlog.writer import add_header_copy, register
+from evodesign.runlog.writer import add_header_copy, encoded, register
 
 __all__ = ["merge", "recover"]
 
@@ -103,7 +102,7 @@ def _write(path: Path, directory: Path, run: Run) -> None:
             time = 0
             for entry in _once(directory, run):
                 time = max(time, entry.time)
-                writer.add_message(channels[entry.topic], time, entry.data, time, entry.sequence)
+                writer.add_message(channels[entry.topic], time, encoded(entry.record), time, entry.sequence)
             add_header_copy(writer, run.header, time)
             writer.finish()  # type: ignore[no-untyped-call]
             file.flush()
@@ -119,7 +118,7 @@ def _once(directory: Path, run: Run) -> Iterator[Entry]:
     """Every record of a run in the order of its segments, headers first, each other one once."""
     found = [(path, scan(read_content(path))) for path in run_segments(directory).values()]
     headers = [entry for path, part in found for entry in entries(path, part) if entry.topic == RUN]
-    yield from headers or [Entry(RUN, 0, 0, msgspec.json.encode(run.header), run.header)]
+    yield from headers or [Entry(RUN, 0, 0, run.header)]
     seen: set[tuple[str, int]] = set()
     for path, part in found:
         for entry in entries(path, part):

@@ -21,7 +21,7 @@ import zstandard
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import RunError
-from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
+from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import (
     DETAIL,
     EVALUATION,
@@ -36,7 +36,7 @@ from evodesign.runlog.channels import (
 )
 from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
 
-__all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "register"]
+__all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "encoded", "register"]
 
 LONGEST_SEGMENT = 4096
 """Messages after which `commit` begins the next segment: an open one keeps its index in memory, 2 kB each."""
@@ -150,7 +150,7 @@ class RunWriter:
     def _add(self, topic: str, record: msgspec.Struct, sequence: int) -> None:
         """A chunk with one message, handed to the operating system."""
         now = self._now()
-        self._mcap.add_message(self._channels[topic], now, msgspec.json.encode(record), now, sequence)
+        self._mcap.add_message(self._channels[topic], now, encoded(record), now, sequence)
         self._mcap.flush()  # type: ignore[no-untyped-call]
         self._messages += 1
 
@@ -171,6 +171,13 @@ class RunWriter:
         self._spoilt = False
 
 
+def encoded(record: msgspec.Struct) -> bytes:
+    """A record as a message; a header tells this format, which is that of everything written beside it."""
+    if isinstance(record, RunHeader):
+        record = msgspec.structs.replace(record, format_version=FORMAT_VERSION)
+    return msgspec.json.encode(record)
+
+
 def register(writer: Writer, header: RunHeader) -> dict[str, int]:
     """Describe all channels in a file; their numbers by topic."""
     channels = {}
@@ -182,7 +189,7 @@ def register(writer: Writer, header: RunHeader) -> dict[str, int]:
 
 def add_header_copy(writer: Writer, header: RunHeader, now: int) -> None:
     """Attach the header once more, with a checksum of its own, at a time [ns since 1970]."""
-    data = zstandard.compress(msgspec.json.encode(header))
+    data = zstandard.compress(encoded(header))
     writer.add_attachment(now, now, HEADER_COPY, "application/zstd", data)
 
 

@@ -26,7 +26,7 @@ def test_every_kind_of_number_can_be_asked_for():
     assert chosen("arm.1 < 1.1") == by_hand(lambda a: a.design["arm.1"] < 1.1)
     assert chosen("highest_reach > 1.5") == by_hand(lambda a: a.reach.highest_m > 1.5)
     assert chosen("robot_torque@1 <= 35") == by_hand(
-        lambda a: a.heights[0].robot_torque_norm is not None and a.heights[0].robot_torque_norm <= 35.0
+        lambda a: a.cases[0].robot_torque_norm is not None and a.cases[0].robot_torque_norm <= 35.0
     )
     assert 0 < len(chosen("robot_torque@1 <= 35")) < len(RUN)
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import msgspec
 
 from evodesign.analysis.infeasible import causes_of_infeasibility
-from evodesign.records import Evaluation, HeightOutcome, Status
+from evodesign.records import Case, CaseOutcome, Evaluation, Hold, Status
 from tests.runlog.toys import toy_evaluations, toy_header
 
 
-def height(height_m: float, status: Status) -> HeightOutcome:
-    return HeightOutcome(
-        height_m=height_m,
+def height(height_m: float, status: Status, person: str = "", payload: str = "") -> CaseOutcome:
+    return CaseOutcome(
+        case=Case(person=person, payload=payload, task=Hold(height_m=height_m)),
         status=status,
         reason="",
         robot_torque_norm=None,
@@ -21,10 +21,10 @@ def height(height_m: float, status: Status) -> HeightOutcome:
     )
 
 
-def failed(number: int, status: Status, *heights: HeightOutcome) -> Evaluation:
+def failed(number: int, status: Status, *heights: CaseOutcome) -> Evaluation:
     first = toy_evaluations(toy_header(), 1)[0]
     assessment = msgspec.structs.replace(
-        first.assessment, violation=0.1, status=status, reason=f"reason {number}", heights=heights
+        first.assessment, violation=0.1, status=status, reason=f"reason {number}", cases=heights
     )
     return msgspec.structs.replace(first, number=number, assessment=assessment)
 
@@ -56,8 +56,8 @@ def test_several_heights_are_one_cause() -> None:
 
 
 def test_a_cause_names_a_height_once_and_with_whom_it_failed() -> None:
-    def case(human: str, status: Status) -> HeightOutcome:
-        return msgspec.structs.replace(height(1.2, status), human_name=human, payload_name="5 kg")
+    def case(human: str, status: Status) -> CaseOutcome:
+        return height(1.2, status, human, "5 kg")
 
     def cause(*statuses: Status) -> str:
         cases = [case(human, status) for human, status in zip("abc", statuses, strict=True)]

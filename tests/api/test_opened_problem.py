@@ -45,7 +45,7 @@ def test_design_has_the_results_that_a_search_logs(
     for design in (expected.assessment.design, tuple(expected.assessment.design.values())):
         found = opened.evaluate(design)
         assert found.assessment == expected.assessment
-        assert found.postures == expected.heights
+        assert found.postures == expected.cases
 
 
 def test_postures_that_the_log_lacks_are_solved_anew(
@@ -69,8 +69,8 @@ def test_postures_that_the_log_lacks_are_solved_anew(
     )
     run = OpenedRun(Run(Path("run"), header, (evaluation,), (), (), (), complete=True, notes=()))
     assert run.design(0).postures == ()
-    assert run.postures(0) == expected.heights
-    assert opened.evaluate(run.design(0).parameters).postures == expected.heights
+    assert run.postures(0) == expected.cases
+    assert opened.evaluate(run.design(0).parameters).postures == expected.cases
 
 
 def test_what_is_left_out_stays_unscaled(opened: OpenedProblem) -> None:

@@ -42,7 +42,7 @@ def test_table_is_a_data_frame_of_the_log(run: OpenedRun) -> None:
             assert row[name] == value
         if not evaluation.feasible:
             assert math.isnan(row["robot_torque"])
-        assert row["robot_torque@1"] == evaluation.assessment.heights[0].robot_torque_norm or math.isnan(
+        assert row["robot_torque@1"] == evaluation.assessment.cases[0].robot_torque_norm or math.isnan(
             row["robot_torque@1"]
         )
 
@@ -67,12 +67,12 @@ def test_designs_carry_what_the_log_holds_of_them(run: OpenedRun) -> None:
         assert design.objectives == evaluation.assessment.objectives
         assert (design.status, design.reason) == (evaluation.assessment.status, evaluation.assessment.reason)
         assert (design.violation, design.feasible) == (evaluation.assessment.violation, evaluation.feasible)
-        assert (design.reach, design.heights) == (evaluation.assessment.reach, evaluation.assessment.heights)
+        assert (design.reach, design.cases) == (evaluation.assessment.reach, evaluation.assessment.cases)
 
 
 def test_postures_come_from_the_log(run: OpenedRun) -> None:
     for each in FRONT:
-        assert run.postures(each.number) == toy_detail(each).heights
+        assert run.postures(each.number) == toy_detail(each).cases
 
 
 def test_run_shows_itself_and_its_problem(run: OpenedRun) -> None:

@@ -87,10 +87,10 @@ def test_at_our_postures_the_graph_is_equations_12_and_13(
 ) -> None:
     result = evaluator.solve(design)
     model = CoupledModel(problem.scene, result.tree)
-    for height in result.heights:
+    for height in result.cases:
         assert height.solved, height.reason
-        torques, wrenches = statics(paper, columns(height.postures), [*design, height.height])
-        system = model.at(places_of(height.postures, height.height))
+        torques, wrenches = statics(paper, columns(height.postures), [*design, height.case.task.height_m])
+        system = model.at(places_of(height.postures, height.case.task.height_m))
         expected = projected_torques(system)
         assert np.linalg.norm(expected) > 5.0  # zeros would agree with anything
         assert np.abs(torques - expected).max() < TORQUE

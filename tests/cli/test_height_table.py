@@ -10,26 +10,24 @@ from rich.console import Console
 from rich.table import Table
 
 from evodesign.cli.height_table import cases_table, heights_table, summary_table
-from evodesign.records import Assessment, HeightOutcome, Status
+from evodesign.records import Assessment, Case, CaseOutcome, Hold, Status
 
 
-def outcome(human: str = "", payload: str = "") -> HeightOutcome:
-    return HeightOutcome(
-        height_m=1.0,
+def outcome(human: str = "", payload: str = "") -> CaseOutcome:
+    return CaseOutcome(
+        case=Case(person=human, payload=payload, task=Hold(height_m=1.0)),
         status=Status.SOLVED,
         reason="solved",
         robot_torque_norm=1.0,
         human_torque_norm=2.0,
         iterations=3,
         residual=1e-9,
-        human_name=human,
-        payload_name=payload,
     )
 
 
-def printed(table: Callable[[Assessment, str], Table], *heights: HeightOutcome) -> str:
+def printed(table: Callable[[Assessment, str], Table], *heights: CaseOutcome) -> str:
     assessment = Assessment(
-        design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", heights=heights
+        design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", cases=heights
     )
     out = StringIO()
     Console(file=out, width=110).print(table(assessment, ""))

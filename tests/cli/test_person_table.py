@@ -8,10 +8,9 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from evodesign.analysis.cases import case_name
 from evodesign.cli.person_table import hardest_cases, people_table, person_table
 from evodesign.problem.ergonomics import ergonomics
-from evodesign.records import HeightDetail
+from evodesign.records import Case, Hold
 from tests.problem.test_ergonomics import PERSON, posture
 
 REACHING = {"jLeftShoulder_rotz": -1.57, "jRightShoulder_rotz": 1.57}
@@ -43,33 +42,27 @@ def test_what_is_not_known_or_not_recommended_is_a_dash() -> None:
     assert cells[-2:] == ["0.0", "-"]
 
 
-def test_a_case_is_named_by_who_and_what_only_where_there_are_several() -> None:
-    assert case_name(HeightDetail(height_m=1.0, agents={})) == "1 m"
-    several = HeightDetail(height_m=0.8, agents={}, human_name="male P5", payload_name="10 kg")
-    assert case_name(several) == "male P5, 10 kg, 0.8 m"
-
-
 def test_of_several_people_only_the_hardest_cases_of_each_are_shown() -> None:
-    def case(human: str, height: float) -> HeightDetail:
-        return HeightDetail(height_m=height, agents={}, human_name=human, payload_name="5 kg")
+    def case(person: str, height: float) -> Case:
+        return Case(person=person, payload="5 kg", task=Hold(height_m=height))
 
     quiet, far = ergonomics(PERSON, posture({})), ergonomics(PERSON, posture(REACHING))
     assert quiet.lifting_index is not None
     assert far.lifting_index is None, "nothing is recommended there, which counts as more than any index"
     asked = [(case("a", 0.8), quiet), (case("a", 1.0), far), (case("b", 0.8), quiet)]
     chosen = hardest_cases(asked)
-    assert [one.human_name for one, _ in chosen][-1] == "b"
-    for human in "ab":
-        own = [one for one in asked if one[0].human_name == human]
-        efforts = {one[0].height_m: one[1].strain.share for one in own if one[1].strain is not None}
-        hardest = max(efforts, key=lambda height: efforts[height], default=own[0][0].height_m)
-        shown = [one.height_m for one, _ in chosen if one.human_name == human]
+    assert [one.person for one, _ in chosen][-1] == "b"
+    for person in "ab":
+        own = [one for one in asked if one[0].person == person]
+        efforts = {one[0].task.height_m: one[1].strain.share for one in own if one[1].strain is not None}
+        hardest = max(efforts, key=lambda height: efforts[height], default=own[0][0].task.height_m)
+        shown = [one.task.height_m for one, _ in chosen if one.person == person]
         assert hardest in shown
-        assert own[-1][0].height_m in shown, "its index is the largest"
+        assert own[-1][0].task.height_m in shown, "its index is the largest"
     out = StringIO()
     Console(file=out, width=110).print(people_table(asked, titled=True))
     assert "hardest postures" in out.getvalue()
-    alone = [(HeightDetail(height_m=height, agents={}), quiet) for height in (0.8, 1.0)]
+    alone = [(Case(task=Hold(height_m=height)), quiet) for height in (0.8, 1.0)]
     out = StringIO()
     Console(file=out, width=110).print(people_table(alone, titled=True))
     assert "each posture" in out.getvalue()

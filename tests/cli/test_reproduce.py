@@ -89,10 +89,10 @@ def test_a_design_of_a_baseline_is_where_its_start_ended(
     logged = {detail.evaluation for detail in run.details}
     number = next(e.number for e in run.evaluations if e.number not in logged)
     opened = open_design(tmp_path / "run", number, 1)
-    norms = {h.height_m: h.robot_torque_norm for h in opened.evaluation.assessment.heights}
-    for height in opened.heights:
+    norms = {h.case.task.height_m: h.robot_torque_norm for h in opened.evaluation.assessment.cases}
+    for height in opened.cases:
         norm = math.hypot(*height.agents["robot"].torques_n_m.values())
-        assert norm == pytest.approx(norms[height.height_m], rel=1e-9)
+        assert norm == pytest.approx(norms[height.case.task.height_m], rel=1e-9)
     problem = opened.rebuilt.problem
     arm = scene_set_of(opened).robot.link_by_name["l_upper_arm"].inertia.mass
     values = list(opened.evaluation.assessment.design.values())

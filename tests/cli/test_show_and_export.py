@@ -67,8 +67,8 @@ def run(problem: Problem, evaluator: Evaluator, tmp_path_factory: pytest.TempPat
                 worker="here",
             )
         )
-        details.append(Detail(evaluation=number, heights=assessed.heights))
-    assert all(detail.heights for detail in details)
+        details.append(Detail(evaluation=number, cases=assessed.cases))
+    assert all(detail.cases for detail in details)
     return write_run(tmp_path_factory.mktemp("runs") / "real", header_for(problem), evaluations, details[:1])
 
 
@@ -89,11 +89,11 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
         assert [row[1] for row in rows if row[0].startswith(f"{objective.name} [")] == [figure(value)]
     for name, value in evaluation.assessment.design.items():
         assert [row[1] for row in rows if row[0] == name] == [figure(value)]
-    for outcome in evaluation.assessment.heights:
+    for outcome in evaluation.assessment.cases:
         expected = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
-        assert [row[1:3] for row in rows if row[0] == figure(outcome.height_m)] == [expected]
+        assert [row[1:3] for row in rows if row[0] == figure(outcome.case.task.height_m)] == [expected]
     for agent in ("robot", "human"):
-        torques = [height.agents[agent].torques_n_m for height in detail.heights]
+        torques = [height.agents[agent].torques_n_m for height in detail.cases]
         shown = {row[1]: row[2:] for row in rows if row[0] == agent and row[1] in torques[0]}
         assert len(shown) == 6
         peaks = {joint: max(abs(at[joint]) for at in torques) for joint in torques[0]}
@@ -102,7 +102,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
         )
         for joint, values in shown.items():
             assert values == [figure(at[joint]) for at in torques]
-        feet = [height.agents[agent].foot_wrenches["left"] for height in detail.heights]
+        feet = [height.agents[agent].foot_wrenches["left"] for height in detail.cases]
         expected = [figure(sum(part**2 for part in wrench[:3]) ** 0.5) for wrench in feet]
         assert [row[2:] for row in rows if row[:2] == [agent, "left foot"]] == [expected]
 
@@ -112,7 +112,7 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
 ) -> None:
     show_design(run, 0, jobs=1, json=True, plot=None)
     told = json.loads(capsys.readouterr().out)["ergonomics"]
-    details = read_run(run).details[0].heights
+    details = read_run(run).details[0].cases
     person = problem.scene.human
     for one, detail in zip(told, details, strict=True):
         torque = detail.agents["human"].torques_n_m[one["hardest_joint"]]
@@ -121,14 +121,14 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
         assert one["movement"] == way.movement
         assert one["effort"] == pytest.approx(abs(torque) / way.moment)
         assert one["held_kg"] == pytest.approx(2.5, abs=1e-3), "half of 5 kg, with point grasps"
-        assert one["hands_height_m"] == pytest.approx(detail.height_m + 0.0125, abs=1e-4)
+        assert one["hands_height_m"] == pytest.approx(detail.case.task.height_m + 0.0125, abs=1e-4)
         assert one["lifting_index"] == pytest.approx(one["held_kg"] / one["recommended_weight_kg"])
     show_design(run, 0, jobs=1, json=False, plot=None)
     text = capsys.readouterr().out
     rows = {row[0]: row[1:] for row in cells(text) if row[0].endswith(" m")}
-    assert set(rows) == {f"{detail.height_m:g} m" for detail in details}
+    assert set(rows) == {f"{detail.case.task.height_m:g} m" for detail in details}
     for one, detail in zip(told, details, strict=True):
-        row = rows[f"{detail.height_m:g} m"]
+        row = rows[f"{detail.case.task.height_m:g} m"]
         assert row[0].startswith(one["hardest_joint"])
         assert row[1:3] == [f"{one['effort']:.1%}", f"{one['hands_ahead_m']:.2f}"]
         assert row[-2:] == [f"{one['recommended_weight_kg']:.1f}", f"{one['lifting_index']:.2f}"]
@@ -145,8 +145,8 @@ def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert found["id"] == 0
     assert found["objectives"] == assessment.objectives
     assert found["parameters"] == assessment.design
-    assert found["heights"] == json.loads(msgspec.json.encode(assessment.heights))
-    assert found["postures"] == json.loads(msgspec.json.encode(logged.details[0].heights))
+    assert found["heights"] == json.loads(msgspec.json.encode(assessment.cases))
+    assert found["postures"] == json.loads(msgspec.json.encode(logged.details[0].cases))
     assert found["reach"] == json.loads(msgspec.json.encode(assessment.reach))
 
 
@@ -156,7 +156,7 @@ def test_design_without_logged_postures_is_solved_anew(
     show_design(run, 1, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()
     assert captured.err == "note: the log holds no postures of design 1, so it is solved anew\n"
-    expected = evaluator.assess(problem.start[1]).heights
+    expected = evaluator.assess(problem.start[1]).cases
     assert json.loads(captured.out)["postures"] == json.loads(msgspec.json.encode(expected))
 
 
@@ -177,7 +177,7 @@ def test_export_writes_the_logged_postures(
     printed = capsys.readouterr().out.split()
     assert sorted(printed) == sorted(str(path) for path in (tmp_path / "design").iterdir())
     told = json.loads((tmp_path / "design" / "postures.json").read_text())
-    assert told["postures"] == json.loads(msgspec.json.encode(read_run(run).details[0].heights))
+    assert told["postures"] == json.loads(msgspec.json.encode(read_run(run).details[0].cases))
 
 
 HOSTILE = "<script>alert(1)</script>[bold]../x"

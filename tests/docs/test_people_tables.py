@@ -80,10 +80,10 @@ def test_the_default_problem_asks_what_the_table_says(
 ) -> None:
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     shown = {row[0]: row[1:] for row in rows if row[0].endswith(" m")}
-    assert set(shown) == {f"{height:g} m" for height in problem.heights}
-    for height in result.heights:
-        asked = ergonomics(problem.scene.human, detail_of(height, problem.scene).agents[HUMAN])
-        torque, joint, *figures = shown[f"{height.height:g} m"]
+    assert set(shown) == {str(task) for task in problem.tasks}
+    for height in result.cases:
+        asked = ergonomics(problem.scene.human, detail_of(height).agents[HUMAN])
+        torque, joint, *figures = shown[f"{height.case.task.height_m:g} m"]
         assert asked.strain is not None
         assert joint == f"{asked.strain.joint}, {asked.strain.movement}"
         found = (asked.strain.share, asked.task.horizontal, asked.recommended_weight, asked.lifting_index)

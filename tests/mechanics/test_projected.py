@@ -291,8 +291,8 @@ def test_limits_of_the_ground_cost_torque(problem: Problem, evaluator: Evaluator
     """With friction, soles and push enforced, no posture needs less torque than Eq. 12; none much more."""
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     model = CoupledModel(problem.scene, result.tree)
-    for height in result.heights:
-        system = model.at(places_of(height.postures, height.height))
+    for height in result.cases:
+        system = model.at(places_of(height.postures, height.case.task.height_m))
         least = np.linalg.norm(projected_torques(system))
         found = np.linalg.norm([p.torque_norm for p in height.postures.values()])
         assert least <= found <= 1.1 * least

@@ -102,7 +102,7 @@ def test_seeds_of_the_default_problem_lead_other_designs_well(known: Precomputed
 
 def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Evaluator) -> None:
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
-    for height in result.heights:
+    for height in result.cases:
         assert height.attempt in height.attempts
         assert {attempt.formulation for attempt in height.attempts} == {"decoupled"}
         assert all(attempt.start.startswith("start") for attempt in height.attempts)
@@ -113,7 +113,7 @@ def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Ev
 def test_without_seeds_solves_begin_at_the_fixed_starts(problem: Problem, known: Precomputed) -> None:
     plain = Evaluator(problem, Precomputed(values=known.values))
     result = plain.solve(problem.space.unscaled(problem.scene.robot.tree))
-    assert [attempt.name for attempt in result.heights[0].attempts] == [
+    assert [attempt.name for attempt in result.cases[0].attempts] == [
         "decoupled: fixed start 1",
         "decoupled: fixed start 2",
     ]

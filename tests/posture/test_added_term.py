@@ -14,15 +14,16 @@ from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.results import HeightSolution
-from evodesign.posture.solution_derivative import PostureDerivative, known_instant
+from evodesign.posture.results import CaseSolution
+from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 from tests.posture.center_of_mass_term import mass_height
 
 HEIGHT, HIGHER = 0.8, 0.02  # [m]
+HOLD = Hold(height_m=HEIGHT)
 ROWS = {f"{agent}.mass_height" for agent in (ROBOT, HUMAN)}
 
 
@@ -32,11 +33,11 @@ class Bench:
     design: tuple[float, ...]
     checker: Checker
 
-    def solve(self, problem: PostureProblem) -> HeightSolution:
-        return problem.solve(self.design, HEIGHT, self.checker)
+    def solve(self, problem: PostureProblem) -> CaseSolution:
+        return problem.solve(self.design, HOLD, self.checker)
 
-    def too_low(self, solution: HeightSolution) -> float:
-        return sizes(self.checker.residuals(known_instant(solution), HEIGHT))["robot.mass_height"]
+    def too_low(self, solution: CaseSolution) -> float:
+        return sizes(self.checker.residuals(solution.instants[0], HEIGHT))["robot.mass_height"]
 
 
 @pytest.fixture(scope="module")
@@ -50,13 +51,13 @@ def bench(problem: Problem) -> Bench:
 
 
 @pytest.fixture(scope="module")
-def before(bench: Bench) -> HeightSolution:
+def before(bench: Bench) -> CaseSolution:
     """The posture without the term."""
     return bench.solve(PostureProblem(bench.setting, Symmetry.ON))
 
 
 @pytest.fixture
-def lowest(bench: Bench, before: HeightSolution, monkeypatch: pytest.MonkeyPatch) -> float:
+def lowest(bench: Bench, before: CaseSolution, monkeypatch: pytest.MonkeyPatch) -> float:
     """The term is in the registry, and asks for a little more than the posture without it has."""
     monkeypatch.setitem(TERMS, "mass_height", mass_height(10.0))
     asked = 10.0 - bench.too_low(before) + HIGHER
@@ -67,9 +68,9 @@ def lowest(bench: Bench, before: HeightSolution, monkeypatch: pytest.MonkeyPatch
 @pytest.mark.usefixtures("lowest")
 def test_it_enters_every_formulation(problem: Problem, bench: Bench) -> None:
     forms = symmetric_forms(bench.setting.scene)
-    joint = PostureProblem(bench.setting, Symmetry.ON).landscape(HEIGHT).solver.program
-    whole = PostureProblem(bench.setting, Symmetry.OFF).landscape(HEIGHT).solver.program
-    codesign = JointProblem(problem.scene, problem.space, (HEIGHT,), problem.joint).program
+    joint = PostureProblem(bench.setting, Symmetry.ON).landscape(HOLD).solver.program
+    whole = PostureProblem(bench.setting, Symmetry.OFF).landscape(HOLD).solver.program
+    codesign = JointProblem(problem.scene, problem.space, (HOLD,), problem.joint).program
     for program in (joint, whole, codesign):
         assert {c.name for c in program.constraints} >= ROWS
     decoupled = robot_program(forms[0], bench.setting), human_program(forms[1], bench.setting.scene, 1.0)
@@ -79,7 +80,7 @@ def test_it_enters_every_formulation(problem: Problem, bench: Bench) -> None:
 
 
 def test_it_holds_in_what_is_solved_and_in_the_derivative(
-    bench: Bench, before: HeightSolution, lowest: float
+    bench: Bench, before: CaseSolution, lowest: float
 ) -> None:
     problem = PostureProblem(bench.setting, Symmetry.ON)
     solution = bench.solve(problem)
@@ -97,7 +98,7 @@ def test_it_is_in_the_sentence_of_a_posture_that_fails_the_check(
 ) -> None:
     """A program that was built without it, and a check that knows it."""
     problem = PostureProblem(bench.setting, Symmetry.ON)
-    problem.landscape(HEIGHT)
+    problem.landscape(HOLD)
     monkeypatch.setitem(TERMS, "mass_height", mass_height(1.2))
     solution = bench.solve(problem)
     assert solution.status is Status.NUMERICAL_FAILURE or solution.status is Status.INFEASIBLE

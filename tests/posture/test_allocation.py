@@ -23,13 +23,14 @@ from evodesign.posture.formulations.codesign import JointProblem
 from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.results import AgentPosture, HeightSolution, Instant
-from evodesign.posture.solution_derivative import known_instant
+from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.warm_start import instant_of, layout_of, start_from
 from evodesign.problem.build import Problem, build_problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 from tests.posture.violations import violations
+
+ONE = Hold(height_m=1.0)
 
 NO_POLICY = DesignSpace(())
 MASS = 10.0
@@ -38,7 +39,7 @@ Postures = Mapping[str, AgentPosture]
 
 
 def allocation(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
-    return DesignSpace((DesignParameter(ParameterKind.POLICY, name, (), lower, upper),))
+    return DesignSpace((DesignParameter(ParameterKind.ALLOCATION, name, (), lower, upper),))
 
 
 def rigid(problem: Problem, moment: float = math.inf, share: float | None = None) -> Scene:
@@ -54,11 +55,11 @@ def solve(
     space: DesignSpace = NO_POLICY,
     values: Sequence[float] = (),
     symmetry: Symmetry = Symmetry.ON,
-) -> HeightSolution:
+) -> CaseSolution:
     """The unscaled robot's posture; everything that is checked holds."""
     options = replace(problem.options, tolerance=1e-10)
     posture = PostureProblem(Setting(scene, space, weights, options), symmetry)
-    found = posture.solve(values, height, checker(shared_scene(scene, space, values)))
+    found = posture.solve(values, Hold(height_m=height), checker(shared_scene(scene, space, values)))
     assert found.solved, found.reason
     assert max(found.residuals.values()) <= TOLERANCE
     return found
@@ -68,21 +69,21 @@ def checker(scene: Scene) -> Checker:
     return Checker(scene, scene.robot.tree, AgentModel.of(scene.human, scene.human.tree))
 
 
-def share(solution: HeightSolution) -> float:
+def share(solution: CaseSolution) -> float:
     wrenches = solution.postures[ROBOT].hand_wrenches
     return -float(sum(wrenches[side][2] for side in SIDES)) / (MASS * GRAVITY)
 
 
-def moments(solution: HeightSolution) -> float:
+def moments(solution: CaseSolution) -> float:
     wrenches = [posture.hand_wrenches[side] for posture in solution.postures.values() for side in SIDES]
     return float(np.abs([wrench[3:] for wrench in wrenches]).max())
 
 
-def torques(solution: HeightSolution) -> list[float]:
+def torques(solution: CaseSolution) -> list[float]:
     return [torque for posture in solution.postures.values() for torque in posture.torques.values()]
 
 
-def norms(solution: HeightSolution) -> tuple[float, float]:
+def norms(solution: CaseSolution) -> tuple[float, float]:
     return solution.postures[ROBOT].torque_norm, solution.postures[HUMAN].torque_norm
 
 
@@ -209,12 +210,16 @@ def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> Non
     scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene, space=space, values=(0.3,))
     joint = JointProblem(
-        scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True)), (0.3,)
+        scene,
+        space,
+        (ONE,),
+        replace(problem.joint, options=replace(problem.options, near=True)),
+        (0.3,),
     )
-    together = joint.polish((0.3,), [known_instant(alone)])
+    together = joint.polish((0.3,), [alone.instants[0]])
     assert together.solved, together.attempt.reason
-    assert share(together.heights[0]) == pytest.approx(0.3, abs=1e-6)
-    assert norms(together.heights[0]) == pytest.approx(norms(alone), abs=1e-3)
+    assert share(together.cases[0]) == pytest.approx(0.3, abs=1e-6)
+    assert norms(together.cases[0]) == pytest.approx(norms(alone), abs=1e-3)
 
 
 def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
@@ -222,9 +227,12 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene)
     joint = JointProblem(
-        scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True))
+        scene,
+        space,
+        (ONE,),
+        replace(problem.joint, options=replace(problem.options, near=True)),
     )
-    together = joint.polish((share(alone),), [known_instant(alone)])
+    together = joint.polish((share(alone),), [alone.instants[0]])
     assert together.solved, together.attempt.reason
     assert together.design[0] == pytest.approx(share(alone), abs=1e-3)
     cost = min(attempt.cost for attempt in alone.attempts if attempt.status is Status.SOLVED)

@@ -18,7 +18,7 @@ from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.precompute import precompute_setting
-from evodesign.records import Status
+from evodesign.records import Case, Hold, Status
 
 
 @given(st.lists(st.floats(-5.0, 5.0), min_size=2, max_size=9), st.floats(-1.0, 1.0))
@@ -29,11 +29,11 @@ def test_clenshaws_sum_is_numpys(coefficients: list[float], x: float) -> None:
 def test_value_is_what_solving_the_person_gives(problem: Problem, known: Precomputed) -> None:
     """At pushes that are no nodes, against a solve from the nearest node."""
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
-    assert [value.height for value in known.values] == list(problem.heights)
-    for value in known.values:
+    assert [case.task for case in known.values] == list(problem.tasks)
+    for case, value in known.values.items():
         assert value.error <= LARGEST_ERROR
         for push in (-4.3, -1.1, 0.7, 3.9):
-            found = person.solve(value.height, push, value.nearest(push)[0])
+            found = person.solve(case.task.height_m, push, value.nearest(push)[0])
             assert found.status is Status.SOLVED
             assert found.cost == pytest.approx(value.cost(push), abs=max(LARGEST_ERROR, 2.0 * value.error))
 
@@ -45,7 +45,7 @@ def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, 
     excess = []
     for _ in range(5):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
-        for one, both in zip(split.solve(values).heights, joint.solve(values).heights, strict=True):
+        for one, both in zip(split.solve(values).cases, joint.solve(values).cases, strict=True):
             assert one.status == both.status
             if one.solved:
                 costs = [min(a.cost for a in s.attempts if a.status is Status.SOLVED) for s in (one, both)]
@@ -56,7 +56,7 @@ def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, 
 
 def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, known: Precomputed) -> None:
     fresh = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options).value(1.0)
-    kept = next(value for value in known.values if value.height == 1.0)
+    kept = known.values[Case(task=Hold(height_m=1.0))]
     assert fresh is not None
     assert (fresh.coefficients, fresh.push, fresh.error) == (kept.coefficients, kept.push, kept.error)
     for one, other in zip(fresh.starts, kept.starts, strict=True):
@@ -65,7 +65,7 @@ def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, kn
 
 
 def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem, known: Precomputed) -> None:
-    value = next(value for value in known.values if value.height == 1.0)
+    value = known.values[Case(task=Hold(height_m=1.0))]
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     (nearest, start), *others = sorted(value.starts, key=lambda node: abs(node[0]))
     broken = {**start, "human.joints": np.full_like(start["human.joints"], np.nan)}
@@ -80,7 +80,7 @@ def pieces(problem: Problem, scene: Scene) -> list[Subject]:
     setting = replace(precompute_setting(problem), scenes=(scene,))
     return [
         piece.subject
-        for stage in stages(setting, (1.0,), portfolios=False, person_reaches=False)
+        for stage in stages(setting, (Hold(height_m=1.0),), portfolios=False, person_reaches=False)
         for piece in stage
     ]
 
@@ -93,9 +93,9 @@ def test_rigid_grasps_and_no_push_have_no_value(problem: Problem) -> None:
 
 
 def test_height_out_of_the_persons_reach_has_no_value(problem: Problem) -> None:
-    setting, piece = precompute_setting(problem), Piece(Subject.PERSON, 2.6)
+    setting, piece = precompute_setting(problem), Piece(Subject.PERSON, ("", ""), Hold(height_m=2.6))
     content = compute_piece(setting, piece, NOTHING_PRECOMPUTED)
     assert with_piece(NOTHING_PRECOMPUTED, piece, content) == NOTHING_PRECOMPUTED
-    assert with_piece(NOTHING_PRECOMPUTED, piece, b'{"height_m":') is None, (
+    assert with_piece(NOTHING_PRECOMPUTED, piece, b'{"push_n":') is None, (
         "a content that cannot be read is missing"
     )

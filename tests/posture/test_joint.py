@@ -39,7 +39,7 @@ def random_designs(problem: Problem, count: int) -> list[tuple[float, ...]]:
 def test_every_residual_of_solved_postures_is_small(problem: Problem, evaluator: Evaluator) -> None:
     for values in random_designs(problem, 4):
         result = evaluator.solve(values)
-        for height in result.heights:
+        for height in result.cases:
             assert height.status is Status.SOLVED, height.reason
             assert max(height.residuals.values()) < 1e-5
 
@@ -47,14 +47,14 @@ def test_every_residual_of_solved_postures_is_small(problem: Problem, evaluator:
 def test_the_feet_carry_robot_person_and_load(unscaled: DesignResult, problem: Problem) -> None:
     trees = (unscaled.tree, problem.scene.human.tree)
     mass = sum(link.inertia.mass for tree in trees for link in tree.links) + problem.scene.payload.mass
-    for height in unscaled.heights:
+    for height in unscaled.cases:
         carried = sum(p.foot_wrenches[side][2] for p in height.postures.values() for side in SIDES)
         assert carried == pytest.approx(mass * GRAVITY, abs=1e-4)
 
 
 def test_each_agent_carries_half_of_a_centred_load(unscaled: DesignResult, problem: Problem) -> None:
     half = problem.scene.payload.mass * GRAVITY / 2.0
-    for height in unscaled.heights:
+    for height in unscaled.cases:
         for posture in height.postures.values():
             assert -sum(posture.hand_wrenches[side][2] for side in SIDES) == pytest.approx(half, abs=1e-5)
 
@@ -91,12 +91,15 @@ def shifted(posture: AgentPosture, part: str) -> AgentPosture:
 def test_the_check_sees_what_is_wrong(
     agent: str, part: str, residuals: set[str], unscaled: DesignResult, checker: Checker
 ) -> None:
-    height = unscaled.heights[1]
+    height = unscaled.cases[1]
     postures = {**height.postures, agent: shifted(height.postures[agent], part)}
-    found = violations(checker, postures, height.height)
+    found = violations(checker, postures, height.case.task.height_m)
     large = {name.split(".")[1] for name, value in found.items() if value > TOLERANCE}
     assert residuals & large
-    assert all(value <= TOLERANCE for value in violations(checker, height.postures, height.height).values())
+    assert all(
+        value <= TOLERANCE
+        for value in violations(checker, height.postures, height.case.task.height_m).values()
+    )
 
 
 def test_an_evaluation_does_not_depend_on_what_was_evaluated_before(
@@ -113,9 +116,9 @@ def test_mirrored_wrenches_and_joints_are_as_good(
     problem: Problem, unscaled: DesignResult, checker: Checker
 ) -> None:
     """Robot, person and load are mirror-symmetric, so the mirror image of a posture holds too."""
-    height = unscaled.heights[0]
+    height = unscaled.cases[0]
     images = {name: mirrored(posture) for name, posture in height.postures.items()}
-    assert max(violations(checker, images, height.height).values()) <= TOLERANCE
+    assert max(violations(checker, images, height.case.task.height_m).values()) <= TOLERANCE
     for name, image in images.items():
         assert image.torque_norm == pytest.approx(height.postures[name].torque_norm)
 

@@ -19,12 +19,12 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution, Instant
+from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 from tests.posture.violations import violations
 
 HEAVIER = Disturbance("heavier", mass_share=0.2)
@@ -34,6 +34,7 @@ ROBOT_BACK = Disturbance("robot pushed", push=(-15.0, 0.0, 0.0), at=PushedAt.ROB
 HUMAN_BACK = Disturbance("human pushed", push=(15.0, 0.0, -5.0), at=PushedAt.HUMAN)
 EVERY = (HEAVIER, AWAY, LEANING, ROBOT_BACK, HUMAN_BACK)
 HEIGHT = 1.0
+HOLD = Hold(height_m=HEIGHT)
 
 Postures = Mapping[str, AgentPosture]
 
@@ -50,11 +51,11 @@ def postures_in(
     bare = PostureProblem(setting, symmetry, solvers=solvers)
     if like is None:
         return bare
-    landscape = bare.landscape(HEIGHT)
+    landscape = bare.landscape(HOLD)
     forms = symmetric_forms(scene) if symmetry is Symmetry.ON else (whole(scene.robot), whole(scene.human))
     start = start_from(landscape.solver.program, forms, [Instant(0.0, like)])
     portfolio = StartPortfolio((start,), Coverage(0, 0, 0.0))
-    return PostureProblem(setting, symmetry, Precomputed(postures={HEIGHT: portfolio}), solvers)
+    return PostureProblem(setting, symmetry, Precomputed(postures={HOLD: portfolio}), solvers)
 
 
 def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Checker:
@@ -63,36 +64,36 @@ def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Che
 
 
 def solved(
-    scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: HeightSolution | None = None
-) -> HeightSolution:
+    scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: CaseSolution | None = None
+) -> CaseSolution:
     """Of the unscaled robot; begun at another solution's postures if there is one."""
     values = problem.space.unscaled(scene.robot.tree)
     checker = checker_of(scene, problem, values)
     postures = postures_in(scene, problem, symmetry, None if like is None else like.postures)
-    solution = postures.solve(values, HEIGHT, checker)
+    solution = postures.solve(values, HOLD, checker)
     assert solution.status is Status.SOLVED, solution.reason
     assert max(solution.residuals.values()) < TOLERANCE
     return solution
 
 
-def cost_of(solution: HeightSolution) -> float:
+def cost_of(solution: CaseSolution) -> float:
     return min(attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED)
 
 
 @pytest.fixture(scope="module")
-def undisturbed(problem: Problem) -> HeightSolution:
+def undisturbed(problem: Problem) -> CaseSolution:
     return solved(problem.scene, problem)
 
 
 @pytest.fixture(scope="module")
-def borne(problem: Problem) -> HeightSolution:
+def borne(problem: Problem) -> CaseSolution:
     """The unscaled robot under every kind of disturbance."""
     return solved(disturbed(problem, *EVERY), problem)
 
 
 @pytest.mark.parametrize("effort", list(OverCases))
 def test_disturbances_of_size_zero_are_none(
-    effort: OverCases, problem: Problem, undisturbed: HeightSolution
+    effort: OverCases, problem: Problem, undisturbed: CaseSolution
 ) -> None:
     nothing = (Disturbance("a"), Disturbance("b", at=PushedAt.HUMAN))
     solution = solved(disturbed(problem, *nothing, effort=effort), problem, like=undisturbed)
@@ -107,7 +108,7 @@ def test_disturbances_of_size_zero_are_none(
                 )
 
 
-def test_the_posture_is_the_same_in_every_case(borne: HeightSolution) -> None:
+def test_the_posture_is_the_same_in_every_case(borne: CaseSolution) -> None:
     assert list(borne.disturbed) == [case.name for case in EVERY]
     for postures in borne.disturbed.values():
         for agent, posture in postures.items():
@@ -116,7 +117,7 @@ def test_the_posture_is_the_same_in_every_case(borne: HeightSolution) -> None:
             assert posture.torques != borne.postures[agent].torques
 
 
-def test_hands_and_feet_carry_weight_and_push(borne: HeightSolution, problem: Problem) -> None:
+def test_hands_and_feet_carry_weight_and_push(borne: CaseSolution, problem: Problem) -> None:
     """Closed forms: forces on the load, and vertical ones on the agents (soles are flat)."""
     scene = problem.scene
     for case in EVERY:
@@ -138,7 +139,7 @@ def test_hands_and_feet_carry_weight_and_push(borne: HeightSolution, problem: Pr
             assert up == pytest.approx(mass * GRAVITY - down, abs=1e-3)
 
 
-def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: HeightSolution, problem: Problem) -> None:
+def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: CaseSolution, problem: Problem) -> None:
     """Lever rule of a beam half a metre long, but for the moment of the push between the agents."""
     hands = borne.disturbed[LEANING.name][HUMAN].hand_wrenches
     carried = -sum(float(hands[side][2]) for side in SIDES)
@@ -147,11 +148,11 @@ def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: HeightSolution, pro
     assert carried == pytest.approx(expected, abs=problem.scene.stance.push * lever / 0.5 + 1e-4)
 
 
-def test_worst_and_mean_are_each_best_at_what_they_minimise(problem: Problem, borne: HeightSolution) -> None:
+def test_worst_and_mean_are_each_best_at_what_they_minimise(problem: Problem, borne: CaseSolution) -> None:
     mean = solved(disturbed(problem, *EVERY, effort=OverCases.MEAN), problem, like=borne)
     worst = solved(disturbed(problem, *EVERY, effort=OverCases.WORST), problem, like=mean)
 
-    def efforts(solution: HeightSolution) -> list[float]:
+    def efforts(solution: CaseSolution) -> list[float]:
         cases = (solution.postures, *solution.disturbed.values())
         return [sum(p.torque_norm**2 for p in postures.values()) / TORQUE_UNIT**2 for postures in cases]
 
@@ -174,9 +175,7 @@ def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, prob
             Disturbance("away", push=(20.0 * size, 0.0, 0.0)),
         )
         scene = disturbed(problem, *cases)
-        best = postures_in(scene, problem, like=like).solve(
-            values, HEIGHT, checker_of(scene, problem, values)
-        )
+        best = postures_in(scene, problem, like=like).solve(values, HOLD, checker_of(scene, problem, values))
         costs.append(cost_of(best))
         like = best.postures
     assert costs[0] > costs[1] > costs[2]
@@ -201,7 +200,7 @@ def changed(posture: AgentPosture, part: str) -> AgentPosture:
     [("joints", "moved"), ("torques", "torque"), ("hand", "force_balance"), ("foot", "foot_contact")],
 )
 def test_the_check_sees_what_is_wrong_under_a_disturbance(
-    agent: str, part: str, residual: str, borne: HeightSolution, problem: Problem
+    agent: str, part: str, residual: str, borne: CaseSolution, problem: Problem
 ) -> None:
     scene = disturbed(problem, *EVERY)
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
@@ -214,7 +213,7 @@ def test_the_check_sees_what_is_wrong_under_a_disturbance(
 
 @pytest.mark.parametrize("case", EVERY)
 def test_the_check_sees_a_disturbance_of_another_size(
-    case: Disturbance, borne: HeightSolution, problem: Problem
+    case: Disturbance, borne: CaseSolution, problem: Problem
 ) -> None:
     stronger = replace(
         case,
@@ -242,7 +241,7 @@ def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(
         symmetric_forms(beside)
 
 
-def test_free_postures_resist_a_sideways_push(problem: Problem, undisturbed: HeightSolution) -> None:
+def test_free_postures_resist_a_sideways_push(problem: Problem, undisturbed: CaseSolution) -> None:
     aside = Disturbance("gust", push=(0.0, 10.0, 0.0))
     solution = solved(disturbed(problem, aside), problem, Symmetry.OFF, like=undisturbed)
     hands = solution.disturbed["gust"]
@@ -286,4 +285,4 @@ def test_postures_at_the_reach_with_disturbances_are_in_balance(problem: Problem
     assert shaken.highest is not None
     assert undisturbed.lowest + 0.05 < shaken.lowest < shaken.highest < undisturbed.highest - 0.01
     postures, checker = postures_in(scenes[2], problem), checker_of(scenes[2], problem, values)
-    assert postures.solve(values, shaken.lowest + 0.01, checker).solved
+    assert postures.solve(values, Hold(height_m=shaken.lowest + 0.01), checker).solved

@@ -13,23 +13,23 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem, build_problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 BOX = (0.5, 0.5, 0.025)
 
 
-def solve(problem: Problem, payload: Payload, height: float = 1.0) -> HeightSolution:
+def solve(problem: Problem, payload: Payload, height: float = 1.0) -> CaseSolution:
     scene = replace(problem.scene, payload=payload)
     values = problem.space.unscaled(scene.robot.tree)
     posture = PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
     tree = problem.space.resized(scene.robot.tree, values)
     checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
-    return posture.solve(values, height, checker)
+    return posture.solve(values, Hold(height_m=height), checker)
 
 
-def carried(solution: HeightSolution, agent: str) -> float:
+def carried(solution: CaseSolution, agent: str) -> float:
     """Part of the load's weight that an agent carries [N]."""
     return -float(sum(solution.postures[agent].hand_wrenches[side][2] for side in SIDES))
 

@@ -18,7 +18,10 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import objective_value
 from evodesign.problem.precompute import precompute_setting, refuse_heights
-from evodesign.records import Objective, Sense
+from evodesign.records import Hold, Objective, Sense
+
+ALONE = ("", "")
+"""The names of one person and one load."""
 
 
 @pytest.fixture(scope="module")
@@ -49,37 +52,38 @@ def test_a_shorter_person_reaches_less_high(problem: Problem, reach: PersonReach
 
 
 def test_a_kept_reach_is_the_one_that_was_worked_out(problem: Problem, reach: PersonReach) -> None:
-    setting, piece = precompute_setting(problem), Piece(Subject.PERSON_REACH)
+    setting, piece = precompute_setting(problem), Piece(Subject.PERSON_REACH, ALONE)
     known = with_piece(NOTHING_PRECOMPUTED, piece, compute_piece(setting, piece, NOTHING_PRECOMPUTED))
     assert known is not None
-    assert known.person_reaches == (reach,)
+    assert known.person_reaches == {ALONE: reach}
     other = replace(setting, space=replace(setting.space, parameters=setting.space.parameters[:1]))
     assert key_of(other, piece) == key_of(setting, piece), "it does not depend on the robot's hardware"
-    asked = [
-        piece.subject for s in stages(setting, (1.0,), portfolios=False, person_reaches=True) for piece in s
-    ]
+    found = stages(setting, (Hold(height_m=1.0),), portfolios=False, person_reaches=True)
+    asked = [piece.subject for stage in found for piece in stage]
     assert Subject.PERSON_REACH in asked
 
 
 def test_the_shared_reach_ends_where_the_first_can_go_no_higher(
     problem: Problem, reach: PersonReach, evaluator: Evaluator
 ) -> None:
-    low = replace(NOTHING_PRECOMPUTED, person_reaches=(reach, PersonReach(0.1, 1.3, 1)))
+    low = replace(
+        NOTHING_PRECOMPUTED, person_reaches={("tall", ""): reach, ("short", ""): PersonReach(0.1, 1.3)}
+    )
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     assert objective_value("shared_reach_height", result) is None, "nobody asked for the people's reach"
     assert result.reach.highest is not None
     assert result.reach.highest > 1.3
-    highest = min(each.highest for each in low.person_reaches)
+    highest = min(each.highest for each in low.person_reaches.values())
     assert objective_value("shared_reach_height", replace(result, people_highest=highest)) == 1.3
     beyond = replace(result, people_highest=2.0)
     assert objective_value("shared_reach_height", beyond) == result.reach.highest
 
 
 def test_a_height_that_somebody_cannot_hold_is_refused(problem: Problem) -> None:
-    known = replace(NOTHING_PRECOMPUTED, person_reaches=(PersonReach(0.9, 1.9),))
+    known = replace(NOTHING_PRECOMPUTED, person_reaches={ALONE: PersonReach(0.9, 1.9)})
     with pytest.raises(InputError, match=r"task\.heights_m\[0\]: wanted a height that the person can hold"):
         refuse_heights(problem, known)
-    refuse_heights(problem, replace(NOTHING_PRECOMPUTED, person_reaches=(PersonReach(0.8, 1.9),)))
+    refuse_heights(problem, replace(NOTHING_PRECOMPUTED, person_reaches={ALONE: PersonReach(0.8, 1.9)}))
 
 
 def test_a_person_who_holds_the_load_nowhere_is_refused(problem: Problem) -> None:
@@ -88,4 +92,4 @@ def test_a_person_who_holds_the_load_nowhere_is_refused(problem: Problem) -> Non
     asking = replace(problem, objectives=(*problem.objectives, shared))
     with pytest.raises(InputError, match="people who can hold every load, found the person, at no height"):
         refuse_heights(asking, NOTHING_PRECOMPUTED)
-    refuse_heights(asking, replace(NOTHING_PRECOMPUTED, person_reaches=(PersonReach(0.1, 1.9),)))
+    refuse_heights(asking, replace(NOTHING_PRECOMPUTED, person_reaches={ALONE: PersonReach(0.1, 1.9)}))

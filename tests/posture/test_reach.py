@@ -8,7 +8,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.problem.build import Problem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluate import Evaluator
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 
 def design(problem: Problem, name: str) -> tuple[float, ...]:
@@ -44,8 +44,9 @@ def test_postures_end_where_reach_ends(problem: Problem) -> None:
     scene = problem.scene
     checker = Checker(scene, result.tree, AgentModel.of(scene.human, scene.human.tree))
     assert result.reach.highest is not None
-    below = evaluator._postures[0].solve(values, result.reach.highest - 0.005, checker)
-    above = evaluator._postures[0].solve(values, result.reach.highest + 0.02, checker)
+    (postures,) = evaluator._postures.values()
+    below = postures.solve(values, Hold(height_m=result.reach.highest - 0.005), checker)
+    above = postures.solve(values, Hold(height_m=result.reach.highest + 0.02), checker)
     assert below.status is Status.SOLVED
     assert above.status is not Status.SOLVED
     assert above.postures == {}
@@ -57,7 +58,7 @@ def test_height_out_of_reach_is_a_violation_and_has_no_torque(problem: Problem, 
     found = evaluator.assess(shortest).assessment
     assert found.reach is not None
     assert found.reach.highest_m is not None
-    expected = sum(max(0.0, height - found.reach.highest_m) for height in problem.heights)
+    expected = sum(max(0.0, task.height_m - found.reach.highest_m) for task in problem.tasks)
     assert expected > 0.0
     assert found.violation == pytest.approx(expected)
     assert found.status is Status.INFEASIBLE

@@ -14,24 +14,24 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import Problem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 
 
-def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> HeightSolution:
+def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
     scene, space = problem.scene, problem.space
     values = space.unscaled(scene.robot.tree)
     checker = Checker(
         scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
     )
     return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry).solve(
-        values, height, checker
+        values, Hold(height_m=height), checker
     )
 
 
-def cost(solution: HeightSolution) -> float:
+def cost(solution: CaseSolution) -> float:
     return min(attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED)
 
 

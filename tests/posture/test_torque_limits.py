@@ -15,6 +15,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
+from evodesign.records import Hold
 from tests.posture.violations import violations
 
 HEIGHT = 1.2
@@ -24,7 +25,7 @@ def limited(problem: Problem, limits: Mapping[str, float], height: float = HEIGH
     """The default problem at one height, with a robot whose joint torques are no more than this [N m]."""
     robot = replace(problem.scene.robot, torque_limits=limits, limits_torques=bool(limits))
     scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
-    return replace(problem, scenes=scenes, heights=(height,))
+    return replace(problem, scenes=scenes, tasks=(Hold(height_m=height),))
 
 
 def unscaled(problem: Problem) -> tuple[float, ...]:
@@ -48,7 +49,7 @@ def held(problem: Problem) -> DesignResult:
 def test_no_torque_is_beyond_its_limit_and_the_posture_costs_more(
     free: DesignResult, held: DesignResult
 ) -> None:
-    before, after = (result.heights[0].postures[ROBOT] for result in (free, held))
+    before, after = (result.cases[0].postures[ROBOT] for result in (free, held))
     assert abs(before.torques["l_shoulder_pitch"]) > 2.0
     for name, limit in SHOULDERS.items():
         assert abs(after.torques[name]) == pytest.approx(limit, abs=1e-5)
@@ -59,29 +60,29 @@ def test_no_torque_is_beyond_its_limit_and_the_posture_costs_more(
 def test_the_check_measures_how_far_a_torque_is_beyond_its_limit(
     problem: Problem, free: DesignResult, held: DesignResult
 ) -> None:
-    assert held.heights[0].residuals["robot.torque_limits"] < 1e-6
-    assert "robot.torque_limits" not in free.heights[0].residuals
-    assert "human.torque_limits" not in held.heights[0].residuals
+    assert held.cases[0].residuals["robot.torque_limits"] < 1e-6
+    assert "robot.torque_limits" not in free.cases[0].residuals
+    assert "human.torque_limits" not in held.cases[0].residuals
     scene = limited(problem, SHOULDERS).scene
     human = AgentModel.of(scene.human, scene.human.tree)
-    found = violations(Checker(scene, free.tree, human), free.heights[0].postures, HEIGHT)
-    torques = free.heights[0].postures[ROBOT].torques
+    found = violations(Checker(scene, free.tree, human), free.cases[0].postures, HEIGHT)
+    torques = free.cases[0].postures[ROBOT].torques
     assert found["robot.torque_limits"] == pytest.approx(abs(torques["l_shoulder_pitch"]) - 1.5)
 
 
 def test_a_pair_has_the_limit_of_its_weaker_joint(problem: Problem, held: DesignResult) -> None:
     unequal = {"l_shoulder_pitch": 30.0, "r_shoulder_pitch": 1.5}
-    found = Evaluator(limited(problem, unequal)).solve(unscaled(problem)).heights[0].postures
-    assert found[ROBOT].torque_norm == pytest.approx(held.heights[0].postures[ROBOT].torque_norm, rel=1e-6)
-    assert found[HUMAN].torque_norm == pytest.approx(held.heights[0].postures[HUMAN].torque_norm, rel=1e-4)
+    found = Evaluator(limited(problem, unequal)).solve(unscaled(problem)).cases[0].postures
+    assert found[ROBOT].torque_norm == pytest.approx(held.cases[0].postures[ROBOT].torque_norm, rel=1e-6)
+    assert found[HUMAN].torque_norm == pytest.approx(held.cases[0].postures[HUMAN].torque_norm, rel=1e-4)
 
 
 def test_limits_that_nothing_meets_change_nothing(problem: Problem, free: DesignResult) -> None:
     wide = dict.fromkeys(problem.scene.robot.joints, 500.0)
     found = Evaluator(limited(problem, wide)).solve(unscaled(problem))
     assert found.reach.highest == pytest.approx(free.reach.highest, abs=1e-6)
-    assert found.heights[0].postures[ROBOT].torque_norm == pytest.approx(
-        free.heights[0].postures[ROBOT].torque_norm, rel=1e-6
+    assert found.cases[0].postures[ROBOT].torque_norm == pytest.approx(
+        free.cases[0].postures[ROBOT].torque_norm, rel=1e-6
     )
 
 
@@ -107,7 +108,7 @@ def test_gradients_know_a_limit_that_is_met(problem: Problem) -> None:
     for name, step in (("length.forearm", 1e-4), ("density.upper_arm", 0.5)):
         change = step * np.eye(len(values))[names.index(name)]
         ahead, behind = (
-            evaluator.solve(values + sign * change).heights[0].postures[ROBOT].torque_norm
+            evaluator.solve(values + sign * change).cases[0].postures[ROBOT].torque_norm
             for sign in (1.0, -1.0)
         )
         assert gradient.gradient[name] == pytest.approx((ahead - behind) / (2.0 * step), rel=2e-3)
@@ -117,7 +118,7 @@ def test_limits_hold_under_a_heavier_load_too(problem: Problem) -> None:
     heavier = Disturbances((Disturbance("heavier", mass_share=0.2),))
     chosen = limited(problem, SHOULDERS)
     scenes = tuple(replace(scene, disturbances=heavier) for scene in chosen.scenes)
-    result = Evaluator(replace(chosen, scenes=scenes)).solve(unscaled(problem)).heights[0]
+    result = Evaluator(replace(chosen, scenes=scenes)).solve(unscaled(problem)).cases[0]
     assert result.solved
     loaded = [postures[ROBOT] for postures in (result.postures, *result.disturbed.values())]
     assert len(loaded) == 2

@@ -11,7 +11,7 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import Evaluator, height_outcome
+from evodesign.problem.evaluate import Evaluator, case_outcome
 from evodesign.problem.objectives import objective_kind, objective_value
 from evodesign.problem.result import DesignResult
 from evodesign.problem.source import read_source
@@ -104,9 +104,9 @@ def test_people_and_loads_are_named_where_there_are_several(
 ) -> None:
     problem = built(tmp_path, repository, [TALL, SHORT], [LIGHT, HEAVY])
     found = Evaluator(problem).assessment(everyone.values, everyone)
-    names = [(height.human_name, height.payload_name) for height in found.heights]
+    names = [outcome.case.pair for outcome in found.cases]
     assert names == [(h, p) for h in ("male 1.9 m 85 kg", "short") for p in ("5 kg", "box")]
-    single = height_outcome(alone[0].heights[0], alone[0].scenes[0])
+    single = case_outcome(alone[0].cases[0])
     assert b"_name" not in msgspec.json.encode(single)
 
 

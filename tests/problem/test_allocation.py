@@ -23,8 +23,8 @@ from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Parameter
 
 RIGID = 'grasp = "rigid"\nhand_moment_n_m = 7.0'
-SHARE = "\n[[design.policy]]\nname = 'robot_share'\nlower = 0.1\nupper = 0.9\n"
-RATIO = "\n[[design.policy]]\nname = 'effort_ratio'\nlower = -1.0\nupper = 2.0\n"
+SHARE = "\n[[design.allocation]]\nname = 'robot_share'\nlower = 0.1\nupper = 0.9\n"
+RATIO = "\n[[design.allocation]]\nname = 'effort_ratio'\nlower = -1.0\nupper = 2.0\n"
 
 
 def changed(problem: Problem, grasp: str = RIGID, task: str = "", allocations: str = "") -> Problem:
@@ -43,29 +43,59 @@ def shared(problem: Problem) -> Problem:
 @pytest.mark.parametrize(
     ("grasp", "task", "allocations", "words"),
     [
-        (RIGID, "robot_share = 0.5", SHARE, "task.robot_share: wanted either a fixed value or a policy"),
+        (RIGID, "robot_share = 0.5", SHARE, "task.robot_share: wanted either a fixed value or an allocation"),
         (RIGID, "robot_share = 1.2", "", "task.robot_share: wanted float <= 1.0, found 1.2"),
         (RIGID, "robot_share = -0.1", "", "task.robot_share: wanted float >= 0.0, found -0.1"),
-        (RIGID, "", SHARE.replace("0.9", "1.1"), "policy[0].upper: wanted a number from 0 to 1, found 1.1"),
-        (RIGID, "", SHARE.replace("0.9", "0.1"), "policy[0].lower: wanted less than upper (0.1), found 0.1"),
-        (RIGID, "", SHARE + SHARE, "design.policy[1].name: wanted a unique name, found 'robot_share' twice"),
+        (
+            RIGID,
+            "",
+            SHARE.replace("0.9", "1.1"),
+            "allocation[0].upper: wanted a number from 0 to 1, found 1.1",
+        ),
+        (
+            RIGID,
+            "",
+            SHARE.replace("0.9", "0.1"),
+            "allocation[0].lower: wanted less than upper (0.1), found 0.1",
+        ),
+        (
+            RIGID,
+            "",
+            SHARE + SHARE,
+            "design.allocation[1].name: wanted a unique name, found 'robot_share' twice",
+        ),
         (RIGID, "", SHARE.replace("bot_s", "bots"), "did you mean 'robot_share'?"),
         (RIGID, "effort_weights = { robot = 2.0 }", RATIO, "task.effort_weights: wanted either a fixed"),
-        (RIGID, "", RATIO.replace("2.0", "9.0"), "policy[0].upper: wanted a number from -6 to 6, found 9"),
+        (
+            RIGID,
+            "",
+            RATIO.replace("2.0", "9.0"),
+            "allocation[0].upper: wanted a number from -6 to 6, found 9",
+        ),
         (
             'grasp = "point"',
             "robot_share = 0.6",
             "",
             "robot's share that point grasps leave here, 0.5, found",
         ),
-        ('grasp = "point"', "", SHARE, "design.policy[0].lower: wanted the robot's share that point grasps"),
+        (
+            'grasp = "point"',
+            "",
+            SHARE,
+            "design.allocation[0].lower: wanted the robot's share that point grasps",
+        ),
         (
             RIGID.replace("7", "1"),
             "robot_share = 0.9",
             "",
             "share from 0.418451 to 0.581549, which rigid gra",
         ),
-        (RIGID.replace("7", "1"), "", SHARE, "design.policy[0].lower: wanted a share from 0.418451 to 0.58"),
+        (
+            RIGID.replace("7", "1"),
+            "",
+            SHARE,
+            "design.allocation[0].lower: wanted a share from 0.418451 to 0.58",
+        ),
         (RIGID.replace("rigid", "point"), "", "", "payload.hand_moment_n_m: wanted grasp = 'rigid' with it"),
         (RIGID.replace("7", "-7"), "", "", "payload.hand_moment_n_m: wanted float >= 0.0, found -7.0"),
         (
@@ -99,8 +129,8 @@ def test_weights_are_the_files_or_equal(problem: Problem) -> None:
 
 def test_allocations_are_parameters_without_links(shared: Problem) -> None:
     assert shared.space.records[-2:] == (
-        Parameter(name="policy.robot_share", lower=0.1, upper=0.9, unit="1"),
-        Parameter(name="policy.effort_ratio", lower=-1.0, upper=2.0, unit="1"),
+        Parameter(name="allocation.robot_share", lower=0.1, upper=0.9, unit="1"),
+        Parameter(name="allocation.effort_ratio", lower=-1.0, upper=2.0, unit="1"),
     )
     tree = shared.scene.robot.tree
     unscaled = shared.space.unscaled(tree)
@@ -115,19 +145,21 @@ def test_population_files_hold_allocations(shared: Problem) -> None:
     text = designs_text("some", {"one": values}, shared.space, "a remark")
     assert '"robot_share" = 0.25' in text
     assert read_designs(text, "some.toml", shared.space, tree)["one"] == values
-    with pytest.raises(InputError, match=r"policy\.robot_share: wanted a number from 0 to 1, found 1.5"):
+    with pytest.raises(InputError, match=r"allocation\.robot_share: wanted a number from 0 to 1, found 1.5"):
         read_designs(text.replace("0.25", "1.5"), "some.toml", shared.space, tree)
-    with pytest.raises(InputError, match=r"policy: wanted a policy parameter of the problem, found 'hape'"):
+    with pytest.raises(
+        InputError, match=r"allocation: wanted one of the problem's allocation parameters, found 'hape'"
+    ):
         read_designs(text.replace('"robot_share"', '"hape"'), "some.toml", shared.space, tree)
 
 
 def test_notebooks_take_allocations_of_any_sign(shared: Problem) -> None:
     text = shared.source.text + "\n[solver]\nseeds = false\ncompile = false\n"
     opened = OpenedProblem(msgspec.structs.replace(shared.source, text=text))
-    found = opened.evaluate({"policy.effort_ratio": -0.5, "policy.robot_share": 0.3})
-    assert found.parameters["policy.effort_ratio"] == -0.5
-    with pytest.raises(InputError, match=r"policy\.robot_share: wanted a number from 0 to 1, found -0.3"):
-        opened.evaluate({"policy.robot_share": -0.3})
+    found = opened.evaluate({"allocation.effort_ratio": -0.5, "allocation.robot_share": 0.3})
+    assert found.parameters["allocation.effort_ratio"] == -0.5
+    with pytest.raises(InputError, match=r"allocation\.robot_share: wanted a number from 0 to 1, found -0.3"):
+        opened.evaluate({"allocation.robot_share": -0.3})
 
 
 def gradients(problem: Problem, values: tuple[float, ...]) -> Mapping[str, Mapping[str, float]]:
@@ -143,7 +175,7 @@ def test_objectives_move_with_allocations_as_differences_say(shared: Problem) ->
     values = (*exact.space.unscaled(exact.scene.robot.tree)[:-2], 0.35, 0.3)
     found = gradients(exact, values)
     names = [parameter.name for parameter in exact.space.parameters]
-    for name in ("policy.robot_share", "policy.effort_ratio", "length.forearm"):
+    for name in ("allocation.robot_share", "allocation.effort_ratio", "length.forearm"):
         step = np.where(np.array(names) == name, 1e-4, 0.0)
         both = [
             evaluator.assess_values(tuple(np.array(values) + sign * step)).assessment.objectives
@@ -152,8 +184,8 @@ def test_objectives_move_with_allocations_as_differences_say(shared: Problem) ->
         for objective in ("robot_torque", "human_torque", "reach_height"):
             slope = (both[0][objective] - both[1][objective]) / 2e-4
             assert found[objective][name] == pytest.approx(slope, rel=1e-4, abs=1e-4), (objective, name)
-    assert abs(found["robot_torque"]["policy.robot_share"]) > 1.0
-    assert found["reach_height"]["policy.effort_ratio"] == pytest.approx(0.0, abs=1e-12)
+    assert abs(found["robot_torque"]["allocation.robot_share"]) > 1.0
+    assert found["reach_height"]["allocation.effort_ratio"] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_polishing_moves_allocations(shared: Problem) -> None:
@@ -161,7 +193,7 @@ def test_polishing_moves_allocations(shared: Problem) -> None:
     aim = aim_of(shared, {"robot_torque": 1.0}, "")
     done = polish(Evaluator(shared), shared.space.genome(begun), aim, 4, lambda step: None)
     assert done.after.objectives["robot_torque"] < 0.7 * done.before.objectives["robot_torque"]
-    assert done.after.design["policy.robot_share"] < 0.45
+    assert done.after.design["allocation.robot_share"] < 0.45
 
 
 def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem, tmp_path: Path) -> None:
@@ -169,7 +201,7 @@ def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem, tmp_pat
     for name, text in {"p.toml": shared.source.text, **shared.source.files}.items():
         (tmp_path / "problems" / name).resolve().parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "problems" / name).write_text(text)
-    with pytest.raises(InputError, match=r"design\.policy: wanted no effort_ratio in the joint problem"):
+    with pytest.raises(InputError, match=r"design\.allocation: wanted no effort_ratio in the joint problem"):
         start_baseline(tmp_path / "problems/p.toml", tmp_path / "run", 1, 1, 1, "serial", json=False)
     assert not (tmp_path / "run").exists()
 

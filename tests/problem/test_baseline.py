@@ -69,7 +69,7 @@ def test_the_logged_cost_is_that_of_equation_14(source: ProblemSource) -> None:
     """From the logged torque norms and design, with the weights of the file."""
     problem = build_problem(source)
     assessment = Baseline(problem).assess(problem.joint_start[1]).assessment
-    (height,) = assessment.heights
+    (height,) = assessment.cases
     values = tuple(assessment.design.values())
     tree = problem.space.resized(problem.scene.robot.tree, values)
     assert height.robot_torque_norm is not None
@@ -106,7 +106,7 @@ def test_limits_that_are_not_enforced_are_named(repository: Path) -> None:
     published = read_source(repository / "problems" / "sartore2022_as_published.toml")
     problem = build_problem(published)
     assessment = Baseline(problem).assess(problem.joint_start[0]).assessment
-    height = assessment.heights[0]
+    height = assessment.cases[0]
     assert assessment.status is Status.SOLVED
     assert assessment.violation == 0.0
     assert "limits not enforced and exceeded: " in height.reason

@@ -15,13 +15,13 @@ from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.precompute.pieces import Subject, key_of, stages
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import Evaluator, detail_of, height_outcome
+from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.objectives import objective_value
 from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
-from evodesign.records import HeightDetail, HeightOutcome, ProblemSource
+from evodesign.records import CaseDetail, CaseOutcome, ProblemSource
 
 TABLES = """
 [[disturbance]]
@@ -117,7 +117,7 @@ def test_the_joint_problem_refuses_disturbances(shaken: Problem) -> None:
 
 
 def test_disturbed_cases_count_as_cases(result: DesignResult) -> None:
-    (height,) = result.heights
+    (height,) = result.cases
     cases = (height.postures, *height.disturbed.values())
     norms = {agent: [postures[agent].torque_norm for postures in cases] for agent in (ROBOT, HUMAN)}
     assert len(norms[ROBOT]) == 3
@@ -131,16 +131,15 @@ def test_disturbed_cases_count_as_cases(result: DesignResult) -> None:
 
 
 def test_records_hold_the_load_cases_and_nothing_where_there_are_none(result: DesignResult) -> None:
-    (height,) = result.heights
-    scene = result.scenes[0]
-    outcome, detail = height_outcome(height, scene), detail_of(height, scene)
+    (height,) = result.cases
+    outcome, detail = case_outcome(height), detail_of(height)
     posture = height.disturbed["heavier"][ROBOT]
     assert outcome.disturbed["heavier"][ROBOT] == posture.torque_norm
-    assert detail.disturbed["heavier"][ROBOT].torques_n_m == posture.torques
-    for record, kind in ((outcome, HeightOutcome), (detail, HeightDetail)):
+    assert detail.instants[0].disturbed["heavier"][ROBOT].torques_n_m == posture.torques
+    for record, kind in ((outcome, CaseOutcome), (detail, CaseDetail)):
         assert msgspec.json.decode(msgspec.json.encode(record), type=kind) == record
-    undisturbed = replace(height, disturbed={})
-    for record in (height_outcome(undisturbed, scene), detail_of(undisturbed, scene)):
+    undisturbed = replace(height, instants=(replace(height.instants[0], disturbed={}),))
+    for record in (case_outcome(undisturbed), detail_of(undisturbed)):
         assert b"disturbed" not in msgspec.json.encode(record)
 
 
@@ -148,7 +147,7 @@ def test_the_result_shows_torques_and_wrenches_of_every_case(
     shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
     (told,) = evaluation_json(shaken, values, result, exact.assessment(values, result), {})["heights"]
-    (height,) = result.heights
+    (height,) = result.cases
     assert list(told["disturbed"]) == ["heavier", "disturbance_2"]
     shown = told["disturbed"]["disturbance_2"]
     assert shown["human"]["torque_norm"] == height.disturbed["disturbance_2"][HUMAN].torque_norm
@@ -185,12 +184,12 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
 ) -> None:
     subjects = {
         piece.subject
-        for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False)
+        for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False)
         for piece in stage
     }
     assert Subject.PERSON not in subjects
     undisturbed = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
-    for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False):
+    for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False):
         for piece in stage:
             same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
             assert same is (piece.subject is not Subject.POSTURE), "start portfolios of undisturbed reach do"

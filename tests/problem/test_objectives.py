@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from evodesign.posture.results import HeightSolution
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES
@@ -24,8 +24,7 @@ def result(problem: Problem, evaluator: Evaluator) -> DesignResult:
 
 def norms(result: DesignResult, agent: str) -> list[float]:
     return [
-        float(np.sqrt(sum(t**2 for t in height.postures[agent].torques.values())))
-        for height in result.heights
+        float(np.sqrt(sum(t**2 for t in height.postures[agent].torques.values()))) for height in result.cases
     ]
 
 
@@ -46,8 +45,8 @@ def test_mass_and_its_height_agree_with_pinocchio(result: DesignResult) -> None:
 
 
 def test_torques_of_a_design_that_misses_a_height_are_absent(result: DesignResult) -> None:
-    missed = HeightSolution(1.2, Status.INFEASIBLE, "out of reach", {}, {}, (), "")
-    broken = replace(result, heights=(*result.heights[:2], missed))
+    missed = CaseSolution(result.cases[2].case, Status.INFEASIBLE, "out of reach")
+    broken = replace(result, cases=(*result.cases[:2], missed))
     for name in ("robot_torque", "human_torque", "worst_robot_torque", "worst_human_torque"):
         assert OBJECTIVES[name].value(broken) is None
     assert OBJECTIVES["reach_height"].value(broken) == result.reach.highest
@@ -62,7 +61,7 @@ def limited(result: DesignResult) -> DesignResult:
 
 def test_peak_torque_is_the_largest_share_of_a_joints_limit(result: DesignResult) -> None:
     shares = []
-    for height in result.heights:
+    for height in result.cases:
         torques = height.postures["robot"].torques
         elbows = [abs(torque) / 8.0 for name, torque in torques.items() if "elbow" in name]
         others = [abs(torque) / 20.0 for name, torque in torques.items() if "elbow" not in name]

@@ -109,10 +109,10 @@ def result(problem: Problem, evaluator: Evaluator) -> DesignResult:
 def efforts(result: DesignResult) -> list[float]:
     """The largest share of a strength at each height, by a loop over the joints."""
     found = []
-    for height in result.heights:
+    for height in result.cases:
         largest = 0.0
         for joint, torque in height.postures[HUMAN].torques.items():
-            both = result.scenes[height.scene].human.strengths.get(joint)
+            both = result.scene_of(height.case).human.strengths.get(joint)
             way = both and (both.negative if torque < 0.0 else both.positive)
             if way:
                 largest = max(largest, abs(torque) / way.moment)

@@ -14,7 +14,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.polish import Step, aim_of, polish
-from evodesign.records import Genome
+from evodesign.records import Genome, Hold
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_one_objective_gets_better_and_every_height_is_held(
 
 def test_height_at_the_edge_of_reach_stays_within(problem: Problem, unscaled: Genome) -> None:
     """Shorter arms and legs would need less torque, but the unscaled robot only just reaches this height."""
-    edge = replace(problem, heights=(1.277,))
+    edge = replace(problem, tasks=(Hold(height_m=1.277),))
     seen: list[Step] = []
     done = polish(Evaluator(edge), unscaled, aim_of(edge, {"robot_torque": 1.0}, ""), 8, seen.append)
     assert done.before.reach is not None
@@ -88,7 +88,7 @@ def test_polish_moves_lengths_and_leaves_materials_as_they_are(problem: Problem)
         replace(each, lower=1050.0, upper=2700.0, materials=choices) if each.kind == "density" else each
         for each in problem.space.parameters
     )
-    chosen = replace(problem, space=DesignSpace(parameters), heights=(1.0,), start=())
+    chosen = replace(problem, space=DesignSpace(parameters), tasks=(Hold(height_m=1.0),), start=())
     genome = (*(0.45,) * 8, *(0.25, 0.75) * 4)
     done = polish(Evaluator(chosen), genome, aim_of(chosen, {"robot_torque": 1.0}, ""), 4, lambda step: None)
     assert done.after.objectives["robot_torque"] < done.before.objectives["robot_torque"]

@@ -10,6 +10,7 @@ from evodesign.mechanics.scene import Grasp
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
+from evodesign.records import Hold
 
 FILES = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
 
@@ -26,7 +27,7 @@ def test_three_people_with_three_loads_are_nine_pairs() -> None:
     problem = build_problem(read_source(FILES[0].parent / "three_people_three_loads.toml"))
     pairs = {(scene.human.label, scene.payload.mass) for scene in problem.scenes}
     assert pairs == {(who, mass) for who in ("short", "middle", "tall") for mass in (5.0, 10.0, 15.0)}
-    assert problem.heights == (0.8, 1.0, 1.2)
+    assert [task.height_m for task in problem.tasks] == [0.8, 1.0, 1.2]
 
 
 def test_the_shared_load_is_rigidly_held_and_disturbed() -> None:
@@ -37,6 +38,6 @@ def test_the_shared_load_is_rigidly_held_and_disturbed() -> None:
         assert (scene.payload.grasp, scene.payload.mass) == (Grasp.RIGID, 10.0)
         found = [(case.mass_share, case.push) for case in scene.disturbances.cases]
         assert found == [(0.2, (0.0, 0.0, 0.0)), (0.0, (20.0, 0.0, 0.0)), (0.0, (-20.0, 0.0, 0.0))]
-    assert (min(problem.heights), max(problem.heights)) == (0.4, 1.6)
+    assert (problem.tasks[0], problem.tasks[-1]) == (Hold(height_m=0.4), Hold(height_m=1.6))
     assert problem.symmetry is Symmetry.ON
-    assert "policy.effort_ratio" in [parameter.name for parameter in problem.space.parameters]
+    assert "allocation.effort_ratio" in [parameter.name for parameter in problem.space.parameters]

@@ -92,7 +92,7 @@ def test_torque_gradients_follow_the_norm(
     """d |tau| = tau . d tau / |tau|, paired joints counted twice."""
     for agent, name in ((ROBOT, "robot_torque"), (HUMAN, "human_torque")):
         slopes = []
-        for part in derivative.heights:
+        for part in derivative.cases:
             assert not isinstance(part, NotDifferentiable)
             form = next(form for form in part.forms if form.agent.name == agent)
             weighted = np.array(form.counts) * part.values[f"{agent}.torques"]
@@ -128,8 +128,8 @@ def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
     costs = []
     for share in (-1e-4, 1e-4):
         result = tight.solve((np.array(derivative.values) + share * along).tolist())
-        costs.append([min(attempt.cost for attempt in height.attempts) for height in result.heights])
-    for part, before, after in zip(derivative.heights, *costs, strict=True):
+        costs.append([min(attempt.cost for attempt in height.attempts) for height in result.cases])
+    for part, before, after in zip(derivative.cases, *costs, strict=True):
         assert not isinstance(part, NotDifferentiable)
         assert (after - before) / 2e-4 == pytest.approx(part.cost_slope @ along, rel=1e-5)
 

@@ -123,8 +123,8 @@ def test_every_required_height_is_held_within_the_checks_tolerance(handles: Eval
     for lengths in ((1.0,) * 8, PAPER_START):
         values = of_lengths(handles.problem, lengths)
         result = handles.solve(values)
-        assert [height.status for height in result.heights] == [Status.SOLVED] * 3
-        assert all(max(height.residuals.values()) < TOLERANCE for height in result.heights)
+        assert [height.status for height in result.cases] == [Status.SOLVED] * 3
+        assert all(max(height.residuals.values()) < TOLERANCE for height in result.cases)
         found = handles.assessment(values, result)
         assert found.violation == 0.0
         assert set(found.objectives) == {"robot_torque", "human_torque", "reach_height"}

@@ -336,7 +336,7 @@ def test_its_posture_is_found_within_the_limits_as_they_are_written(users_proble
     """At 1.0 m the person stands upright, so that the hips' turned limits do not matter."""
     problem, tree = users_problem, users_problem.scene.human.tree
     result = Evaluator(problem).solve(problem.space.unscaled(problem.scene.robot.tree))
-    (height,) = result.heights
+    (height,) = result.cases
     assert height.status is Status.SOLVED, height.reason
     posture = height.postures[HUMAN]
     for name, angle in posture.joints.items():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.problem.build import Problem
-from evodesign.records import AgentDetail, Detail, HeightDetail
+from evodesign.records import AgentDetail, CaseDetail, Detail, Hold, InstantDetail
 from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
 from evodesign.report.scene_set import SceneSet
 
@@ -29,16 +29,16 @@ def random_cast(problem: Problem, seed: int) -> SceneModels:
 def random_detail(problem: Problem, seed: int, heights: tuple[float, ...] = (0.8, 1.0, 1.2)) -> Detail:
     rng = np.random.default_rng(seed)
     shown = tuple(
-        HeightDetail(
-            height_m=height,
-            agents={agent.name: random_posture(agent, rng) for agent in (scene.robot, scene.human)},
-            human_name=scene.human.label,
-            payload_name=scene.payload.label,
-        )
+        CaseDetail(case=scene.case(Hold(height_m=height)), instants=(random_instant(scene, rng),))
         for scene in problem.scenes
         for height in heights
     )
-    return Detail(evaluation=0, heights=shown)
+    return Detail(evaluation=0, cases=shown)
+
+
+def random_instant(scene: Scene, rng: np.random.Generator) -> InstantDetail:
+    agents = {agent.name: random_posture(agent, rng) for agent in (scene.robot, scene.human)}
+    return InstantDetail(time_s=0.0, agents=agents)
 
 
 def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
@@ -57,4 +57,4 @@ def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
 
 def random_stages(problem: Problem, seed: int) -> list[PlacedScene]:
     models = random_cast(problem, seed)
-    return [placed_scene(models, detail) for detail in random_detail(problem, seed).heights]
+    return [placed_scene(models, detail) for detail in random_detail(problem, seed).cases]

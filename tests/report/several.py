@@ -11,10 +11,10 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import (
     Assessment,
+    CaseDetail,
+    CaseOutcome,
     Detail,
     Evaluation,
-    HeightDetail,
-    HeightOutcome,
     ProblemSource,
     ReachOutcome,
     Status,
@@ -46,21 +46,19 @@ def problem_of_several(problem: Problem) -> Problem:
     return build_problem(ProblemSource("several.toml", before + people + loads + task, problem.source.files))
 
 
-def outcome(detail: HeightDetail) -> HeightOutcome:
+def outcome(detail: CaseDetail) -> CaseOutcome:
     """A solved case with the torques of its posture."""
     norms = {
         name: float(np.linalg.norm([*agent.torques_n_m.values()])) for name, agent in detail.agents.items()
     }
-    return HeightOutcome(
-        height_m=detail.height_m,
+    return CaseOutcome(
+        case=detail.case,
         status=Status.SOLVED,
         reason="solved",
         robot_torque_norm=norms["robot"],
         human_torque_norm=norms["human"],
         iterations=7,
         residual=1e-9,
-        human_name=detail.human_name,
-        payload_name=detail.payload_name,
     )
 
 
@@ -69,7 +67,7 @@ def write_several(problem: Problem, place: Path, designs: int = 2, cases: int = 
     with RunWriter(place, header_of(problem, problem.settings("random", 4, 1), budget=4)) as log:
         for number in range(designs):
             values = random_values(problem, number)
-            heights = random_detail(problem, number, HEIGHTS).heights[:cases]
+            heights = random_detail(problem, number, HEIGHTS).cases[:cases]
             assessment = Assessment(
                 design=dict(problem.space.named(values)),
                 objectives={"robot_torque": 1.0 + number, "human_torque": 9.0 - number, "reach_height": 1.25},
@@ -77,7 +75,7 @@ def write_several(problem: Problem, place: Path, designs: int = 2, cases: int = 
                 status=Status.SOLVED,
                 reason="solved",
                 reach=ReachOutcome(lowest_m=0.1, highest_m=1.25, status=Status.SOLVED, reason=""),
-                heights=tuple(map(outcome, heights)),
+                cases=tuple(map(outcome, heights)),
             )
             evaluation = Evaluation(
                 number=number,
@@ -87,6 +85,6 @@ def write_several(problem: Problem, place: Path, designs: int = 2, cases: int = 
                 seconds=0.1,
                 worker="here",
             )
-            log.detail(Detail(evaluation=number, heights=heights))
+            log.detail(Detail(evaluation=number, cases=heights))
             log.evaluation(evaluation)
     return read_run(place)

@@ -33,7 +33,7 @@ def posture_of(detail: AgentDetail) -> AgentPosture:
 @pytest.mark.parametrize("seed", range(3))
 def test_links_stand_where_the_kinematics_of_the_solver_puts_them(seed: int, problem: Problem) -> None:
     models = random_cast(problem, seed)
-    for height in random_detail(problem, seed).heights:
+    for height in random_detail(problem, seed).cases:
         stage = placed_scene(models, height)
         for agent in models.agents:
             posture = height.agents[agent.name]
@@ -50,7 +50,7 @@ def test_links_stand_where_the_kinematics_of_the_solver_puts_them(seed: int, pro
 
 def test_links_stand_where_pinocchio_puts_them(problem: Problem) -> None:
     models = random_cast(problem, 7)
-    height = random_detail(problem, 7).heights[0]
+    height = random_detail(problem, 7).cases[0]
     stage = placed_scene(models, height)
     for agent in models.agents:
         state = AgentModel.of(agent, models.trees[agent.name]).at(posture_of(height.agents[agent.name]))
@@ -74,7 +74,7 @@ def test_sliding_and_turning_joints_move_as_in_the_solver() -> None:
 
 def test_moved_wrenches_have_the_logged_force_and_moment(problem: Problem) -> None:
     models = random_cast(problem, 3)
-    height = random_detail(problem, 3).heights[0]
+    height = random_detail(problem, 3).cases[0]
     stage = placed_scene(models, height)
     for agent in models.agents:
         posture = height.agents[agent.name]
@@ -97,7 +97,7 @@ def test_moved_wrenches_have_the_logged_force_and_moment(problem: Problem) -> No
 
 def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: Problem) -> None:
     models = random_cast(problem, 3)
-    height = random_detail(problem, 3).heights[0]
+    height = random_detail(problem, 3).cases[0]
     height.agents[ROBOT].foot_wrenches["left"] = (0.0,) * 6
     stage = placed_scene(models, height)
     sole = stage.frames[ROBOT][problem.scene.robot.soles["left"]]
@@ -106,7 +106,7 @@ def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: Problem) -> Non
 
 def test_everything_with_a_shape_is_seen(problem: Problem) -> None:
     models = random_cast(problem, 1)
-    stage = placed_scene(models, random_detail(problem, 1).heights[1])
+    stage = placed_scene(models, random_detail(problem, 1).cases[1])
     seen = [name for name, _, _ in stage.solids]
     assert seen.count(LOAD) == 1
     for name in (ROBOT, HUMAN):

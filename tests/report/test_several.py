@@ -58,7 +58,7 @@ def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     show_design(run.directory, 1, jobs=1, json=False, plot=None)
     rows = cells(capsys.readouterr().out)
-    outcomes = run.evaluations[1].assessment.heights
+    outcomes = run.evaluations[1].assessment.cases
     for (human, payload, height), outcome in zip(CASES, outcomes, strict=True):
         norms = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
         assert [row[3:5] for row in rows if row[:3] == [human, payload, f"{height:g} m"]] == [norms]
@@ -88,7 +88,7 @@ def test_card_names_the_case_of_largest_torque_and_contact_force(
     rows = cells(capsys.readouterr().out)
     names = [f"{human}, {payload}, {height:g} m" for human, payload, height in CASES]
     for agent in (ROBOT, HUMAN):
-        postures = [detail.agents[agent] for detail in run.details[1].heights]
+        postures = [detail.agents[agent] for detail in run.details[1].cases]
         torques = pd.DataFrame([posture.torques_n_m for posture in postures], index=names)
         sizes = torques.abs()
         for joint in sizes.max().sort_values(ascending=False).index[:6]:
@@ -122,7 +122,7 @@ def test_tables_say_who_holds_what(folder: Path, run: Run) -> None:
         found = dict.fromkeys((row["human"], row["payload"], float(row["height_m"])) for row in rows)
         assert [*found] == CASES
     table = pd.DataFrame(csv.DictReader(io.StringIO((folder / "postures.csv").read_text())))
-    for (human, payload, height), detail in zip(CASES, run.details[1].heights, strict=True):
+    for (human, payload, height), detail in zip(CASES, run.details[1].cases, strict=True):
         own = table[(table.human == human) & (table.payload == payload) & (table.height_m == f"{height}")]
         joints = own[(own.agent == HUMAN) & (own.kind != "base")]
         told = {name: float(torque) for name, torque in zip(joints.name, joints.torque, strict=True)}
@@ -133,7 +133,7 @@ def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
     model = mujoco.MjModel.from_xml_path(str(folder / "robot.xml"))
     data = mujoco.MjData(model)
     assert model.nkey == len(CASES)
-    for (human, payload, height), detail in zip(CASES, run.details[1].heights, strict=True):
+    for (human, payload, height), detail in zip(CASES, run.details[1].cases, strict=True):
         key = model.key(f"{human}, {payload}, load at {height:g} m")
         mujoco.mj_resetDataKeyframe(model, data, key.id)
         for joint, position in detail.agents[ROBOT].joints_rad.items():
@@ -159,7 +159,7 @@ def test_recording_shows_each_case_with_its_own_person_and_load(
         time = 2_000_000_000 * number
         scene = next(s for s in several.scenes if (s.human.label, s.payload.label) == (human, payload))
         tree = human_tree(PEOPLE[human])
-        posture = posture_of(run.details[1].heights[number].agents[HUMAN])
+        posture = posture_of(run.details[1].cases[number].agents[HUMAN])
         state = AgentModel.of(scene.human, tree).at(posture)
         world_from = frames(seen["/tf", time])
         for link in ("LeftPalm", "RightPalm", "Head", "LeftSole"):
@@ -192,7 +192,7 @@ def test_page_holds_everyone_and_every_case(run: Run) -> None:
     assert masses == pytest.approx({name: person.mass for name, person in PEOPLE.items()})
     assert {name: load.mass_kg for name, load in content.bodies.payloads.items()} == LOADS
     for number, design in content.designs.items():
-        assert design.postures == run.details[number].heights
+        assert design.postures == run.details[number].cases
 
 
 def test_page_keeps_fewer_designs_of_many_pairs(
@@ -207,7 +207,7 @@ def test_page_keeps_fewer_designs_of_many_pairs(
 
 def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(run: Run, several: Problem) -> None:
     scene_set = random_company(several, 1)
-    stages = [scene_set.placed_scene(run.details[1].heights[number]) for number in (0, 1, 3)]
+    stages = [scene_set.placed_scene(run.details[1].cases[number]) for number in (0, 1, 3)]
     names = ["{}, {}\nload at {:g} m".format(*CASES[number]) if number != 2 else "" for number in range(4)]
     assert [axes.get_title() for axes in posture_figure(stages, "all but the third").axes] == names
 
@@ -223,12 +223,12 @@ def test_figures_of_show_are_written(several: Problem, tmp_path: Path) -> None:
 def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: Run) -> None:
     known = quantities(run.header, run.evaluations[0])
     for evaluation in run.evaluations:
-        outcomes = evaluation.assessment.heights
-        norms = [one.robot_torque_norm for one in outcomes if one.height_m == 0.8]
+        outcomes = evaluation.assessment.cases
+        norms = [one.robot_torque_norm for one in outcomes if one.case.task.height_m == 0.8]
         assert len(norms) == 4
         assert known["robot_torque@0.8"](evaluation) == max(each for each in norms if each is not None)
         assert known["human_torque@tall@[crate]@1"](evaluation) == outcomes[-1].human_torque_norm
-    bound = run.evaluations[0].assessment.heights[-1].human_torque_norm
+    bound = run.evaluations[0].assessment.cases[-1].human_torque_norm
     wanted = conditions(f"human_torque@tall@[crate]@1 <= {bound!r}", known, "--where")
     assert run.evaluations[0] in meeting(run.evaluations, wanted)
 
@@ -239,7 +239,7 @@ def test_cases_are_a_data_frame_with_people_and_loads(run: Run) -> None:
     assert len(table) == len(run.evaluations) * len(CASES)
     for number, own in table.groupby("number"):
         assert [*zip(own.human, own.payload, own.height, strict=True)] == CASES
-        outcomes = run.evaluations[int(str(number))].assessment.heights
+        outcomes = run.evaluations[int(str(number))].assessment.cases
         assert [*own.robot_torque] == [one.robot_torque_norm for one in outcomes]
         assert [*own.human_torque] == [one.human_torque_norm for one in outcomes]
     assert opened.cases(opened.designs[:1])["number"] == [0] * len(CASES)

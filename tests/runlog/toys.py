@@ -16,13 +16,16 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
+    Case,
+    CaseDetail,
+    CaseOutcome,
     Detail,
     Evaluation,
     Front,
     Generation,
     Genome,
-    HeightDetail,
-    HeightOutcome,
+    Hold,
+    InstantDetail,
     Objective,
     Parameter,
     ProblemSource,
@@ -74,8 +77,8 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
     violation = max(0.0, 0.3 - genome[0])
     solved = violation == 0.0
     torque = 30.0 * (1.0 + (genome[0] - 0.5) ** 2 + genome[1] / 3.0)
-    height = HeightOutcome(
-        height_m=1.0,
+    outcome = CaseOutcome(
+        case=Case(task=Hold(height_m=1.0)),
         status=Status.SOLVED if solved else Status.INFEASIBLE,
         reason="" if solved else "too high by a third",
         robot_torque_norm=torque if solved else None,
@@ -87,14 +90,14 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
         design=design_of(header.parameters, genome),
         objectives={"reach_height": reach} | ({"robot_torque": torque} if solved else {}),
         violation=violation,
-        status=height.status,
-        reason=height.reason,
+        status=outcome.status,
+        reason=outcome.reason,
         reach=ReachOutcome(lowest_m=None, highest_m=reach, status=Status.SOLVED, reason=""),
-        heights=(height,) * 3,
+        cases=(outcome,) * 3,
     )
 
 
-def toy_heights(genome: Genome) -> tuple[HeightDetail, ...]:
+def toy_cases(genome: Genome) -> tuple[CaseDetail, ...]:
     """A posture of one joint that follows from the genome."""
     wrenches = dict.fromkeys(("left", "right"), (0.0, 0.0, 12.5, 0.0, 0.0, 0.0))
     agent = AgentDetail(
@@ -105,16 +108,17 @@ def toy_heights(genome: Genome) -> tuple[HeightDetail, ...]:
         hand_wrenches=wrenches,
         foot_wrenches=wrenches,
     )
-    return (HeightDetail(height_m=1.0, agents={"robot": agent, "human": agent}),)
+    instant = InstantDetail(time_s=0.0, agents={"robot": agent, "human": agent})
+    return (CaseDetail(case=Case(task=Hold(height_m=1.0)), instants=(instant,)),)
 
 
 def toy_assessed(genome: Genome, header: RunHeader) -> Assessed:
     assessment = toy_assessment(genome, header)
-    return Assessed(assessment=assessment, heights=toy_heights(genome))
+    return Assessed(assessment=assessment, cases=toy_cases(genome))
 
 
 def toy_detail(evaluation: Evaluation) -> Detail:
-    return Detail(evaluation=evaluation.number, heights=toy_heights(evaluation.genome))
+    return Detail(evaluation=evaluation.number, cases=toy_cases(evaluation.genome))
 
 
 def toy_evaluations(header: RunHeader, count: int) -> list[Evaluation]:

@@ -21,8 +21,9 @@ from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.candidate import Trial
 from evodesign.posture.check import Checker
-from evodesign.posture.results import HeightSolution, Neighbour
+from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
+from evodesign.records import Task
 
 __all__ = ["NO_PART_OF_PROGRAMS", "Formulation", "Setting", "program_key"]
 
@@ -51,7 +52,7 @@ class Setting:
 
 
 class Formulation(Protocol):
-    """A way of finding the postures of a design at a height [m]; programs are built when they are needed.
+    """A way of finding the postures of a design for a task; programs are built when they are needed.
 
     Attributes:
         name: by which attempts and solutions refer to it.
@@ -60,25 +61,25 @@ class Formulation(Protocol):
     name: str
 
     def solve(
-        self, design: Sequence[float], height: float, portfolio: Sequence[Start], checker: Checker
+        self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the starts of a portfolio lead to, or fixed starts if there are none that fit."""
 
     def solve_beside(
         self,
         design: Sequence[float],
-        height: float,
+        task: Task,
         portfolio: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
         """What the solution in a similar scene leads to, and the first starts of a portfolio."""
 
-    def landscape(self, height: float) -> Landscape:
+    def landscape(self, task: Task) -> Landscape:
         """The cost, of which a portfolio of starts is made."""
 
     def derivative(
-        self, design: Sequence[float], solution: HeightSolution
+        self, design: Sequence[float], solution: CaseSolution
     ) -> PostureDerivative | NotDifferentiable:
         """How a solution that this formulation found moves with the design."""
 

@@ -32,14 +32,14 @@ from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.formulations.codesign_start import drawn_postures, standard_postures
 from evodesign.posture.limit_groups import Enforced
-from evodesign.posture.results import Attempt, HeightSolution, Instant
+from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.terms.torque import effort
 from evodesign.posture.warm_start import instant_of, layout_of, start_from
-from evodesign.records import Genome, Status
+from evodesign.records import Genome, Status, Task
 
 __all__ = ["JointProblem", "JointSettings", "JointSolution"]
 
@@ -81,13 +81,13 @@ class JointSolution:
 
     Args:
         design: value of each parameter, of the optimum or of the last iterate.
-        heights: a solution per height, all solved or none; residuals are those that the problem enforces.
-        violations: what the check found of limits that the problem does not enforce, per height.
+        cases: a solution per task, all solved or none; residuals are those that the problem enforces.
+        violations: what the check found of limits that the problem does not enforce, per case.
         attempt: how the solve ended; its cost is that of Eq. 14 [(10 N m)^2].
     """
 
     design: tuple[float, ...]
-    heights: tuple[HeightSolution, ...]
+    cases: tuple[CaseSolution, ...]
     violations: tuple[tuple[Residual, ...], ...]
     attempt: Attempt
 
@@ -103,7 +103,7 @@ class JointProblem:
     Args:
         scene: agents, load, ground and stance.
         space: design parameters.
-        heights: of the load's centre [m].
+        tasks: of the problem.
         settings: costs and limits.
         fixed: a genome that the design is held at; None to optimise it.
     Raises:
@@ -114,19 +114,19 @@ class JointProblem:
         self,
         scene: Scene,
         space: DesignSpace,
-        heights: Sequence[float],
+        tasks: Sequence[Task],
         settings: JointSettings,
         fixed: Genome | None = None,
     ) -> None:
         self._scene = scene
         self._space = space
-        self._heights = tuple(heights)
+        self._tasks = tuple(tasks)
         self._enforced = settings.enforced
         both = (whole(scene.robot), whole(scene.human))
         self._forms = symmetric_forms(scene) if settings.symmetric else both
         self._human = AgentModel.of(scene.human, scene.human.tree)
         design = _design_variable(space, settings.enforced, fixed)
-        self.program = _program(self._forms, scene, space, design, self._heights, settings)
+        self.program = _program(self._forms, scene, space, design, self._tasks, settings)
         self._solver = Solver(self.program, settings.options)
 
     def solve(self, genome: Genome, *, drawn: bool) -> JointSolution:
@@ -141,7 +141,7 @@ class JointProblem:
         return self._from("standard postures", genome, standard_postures(self.program, self._forms))
 
     def polish(self, genome: Genome, postures: Sequence[Instant]) -> JointSolution:
-        """The local optimum next to known postures, one instant per height."""
+        """The local optimum next to known postures, one instant per task."""
         return self._from("polish", genome, start_from(self.program, self._forms, postures))
 
     def _from(self, name: str, genome: Genome, postures: Start) -> JointSolution:
@@ -153,32 +153,35 @@ class JointProblem:
 
     def _failed(self, design: tuple[float, ...], attempt: Attempt) -> JointSolution:
         reason = f"the joint problem was not solved: {attempt.reason}"
-        heights = tuple(
-            HeightSolution(height, attempt.status, reason, {}, {}, (attempt,)) for height in self._heights
+        cases = tuple(
+            CaseSolution(self._scene.case(task), attempt.status, reason, attempts=(attempt,))
+            for task in self._tasks
         )
-        return JointSolution(design, heights, ((),) * len(heights), attempt)
+        return JointSolution(design, cases, ((),) * len(cases), attempt)
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
         checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
-        layout, count = layout_of(self.program), len(self._heights)
-        instants = [instant_of(layout, self._forms, self._scene, raw.values, k) for k in range(count)]
-        found = [checker.residuals(i, h) for i, h in zip(instants, self._heights, strict=True)]
+        layout, tasks = layout_of(self.program), self._tasks
+        instants = [instant_of(layout, self._forms, self._scene, raw.values, k) for k in range(len(tasks))]
+        found = [checker.residuals(i, task.height_m) for i, task in zip(instants, tasks, strict=True)]
         kept = [tuple(r for r in of if self._enforced.covers(r.group)) for of in found]
         everywhere = [
-            replace(residual, name=f"{height:g} m, {residual.name}")
-            for height, of in zip(self._heights, kept, strict=True)
+            replace(residual, name=f"{task}, {residual.name}")
+            for task, of in zip(tasks, kept, strict=True)
             for residual in of
         ]
         attempt = checked(NAME, name, raw, everywhere)
         if attempt.status is not Status.SOLVED:
             return self._failed(design, attempt)
-        heights = tuple(
-            HeightSolution(h, Status.SOLVED, "solved", instant.postures, sizes(of), (attempt,), attempt)
-            for h, instant, of in zip(self._heights, instants, kept, strict=True)
+        cases = tuple(
+            CaseSolution(
+                self._scene.case(task), Status.SOLVED, "solved", (instant,), sizes(of), (attempt,), attempt
+            )
+            for task, instant, of in zip(tasks, instants, kept, strict=True)
         )
         missed = tuple(tuple(r for r in of if not self._enforced.covers(r.group)) for of in found)
-        return JointSolution(design, heights, missed, attempt)
+        return JointSolution(design, cases, missed, attempt)
 
 
 def _inside(program: Program, start: Mapping[str, Array]) -> dict[str, Array]:
@@ -211,7 +214,7 @@ def _program(
     scene: Scene,
     space: DesignSpace,
     design: Variable,
-    heights: Sequence[float],
+    tasks: Sequence[Task],
     settings: JointSettings,
 ) -> Program:
     values = _values(space, ca.vertsplit(design.value))
@@ -219,7 +222,7 @@ def _program(
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
     parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
-    case = CaseSymbols(scene, tuple(heights))
+    case = CaseSymbols(scene, tuple(task.height_m for task in tasks))
     assembly = assemble(parties, TERMS.values(), case, settings.enforced)
     for (load_case,) in assembly.instants:
         for part in _height_costs(load_case, settings):

@@ -42,14 +42,14 @@ from evodesign.posture.formulations.human_value import (
     chebyshev_sum,
     human_program,
 )
-from evodesign.posture.results import HeightSolution, Neighbour
-from evodesign.posture.solution_derivative import PostureDerivative, found_again, known_instant
+from evodesign.posture.results import CaseSolution, Neighbour
+from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import PUSH, any_load, force_along_x
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instant_of, layout_of, start_from
-from evodesign.records import Status, worst_status
+from evodesign.records import Status, Task, worst_status
 
 __all__ = ["DecoupledPostures", "robot_program"]
 
@@ -60,7 +60,7 @@ AT_LIMIT = 1e-6
 
 
 class DecoupledPostures:
-    """The robot's program against the person's value function, for the heights that have one.
+    """The robot's program against the person's value function, for the tasks that have one.
 
     Args:
         name: of the formulation.
@@ -75,12 +75,12 @@ class DecoupledPostures:
         name: str,
         forms: tuple[Form, Form],
         setting: Setting,
-        values: Sequence[HumanValue],
+        values: Mapping[Task, HumanValue],
         solvers: SolverCache,
     ) -> None:
         self.name = name
         self._forms, self._setting, self._solvers = forms, setting, solvers
-        self._values = {value.height: value for value in values}
+        self._values = values
 
     @cached_property
     def _robot(self) -> Solver:
@@ -109,23 +109,23 @@ class DecoupledPostures:
     def _robot_program(self) -> Program:
         return robot_program(self._forms[0], self._setting)
 
-    def landscape(self, height: float) -> Landscape:
-        """The robot's cost at a height [m], with V(X)."""
-        return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
+    def landscape(self, task: Task) -> Landscape:
+        """The robot's cost for a task, with V(X)."""
+        return Landscape(self._robot, self._beside(task), self._fixed, *NEAR)
 
     def solve(
-        self, design: Sequence[float], height: float, portfolio: Sequence[Start], checker: Checker
+        self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the portfolio (or else the fixed starts) leads the robot to, with the person beside it."""
-        parameters = {"design": design, **self._beside(height)}
+        parameters = {"design": design, **self._beside(task)}
         starts = named_starts(self._robot, portfolio, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return self._trial(height, ends, checker)
+        return self._trial(task, ends, checker)
 
     def solve_beside(
         self,
         design: Sequence[float],
-        height: float,
+        task: Task,
         portfolio: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
@@ -134,20 +134,20 @@ class DecoupledPostures:
 
         With the same load the other person's V(X) is all that differs, and no other start is needed.
         """
-        parameters = {"design": design, **self._beside(height)}
-        known = start_from(self._robot.program, self._forms, [known_instant(neighbour.solution)])
+        parameters = {"design": design, **self._beside(task)}
+        known = start_from(self._robot.program, self._forms, [neighbour.solution.instants[0]])
         ends = [("neighbour", self._robot.near.solve(parameters, known))]
         if not neighbour.same_load:
             starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return self._trial(height, ends, checker)
+        return self._trial(task, ends, checker)
 
-    def _beside(self, height: float) -> Mapping[str, Any]:
+    def _beside(self, task: Task) -> Mapping[str, Any]:
         """The robot's parameters beside the design."""
-        mass, value = self._setting.scene.payload.mass, self._values[height]
-        return {"height": height, "mass": mass, "value": value.coefficients}
+        mass, value = self._setting.scene.payload.mass, self._values[task]
+        return {"height": task.height_m, "mass": mass, "value": value.coefficients}
 
-    def _trial(self, height: float, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
+    def _trial(self, task: Task, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
         """The robot's postures with the person's at the internal force that was found."""
         layout = {
             **layout_of(self._robot.program, ROBOT),
@@ -155,13 +155,13 @@ class DecoupledPostures:
         }
 
         def finish(start: str, robot: RawSolution) -> Candidate:
-            value, internal = self._values[height], self._internal_force(robot)
-            human = self._human.best(height, internal, value)
+            value, internal = self._values[task], self._internal_force(robot)
+            human = self._human.best(task.height_m, internal, value)
             both = _joined(robot, human, float(value.cost(internal)))
             if human.status is not Status.SOLVED:
                 return Candidate(checked(self.name, start, both, ()), (), ())
             instant = instant_of(layout, self._forms, self._setting.scene, both.values)
-            residuals = checker.residuals(instant, height)
+            residuals = checker.residuals(instant, task.height_m)
             return Candidate(checked(self.name, start, both, residuals), (instant,), residuals)
 
         return cheapest(self.name, ends, finish)
@@ -176,12 +176,12 @@ class DecoupledPostures:
         return np.asarray(-len(SIDES) * self._setting.scene.robot.sign * left_hand[0])
 
     def derivative(
-        self, design: Sequence[float], solution: HeightSolution
+        self, design: Sequence[float], solution: CaseSolution
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this pair of programs found moves with the design."""
-        value, (robots, humans) = self._values[solution.height], self._sensitivities
-        start = start_from(robots.program, self._forms, [known_instant(solution)])
-        found = robots.at({"design": design, **self._beside(solution.height)}, start)
+        value, (robots, humans) = self._values[solution.case.task], self._sensitivities
+        start = start_from(robots.program, self._forms, [solution.instants[0]])
+        found = robots.at({"design": design, **self._beside(solution.case.task)}, start)
         if isinstance(found, NotDifferentiable):
             return found
         robot, hand = found.along("design"), _left_hand(robots.program)
@@ -206,14 +206,12 @@ class DecoupledPostures:
         )
         return found_again(derivative, solution)
 
-    def _person(
-        self, solution: HeightSolution, internal: float, *, held: bool
-    ) -> Optimum | NotDifferentiable:
+    def _person(self, solution: CaseSolution, internal: float, *, held: bool) -> Optimum | NotDifferentiable:
         """The person under an internal force [N]; one that is held at its limit does not move the person."""
         humans = self._sensitivities[1]
         mass = self._setting.scene.payload.mass
-        parameters = {"height": solution.height, "mass": mass, "internal_force": internal}
-        start = start_from(humans.program, self._forms, [known_instant(solution)])
+        parameters = {"height": solution.case.task.height_m, "mass": mass, "internal_force": internal}
+        start = start_from(humans.program, self._forms, [solution.instants[0]])
         raw = humans.solve(parameters, start)
         if not held:
             return humans.of(parameters, raw)

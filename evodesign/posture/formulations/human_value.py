@@ -52,23 +52,19 @@ COST_UNIT = TORQUE_UNIT**2
 
 @dataclass(frozen=True, slots=True)
 class HumanValue:
-    """The person's least cost V(X) at one height.
+    """The person's least cost V(X) at one height of the load.
 
     Args:
-        height: of the load's centre [m].
         push: largest |X| [N].
         coefficients: of V in Chebyshev polynomials of X / push.
         starts: the person's optimum at each node, as starting values, with its X [N].
         error: largest difference from the envelope half-way between nodes, in the cost's unit.
-        scene: which of the problem's scenes it is of, from zero.
     """
 
-    height: float
     push: float
     coefficients: tuple[float, ...]
     starts: tuple[tuple[float, Mapping[str, Array]], ...]
     error: float
-    scene: int = 0
 
     def cost(self, push: Any) -> Any:
         """V at a push X [N], a number or an expression."""
@@ -156,7 +152,7 @@ class HumanProblem:
         if error > LARGEST_ERROR:
             return None
         starts = tuple((push, dict(best[push].values)) for push in sorted(best))
-        return HumanValue(height, self._push, tuple(fit.coef.tolist()), starts, error)
+        return HumanValue(self._push, tuple(fit.coef.tolist()), starts, error)
 
     def _best(self, height: float, push: float) -> RawSolution | None:
         """The best of many starts, the same ones every time."""

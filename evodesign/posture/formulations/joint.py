@@ -30,13 +30,14 @@ from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import aggregated, with_worst
-from evodesign.posture.results import HeightSolution, Instant, Neighbour
-from evodesign.posture.solution_derivative import PostureDerivative, found_again, known_instant
+from evodesign.posture.results import CaseSolution, Instant, Neighbour
+from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, instant_of, layout_of, start_from
+from evodesign.records import Task
 
 __all__ = ["JointPostures", "posture_program"]
 
@@ -71,40 +72,40 @@ class JointPostures:
     def _program(self) -> Program:
         return posture_program(self._forms, self._setting)
 
-    def landscape(self, height: float) -> Landscape:
-        """The program's cost at a height [m]."""
-        return Landscape(self._solver, self._beside(height), self._fixed, *NEAR)
+    def landscape(self, task: Task) -> Landscape:
+        """The program's cost for a task."""
+        return Landscape(self._solver, self._beside(task), self._fixed, *NEAR)
 
     def solve(
-        self, design: Sequence[float], height: float, portfolio: Sequence[Start], checker: Checker
+        self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the portfolio leads to, or the fixed starts if none of it fits."""
-        return self._trial(design, height, named_starts(self._solver, portfolio, self._fixed), checker)
+        return self._trial(design, task, named_starts(self._solver, portfolio, self._fixed), checker)
 
     def solve_beside(
         self,
         design: Sequence[float],
-        height: float,
+        task: Task,
         portfolio: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
         """What the solution in a similar scene leads to, and the first starts of the portfolio."""
-        known = self._start(known_instant(neighbour.solution))
+        known = self._start(neighbour.solution.instants[0])
         others = named_starts(self._solver, portfolio, self._fixed)[:STARTS_BESIDE]
-        return self._trial(design, height, [("neighbour", known), *others], checker)
+        return self._trial(design, task, [("neighbour", known), *others], checker)
 
-    def polish(self, design: Sequence[float], height: float, known: Instant, checker: Checker) -> Trial:
+    def polish(self, design: Sequence[float], task: Task, known: Instant, checker: Checker) -> Trial:
         """What known whole postures lead to."""
-        return self._trial(design, height, [("polish", self._start(known))], checker)
+        return self._trial(design, task, [("polish", self._start(known))], checker)
 
     def derivative(
-        self, design: Sequence[float], solution: HeightSolution
+        self, design: Sequence[float], solution: CaseSolution
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this program found moves with the design."""
         program = self._sensitivity.program
-        start = start_from(program, self._forms, [known_instant(solution)])
-        parameters = {"design": design, **self._beside(solution.height)}
+        start = start_from(program, self._forms, [solution.instants[0]])
+        parameters = {"design": design, **self._beside(solution.case.task)}
         found = self._sensitivity.at(parameters, with_worst(start, program, parameters))
         if isinstance(found, NotDifferentiable):
             return found
@@ -125,19 +126,19 @@ class JointPostures:
     def _start(self, known: Instant) -> Start:
         return start_from(self._solver.program, self._forms, [known])
 
-    def _beside(self, height: float) -> Mapping[str, Any]:
+    def _beside(self, task: Task) -> Mapping[str, Any]:
         """The parameters beside the design."""
-        return {"height": height, "mass": self._setting.scene.payload.mass}
+        return {"height": task.height_m, "mass": self._setting.scene.payload.mass}
 
     def _trial(
-        self, design: Sequence[float], height: float, starts: Sequence[tuple[str, Start]], checker: Checker
+        self, design: Sequence[float], task: Task, starts: Sequence[tuple[str, Start]], checker: Checker
     ) -> Trial:
-        parameters, program = {"design": design, **self._beside(height)}, self._solver.program
+        parameters, program = {"design": design, **self._beside(task)}, self._solver.program
         ends = [(name, self._solver.solve(parameters, filled(start, program))) for name, start in starts]
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             instant = instant_of(layout_of(program), self._forms, self._setting.scene, raw.values)
-            residuals = checker.residuals(instant, height)
+            residuals = checker.residuals(instant, task.height_m)
             return Candidate(checked(self.name, start, raw, residuals), (instant,), residuals)
 
         return cheapest(self.name, ends, finish)

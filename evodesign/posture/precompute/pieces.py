@@ -15,7 +15,7 @@ import msgspec
 from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
-from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene
+from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene, scene_of
 from evodesign.nlp.solver import IpoptOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio
 from evodesign.posture.allocation import EffortWeights
@@ -37,6 +37,7 @@ from evodesign.posture.precompute.stored import (
     stored_value,
 )
 from evodesign.posture.symmetry import symmetric_forms
+from evodesign.records import Case, Task
 
 __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
 
@@ -62,25 +63,28 @@ class Subject(StrEnum):
     POSTURE = "starts of postures"
 
 
+OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH)
+"""Of one person with one load; other pieces serve everyone."""
+
+
 @dataclass(frozen=True, slots=True)
 class Piece:
     """A part of a preparation.
 
     Args:
         subject: what it is about.
-        height: of the load [m]; 0 if it belongs to none.
-        scene: which of the problem's scenes it is of, or is worked out in, from zero.
-        label: who and what that is where there are several.
+        pair: names of the person and the load that it is of, or is worked out with.
+        task: None if it belongs to none.
     """
 
     subject: Subject
-    height: float = 0.0
-    scene: int = 0
-    label: str = ""
+    pair: tuple[str, str]
+    task: Task | None = None
 
     def __str__(self) -> str:
-        name = f"{self.subject} at {self.height:g} m" if self.height else str(self.subject)
-        return f"{name}, {self.label}" if self.label else name
+        name = str(self.subject) if self.task is None else f"{self.subject} at {self.task}"
+        who = self.pair if self.subject in OF_PEOPLE else ()
+        return ", ".join(part for part in (name, *who) if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +97,7 @@ class PrecomputeSetting:
     """
 
     scenes: tuple[Scene, ...]
-    middle: int
+    middle: Scene
     space: DesignSpace
     weights: EffortWeights
     options: IpoptOptions
@@ -111,7 +115,7 @@ NO_PART_OF_PIECES: Exceptions = {
         "middle": "says which scene that is",
         "symmetry": "polishing comes later: whether postures are symmetric counts",
     },
-    Piece: {"scene": "says which scene that is", "label": "is a word for messages"},
+    Piece: {"pair": "says which scene that is"},
     Agent: {"label": "is a word for results"},
     Payload: {"label": "is a word for results"},
     IpoptOptions: {"compiled": "machine code gives the same bits"},
@@ -137,33 +141,29 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
 
 
 def stages(
-    setting: PrecomputeSetting, heights: Sequence[float], *, portfolios: bool, person_reaches: bool
+    setting: PrecomputeSetting, tasks: Sequence[Task], *, portfolios: bool, person_reaches: bool
 ) -> list[list[Piece]]:
     """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
     Args:
         setting: of the problem.
-        heights: of the load's centre [m].
+        tasks: of the problem.
         portfolios: whether solves begin at portfolios of starts.
         person_reaches: whether the people's own reach is asked for.
     """
-    people = [
-        Piece(Subject.PERSON_REACH, scene=number, label=scene.label)
-        for number, scene in enumerate(setting.scenes)
-        if person_reaches
-    ]
+    people = [Piece(Subject.PERSON_REACH, scene.pair) for scene in setting.scenes if person_reaches]
     people += [
-        Piece(Subject.PERSON, height, number, scene.label)
-        for number, scene in enumerate(setting.scenes)
-        for height in heights
+        Piece(Subject.PERSON, scene.pair, task)
+        for scene in setting.scenes
+        for task in tasks
         if setting.symmetric and _push_alone(scene, setting.space)
     ]
     if not portfolios:
         return [people]
-    middle = setting.middle
+    middle = setting.middle.pair
     return [
-        [Piece(Subject.HIGHEST, scene=middle), Piece(Subject.LOWEST, scene=middle), *people],
-        [Piece(Subject.POSTURE, height, middle) for height in heights],
+        [Piece(Subject.HIGHEST, middle), Piece(Subject.LOWEST, middle), *people],
+        [Piece(Subject.POSTURE, middle, task) for task in tasks],
     ]
 
 
@@ -179,7 +179,7 @@ def _scene_of(setting: PrecomputeSetting, piece: Piece) -> Scene:
 
     Where a robot reaches without disturbances its reach with them is found too, for three times less work.
     """
-    scene = setting.scenes[piece.scene]
+    scene = scene_of(setting.scenes, piece.pair)
     if piece.subject in (Subject.HIGHEST, Subject.LOWEST):
         return replace(scene, disturbances=Disturbances())
     return scene
@@ -199,11 +199,10 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         piece: which one.
         known: what earlier stages gave.
     """
-    if piece.subject is Subject.PERSON:
-        return msgspec.json.encode(stored_value(_person(setting, piece)))
+    if piece.subject is Subject.PERSON and piece.task is not None:
+        return msgspec.json.encode(stored_value(_person(setting, _scene_of(setting, piece), piece.task)))
     if piece.subject is Subject.PERSON_REACH:
-        scene = setting.scenes[piece.scene]
-        found = person_reach(scene, setting.options, symmetric=setting.symmetric)
+        found = person_reach(_scene_of(setting, piece), setting.options, symmetric=setting.symmetric)
         return msgspec.json.encode(stored_person_reach(found))
     return msgspec.json.encode(stored_portfolio(_portfolio(setting, piece, known)))
 
@@ -211,36 +210,36 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
     """What is known with one more piece; None when its content cannot be read."""
     try:
-        if piece.subject is Subject.PERSON:
+        if piece.subject is Subject.PERSON and piece.task is not None:
             value = human_value_of_stored(msgspec.json.decode(content, type=StoredValue))
-            others = (*known.values, *([replace(value, scene=piece.scene)] if value else []))
-            return replace(known, values=tuple(sorted(others, key=lambda value: (value.scene, value.height))))
+            person, payload = piece.pair
+            case = Case(person=person, payload=payload, task=piece.task)
+            return replace(known, values={**known.values, case: value}) if value else known
         if piece.subject is Subject.PERSON_REACH:
-            stretch = person_reach_of_stored(msgspec.json.decode(content, type=StoredPersonReach))
-            several = (*known.person_reaches, *([replace(stretch, scene=piece.scene)] if stretch else []))
-            return replace(known, person_reaches=tuple(sorted(several, key=lambda stretch: stretch.scene)))
+            reach = person_reach_of_stored(msgspec.json.decode(content, type=StoredPersonReach))
+            return (
+                replace(known, person_reaches={**known.person_reaches, piece.pair: reach}) if reach else known
+            )
         found = portfolio_of(msgspec.json.decode(content, type=StoredStartPortfolio))
     except msgspec.DecodeError:
         return None
-    if piece.subject is Subject.HIGHEST:
-        return replace(known, highest=found)
-    if piece.subject is Subject.LOWEST:
-        return replace(known, lowest=found)
-    return replace(known, postures={**known.postures, piece.height: found})
+    if piece.task is not None:
+        return replace(known, postures={**known.postures, piece.task: found})
+    highest = piece.subject is Subject.HIGHEST
+    return replace(known, highest=found) if highest else replace(known, lowest=found)
 
 
-def _person(setting: PrecomputeSetting, piece: Piece) -> HumanValue | None:
-    scene = setting.scenes[piece.scene]
+def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue | None:
     form = symmetric_forms(scene)[1]
-    return HumanProblem(form, scene, setting.weights.human, setting.options).value(piece.height)
+    return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.height_m)
 
 
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
-    scene, space, known = _scene_of(setting, piece), setting.space, known.of_scene(piece.scene)
+    scene, space, task = _scene_of(setting, piece), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
     own = Setting(scene, space, setting.weights, options)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
-    if piece.subject is not Subject.POSTURE:
+    if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         return start_portfolio(
             landscape, _designs(space, REACH_TRAINING, lambda design: True), REACH_TRAINING
@@ -248,8 +247,8 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     problem = PostureProblem(own, setting.symmetry, known)
     training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
     training = training if setting.symmetric else WHOLE_TRAINING
-    designs = _designs(space, training, lambda design: reach.solve(design).distance(piece.height) == 0.0)
-    return start_portfolio(problem.landscape(piece.height), designs, training)
+    designs = _designs(space, training, lambda design: reach.solve(design).distance(task.height_m) == 0.0)
+    return start_portfolio(problem.landscape(task), designs, training)
 
 
 def _designs(

@@ -6,11 +6,13 @@ It follows from the problem alone and consists of plain numbers, so it travels t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.formulations.human_value import HumanValue
+from evodesign.records import Case, Task
 
 __all__ = ["NOTHING_PRECOMPUTED", "NO_STARTS", "PersonReach", "Precomputed"]
 
@@ -24,12 +26,10 @@ class PersonReach:
 
     Args:
         lowest, highest: of the load's centre [m].
-        scene: which of the problem's scenes it is of, from zero.
     """
 
     lowest: float
     highest: float
-    scene: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,25 +39,25 @@ class Precomputed:
     Portfolios serve every scene: they are starting values, and hardly depend on who holds what.
 
     Args:
-        values: the people's value functions, for the scenes and heights that have one.
+        values: the people's value functions, for the cases that have one.
         highest, lowest: starts of the reach problem.
-        postures: starts of the posture problem, by height [m].
-        stretches: the people's own reach, for the scenes in which it was asked for.
+        postures: starts of the posture problem, by task.
+        person_reaches: the people's own reach, by the names of person and load, where it was asked for.
     """
 
-    values: tuple[HumanValue, ...] = ()
+    values: Mapping[Case, HumanValue] = field(default_factory=dict)
     highest: StartPortfolio = NO_STARTS
     lowest: StartPortfolio = NO_STARTS
-    postures: Mapping[float, StartPortfolio] = field(default_factory=dict)
-    person_reaches: tuple[PersonReach, ...] = ()
+    postures: Mapping[Task, StartPortfolio] = field(default_factory=dict)
+    person_reaches: Mapping[tuple[str, str], PersonReach] = field(default_factory=dict)
 
-    def of_scene(self, scene: int) -> Precomputed:
-        """What is known of one of the problem's scenes."""
-        return replace(self, values=tuple(value for value in self.values if value.scene == scene))
+    def values_of(self, scene: Scene) -> Mapping[Task, HumanValue]:
+        """The value functions of a scene's person and load, by task."""
+        return {case.task: value for case, value in self.values.items() if case.pair == scene.pair}
 
-    def starts(self, height: float) -> tuple[Start, ...]:
-        """The posture problem's starts at a height [m]; none where none are known."""
-        return self.postures.get(height, NO_STARTS).starts
+    def starts(self, task: Task) -> tuple[Start, ...]:
+        """The posture problem's starts for a task; none where none are known."""
+        return self.postures.get(task, NO_STARTS).starts
 
 
 NOTHING_PRECOMPUTED = Precomputed()

@@ -26,9 +26,8 @@ __all__ = [
 
 
 class StoredValue(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A value function on disk; `height_m` without coefficients means that there is none."""
+    """A value function on disk; without coefficients there is none."""
 
-    height_m: float
     push_n: float
     coefficients: tuple[float, ...]
     starts: tuple[tuple[float, dict[str, list[float]]], ...]
@@ -66,9 +65,9 @@ def person_reach_of_stored(stored: StoredPersonReach) -> PersonReach | None:
 def stored_value(value: HumanValue | None) -> StoredValue:
     """A value function, or that there is none, to be kept."""
     if value is None:
-        return StoredValue(0.0, 0.0, (), (), 0.0)
+        return StoredValue(0.0, (), (), 0.0)
     starts = tuple((push, _numbers(start)) for push, start in value.starts)
-    return StoredValue(value.height, value.push, value.coefficients, starts, value.error)
+    return StoredValue(value.push, value.coefficients, starts, value.error)
 
 
 def human_value_of_stored(stored: StoredValue) -> HumanValue | None:
@@ -76,7 +75,7 @@ def human_value_of_stored(stored: StoredValue) -> HumanValue | None:
     if not stored.coefficients:
         return None
     starts = tuple((push, _arrays(start)) for push, start in stored.starts)
-    return HumanValue(stored.height_m, stored.push_n, stored.coefficients, starts, stored.error)
+    return HumanValue(stored.push_n, stored.coefficients, starts, stored.error)
 
 
 def stored_portfolio(found: StartPortfolio) -> StoredStartPortfolio:

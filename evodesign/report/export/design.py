@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from evodesign.records import Evaluation, HeightDetail, RunHeader, materials_of
+from evodesign.records import CaseDetail, CaseOutcome, Evaluation, RunHeader, hold_names, materials_of
 from evodesign.report.scene_set import SceneSet
 from evodesign.tree.model import Tree
 
@@ -23,14 +23,14 @@ class ExportedDesign:
         header: of the run.
         evaluation: the design.
         scene_set: robot of the design, people and loads.
-        heights: postures of the cases that were solved, in the problem's order.
+        cases: postures of those that were solved, in the problem's order.
     """
 
     run: str
     header: RunHeader
     evaluation: Evaluation
     scene_set: SceneSet
-    heights: tuple[HeightDetail, ...]
+    cases: tuple[CaseDetail, ...]
 
     @property
     def people(self) -> dict[str, tuple[str, Tree]]:
@@ -45,7 +45,7 @@ class ExportedDesign:
 
 
 def design_json(
-    header: RunHeader, evaluation: Evaluation, heights: tuple[HeightDetail, ...], *, on_front: bool
+    header: RunHeader, evaluation: Evaluation, cases: tuple[CaseDetail, ...], *, on_front: bool
 ) -> dict[str, Any]:
     """A design as a JSON object, as the log has it; its shape is a promise."""
     assessment = evaluation.assessment
@@ -64,6 +64,14 @@ def design_json(
         **({"materials": materials} if materials else {}),
         "violation": outcome["violation"],
         "reach": outcome["reach"],
-        "heights": outcome["heights"],
-        "postures": msgspec.to_builtins(heights),
+        "heights": [_hold(each) for each in assessment.cases],
+        "postures": [_hold(each) for each in cases],
     }
+
+
+def _hold(part: CaseOutcome | CaseDetail) -> dict[str, Any]:
+    """A part of the log about a load held still, as it was before there were other tasks."""
+    told: dict[str, Any] = msgspec.to_builtins(part)
+    (instant,) = told.pop("instants", [{}])
+    del told["case"]
+    return {**hold_names(part.case), **told, **{key: instant[key] for key in instant if key != "time_s"}}

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import msgspec
 
-from evodesign.analysis.cases import pair_name
 from evodesign.errors import InputError, ModelError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT
@@ -82,10 +81,10 @@ def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) ->
 
 def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, bytes], dict[str, str]]:
     """Bytes of each file by name, and why others are missing."""
-    scene_set, heights = design.scene_set, design.heights
+    scene_set, cases = design.scene_set, design.cases
     people = {name: urdf_text(tree) for name, (_, tree) in design.people.items()}
     urdfs = {"robot.urdf": urdf_text(scene_set.robot), **people}
-    told = design_json(design.header, design.evaluation, heights, on_front=on_front)
+    told = design_json(design.header, design.evaluation, cases, on_front=on_front)
     contents = {"robot.urdf": urdfs["robot.urdf"].encode()}
     left_out = {}
     try:
@@ -94,15 +93,15 @@ def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, byte
         left_out["robot.xml"] = str(error)
     contents.update({name: text.encode() for name, text in people.items()})
     contents["postures.json"] = msgspec.json.format(msgspec.json.encode(told), indent=2) + b"\n"
-    if not heights:
+    if not cases:
         reason = "no posture was found at any height"
         return contents, {**left_out, "postures.csv": reason, "replay.mcap": reason}
-    contents["postures.csv"] = postures_csv(scene_set, heights).encode()
-    contents["wrenches.csv"] = wrenches_csv(scene_set, heights).encode()
+    contents["postures.csv"] = postures_csv(scene_set, cases).encode()
+    contents["wrenches.csv"] = wrenches_csv(scene_set, cases).encode()
     recording = io.BytesIO()
-    write_replay(recording, scene_set, heights, urdfs, _about(design))
+    write_replay(recording, scene_set, cases, urdfs, _about(design))
     contents["replay.mcap"] = recording.getvalue()
-    contents["layout.json"] = layout_text(scene_set, heights).encode()
+    contents["layout.json"] = layout_text(scene_set, cases).encode()
     return contents, left_out
 
 
@@ -110,8 +109,8 @@ def _keys(design: ExportedDesign) -> dict[str, KeyPosture]:
     """The robot's postures as keyframes, by person and load where there are several, and by height."""
     root = design.scene_set.robot.root
     keys = {}
-    for detail in design.heights:
-        name = ", ".join(part for part in (pair_name(detail), f"load at {detail.height_m:g} m") if part)
+    for detail in design.cases:
+        name = ", ".join(part for part in (detail.case.label, f"load at {detail.case.task}") if part)
         frames = design.scene_set.placed_scene(detail).frames[ROBOT]
         keys[name] = KeyPosture(frames[root], detail.agents[ROBOT].joints_rad)
     return keys
@@ -123,5 +122,5 @@ def _about(design: ExportedDesign) -> dict[str, str]:
         "problem": design.header.problem_name,
         "run": design.run,
         "design": str(evaluation.number),
-        "time": time_scale(design.heights),
+        "time": time_scale(design.cases),
     }

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from evodesign.analysis.cases import named_people_or_loads
 from evodesign.errors import on_one_line
 from evodesign.records import Objective, materials_of
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
-from evodesign.report.replay.times import SECONDS_PER_CASE, timed
+from evodesign.report.replay.times import SECONDS_PER_CASE, several, timed
 
 __all__ = ["FILES", "readme_text"]
 
@@ -86,7 +85,7 @@ def _texts(design: ExportedDesign) -> dict[str, str]:
     if len(design.people) > 1:
         for name, (label, _) in design.people.items():
             texts[name] = f"The person {_code(label)}, for kinematics and viewing."
-    if named_people_or_loads(design.heights):
+    if several(design.cases):
         texts["robot.xml"] = FILES["robot.xml"].replace("per load height", "per case")
         replay = FILES["replay.mcap"].replace(HEIGHTS_AS_TIME, CASES_AS_TIME)
         texts["replay.mcap"] = replay.replace("both URDF files", "all URDF files")
@@ -95,13 +94,13 @@ def _texts(design: ExportedDesign) -> dict[str, str]:
 
 def _cases(design: ExportedDesign) -> tuple[str, ...]:
     """The cases that were solved with their times in the recording, of several people or loads."""
-    if not named_people_or_loads(design.heights):
+    if not several(design.cases):
         return ()
     files = {label: name for name, (label, _) in design.people.items()}
     rows = [
-        f"| {time / 1e9:g} s | {_cell(each.human_name)} | `{files[each.human_name]}` "
-        f"| {_cell(each.payload_name)} | {each.height_m:g} m |"
-        for time, each in timed(design.heights)
+        f"| {time / 1e9:g} s | {_cell(case.person)} | `{files[case.person]}` "
+        f"| {_cell(case.payload)} | {case.task} |"
+        for time, case in ((time, detail.case) for time, detail in timed(design.cases))
     ]
     heads = ("| time in the recording | person | file | load | height |", "|---|---|---|---|---|")
     return ("## Cases", "\n".join((*heads, *rows)))

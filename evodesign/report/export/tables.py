@@ -11,9 +11,8 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
 
-from evodesign.analysis.cases import named_people_or_loads
 from evodesign.mechanics.scene import SIDES, Agent
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 from evodesign.report.scene_models import SceneModels
 from evodesign.report.scene_set import SceneSet
 from evodesign.tree.model import JointKind, Tree
@@ -32,28 +31,27 @@ BASE = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), (
 """Coordinates of the root link in its agent's frame."""
 
 
-def postures_csv(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
+def postures_csv(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
     """Base coordinates, joint positions and torques of robot and person."""
-    return _text(
-        POSTURE_COLUMNS, heights, [_posture_rows(scene_set.models_of(each), each) for each in heights]
-    )
+    return _text(POSTURE_COLUMNS, cases, [_posture_rows(scene_set.models_of(each), each) for each in cases])
 
 
-def wrenches_csv(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
+def wrenches_csv(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
     """Wrenches on hands (about the grasp point) and feet (about the sole's origin)."""
-    return _text(WRENCH_COLUMNS, heights, [_wrench_rows(scene_set.models_of(each), each) for each in heights])
+    return _text(WRENCH_COLUMNS, cases, [_wrench_rows(scene_set.models_of(each), each) for each in cases])
 
 
-def _posture_rows(models: SceneModels, detail: HeightDetail) -> Iterator[Row]:
+def _posture_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
+    height = detail.case.task.height_m
     for name, tree in models.trees.items():
         posture = detail.agents[name]
         base = (*posture.base_position_m, *posture.base_rpy_rad)
         for (coordinate, unit), value in zip(BASE, base, strict=True):
-            yield detail.height_m, name, "base", coordinate, value, unit, "", ""
+            yield height, name, "base", coordinate, value, unit, "", ""
         for joint, position in posture.joints_rad.items():
             kind, *units = _joint(tree, joint)
             torque = posture.torques_n_m[joint]
-            yield detail.height_m, name, kind, joint, position, units[0], torque, units[1]
+            yield height, name, kind, joint, position, units[0], torque, units[1]
 
 
 def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
@@ -62,27 +60,27 @@ def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
     return (kind, "m", "N") if kind is JointKind.PRISMATIC else (kind, "rad", "N m")
 
 
-def _wrench_rows(models: SceneModels, detail: HeightDetail) -> Iterator[Row]:
+def _wrench_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
     for agent in models.agents:
         yield from _wrenches_of(agent, detail)
 
 
-def _wrenches_of(agent: Agent, detail: HeightDetail) -> Iterator[Row]:
-    posture = detail.agents[agent.name]
+def _wrenches_of(agent: Agent, detail: CaseDetail) -> Iterator[Row]:
+    height, posture = detail.case.task.height_m, detail.agents[agent.name]
     for side in SIDES:
         frame = f"{agent.name}'s own, x at the load"
-        yield detail.height_m, agent.name, f"{side}_hand", frame, *posture.hand_wrenches[side]
+        yield height, agent.name, f"{side}_hand", frame, *posture.hand_wrenches[side]
     for side in SIDES:
-        yield detail.height_m, agent.name, f"{side}_foot", agent.soles[side], *posture.foot_wrenches[side]
+        yield height, agent.name, f"{side}_foot", agent.soles[side], *posture.foot_wrenches[side]
 
 
-def _text(columns: Row, heights: Sequence[HeightDetail], rows_of: Iterable[Iterable[Row]]) -> str:
+def _text(columns: Row, cases: Sequence[CaseDetail], rows_of: Iterable[Iterable[Row]]) -> str:
     """The rows of each case under their columns, with names of people and loads where they are needed."""
-    named = named_people_or_loads(heights)
+    named = any(detail.case.label for detail in cases)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow((*NAME_COLUMNS, *columns) if named else columns)
-    for detail, rows in zip(heights, rows_of, strict=True):
-        names = (detail.human_name, detail.payload_name) if named else ()
+    for detail, rows in zip(cases, rows_of, strict=True):
+        names = detail.case.pair if named else ()
         writer.writerows((*names, *row) for row in rows)
     return stream.getvalue()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from evodesign.records import Generation, HeightDetail, HeightOutcome, Objective, Parameter
+from evodesign.records import CaseDetail, CaseOutcome, Generation, Objective, Parameter
 
 __all__ = [
     "Bodies",
@@ -154,14 +154,14 @@ class DesignContent(Part, frozen=True):
     """A design that can be opened.
 
     Attributes:
-        heights: how each case ended.
+        cases: how each ended.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
     """
 
-    heights: tuple[HeightOutcome, ...]
-    postures: tuple[HeightDetail, ...] = ()
+    cases: tuple[CaseOutcome, ...]
+    postures: tuple[CaseDetail, ...] = ()
     links: dict[int, LinkBody] = {}
     joints: dict[int, JointBody] = {}
     gradients: dict[str, dict[str, float]] = {}

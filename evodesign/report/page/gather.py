@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
-from evodesign.analysis.cases import pair_name
 from evodesign.analysis.front import front
 from evodesign.analysis.infeasible import causes_of_infeasibility
 from evodesign.errors import EvodesignError
 from evodesign.problem.build import Problem, build_problem
-from evodesign.records import Detail, Evaluation, HeightOutcome
+from evodesign.records import Case, Detail, Evaluation
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
 from evodesign.report.page.content import CauseContent, Content, DesignContent, Facts, Mark
@@ -38,13 +37,14 @@ def page_content(run: Run, asked: Collection[int] = ()) -> Content:
     marked = _marks(run, problem, best, asked)
     shown = chosen_points(run.evaluations, on_front, {mark.number for mark in marked}, MOST_POINTS)
     opened, more_notes = _opened(run, marked, shown, on_front)
+    cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     return Content(
         facts=_facts(run, len(best)),
         objectives=run.header.objectives,
         parameters=run.header.parameters,
-        people=_names(run, _human_name),
-        payloads=_names(run, _payload_name),
-        heights_m=_heights(run, problem),
+        people=tuple(dict.fromkeys(case.person for case in cases)) or ("",),
+        payloads=tuple(dict.fromkeys(case.payload for case in cases)) or ("",),
+        heights_m=_heights(cases, problem),
         points=points(run.header, shown, on_front),
         marks=marked,
         generations=run.generations,
@@ -95,24 +95,10 @@ def _facts(run: Run, on_front: int) -> Facts:
     )
 
 
-def _heights(run: Run, problem: Problem | None) -> tuple[float, ...]:
+def _heights(cases: Iterable[Case], problem: Problem | None) -> tuple[float, ...]:
     if problem is not None:
-        return problem.heights
-    return tuple(sorted({height.height_m for each in run.evaluations for height in each.assessment.heights}))
-
-
-def _names(run: Run, name_of: Callable[[HeightOutcome], str]) -> tuple[str, ...]:
-    """Who or what is named in the cases of the run, in their order; one empty name where nobody is."""
-    cases = (case for evaluation in run.evaluations for case in evaluation.assessment.heights)
-    return tuple(dict.fromkeys(map(name_of, cases))) or ("",)
-
-
-def _human_name(case: HeightOutcome) -> str:
-    return case.human_name
-
-
-def _payload_name(case: HeightOutcome) -> str:
-    return case.payload_name
+        return tuple(task.height_m for task in problem.tasks)
+    return tuple(sorted({case.task.height_m for case in cases}))
 
 
 def _thinned_note(run: Run, shown: Sequence[Evaluation]) -> tuple[str, ...]:
@@ -143,7 +129,7 @@ def _opened(
 
 def _most_designs(details: Iterable[Detail]) -> int:
     """How many designs have their postures in the page: fewer of many people and loads, whose pages grow."""
-    pairs = max((len({pair_name(case) for case in detail.heights}) for detail in details), default=1)
+    pairs = max((len({each.case.pair for each in detail.cases}) for detail in details), default=1)
     return MOST_POSTURES if pairs < 2 else max(MOST_POSTURES // pairs, MOST_POSTURES // 5)
 
 
@@ -164,10 +150,10 @@ def _designs(
 
 
 def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | None) -> DesignContent:
-    heights = evaluation.assessment.heights
+    cases = evaluation.assessment.cases
     if problem is None or detail is None:
-        return DesignContent(heights=heights)
+        return DesignContent(cases=cases)
     parameters = problem.space.parameters
     values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
     links, joints = changes(problem, values)
-    return DesignContent(heights=heights, postures=detail.heights, links=links, joints=joints)
+    return DesignContent(cases=cases, postures=detail.cases, links=links, joints=joints)

@@ -11,12 +11,11 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from evodesign.analysis.cases import named_people_or_loads
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 from evodesign.report.ranked_joints import ranked_joints
 from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
-from evodesign.report.replay.times import time_scale
+from evodesign.report.replay.times import several, time_scale
 from evodesign.report.scene_models import LOAD
 from evodesign.report.scene_set import SceneSet
 
@@ -57,14 +56,14 @@ GRID: Final = {
 }
 
 
-def layout_text(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
+def layout_text(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
     """The layout as JSON text.
 
     Args:
         scene_set: who stands there.
-        heights: postures, whose torques choose the joints that are plotted.
+        cases: postures, whose torques choose the joints that are plotted.
     """
-    panels = {SCENE: _scene(scene_set, heights), **{PLOTS[name]: _plot(name, heights) for name in PLOTS}}
+    panels = {SCENE: _scene(scene_set, cases), **{PLOTS[name]: _plot(name, cases) for name in PLOTS}}
     plots = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
     layout = {"first": SCENE, "second": plots, "direction": "row", "splitPercentage": 64}
     whole = {
@@ -77,11 +76,11 @@ def layout_text(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def _scene(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> dict[str, Any]:
+def _scene(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> dict[str, Any]:
     trees = [(name, tree) for models in scene_set.models for name, tree in models.trees.items()]
     links = [frame_id(name, link) for name, tree in trees for link in tree.link_by_name]
     frames = [LOAD, *dict.fromkeys(links)]
-    letters = 1.0 if named_people_or_loads(heights) else 0.0
+    letters = 1.0 if several(cases) else 0.0
     return {
         "cameraState": CAMERA,
         "followMode": "follow-none",
@@ -95,10 +94,10 @@ def _scene(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> dict[str, An
     }
 
 
-def _plot(agent: str, heights: Sequence[HeightDetail]) -> dict[str, Any]:
-    torques = [detail.agents[agent].torques_n_m for detail in heights]
+def _plot(agent: str, cases: Sequence[CaseDetail]) -> dict[str, Any]:
+    torques = [detail.agents[agent].torques_n_m for detail in cases]
     return {
-        "title": f"{agent}: joint torques [N m]; {_meaning_of_time(heights)}",
+        "title": f"{agent}: joint torques [N m]; {_meaning_of_time(cases)}",
         "paths": [_path(agent, joint) for joint in _plotted(torques)],
         "showLegend": True,
         "legendDisplay": "floating",
@@ -111,8 +110,8 @@ def _plot(agent: str, heights: Sequence[HeightDetail]) -> dict[str, Any]:
     }
 
 
-def _meaning_of_time(heights: Sequence[HeightDetail]) -> str:
-    return time_scale(heights) if named_people_or_loads(heights) else "time [s] = 10 x height [m]"
+def _meaning_of_time(cases: Sequence[CaseDetail]) -> str:
+    return time_scale(cases) if several(cases) else "time [s] = 10 x height [m]"
 
 
 def _path(agent: str, joint: str) -> dict[str, Any]:

@@ -20,10 +20,9 @@ from foxglove_schemas_protobuf.SceneEntityDeletion_pb2 import SceneEntityDeletio
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from evodesign.analysis.cases import case_name, pair_name
 from evodesign.body.placement import Placement, scale
 from evodesign.body.shape import Box
-from evodesign.records import AgentDetail, HeightDetail
+from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.replay.shapes import add_arrow, add_shape, add_text, orientation, vector
 from evodesign.report.scene_models import LOAD, PlacedScene, looks_of
 from evodesign.tree.frames import parent_from_child
@@ -59,7 +58,7 @@ def frame_id(agent: str, link: str) -> str:
     return f"{agent}/{link}"
 
 
-def messages(stage: PlacedScene, detail: HeightDetail, nanoseconds: int) -> Iterator[tuple[str, Any]]:
+def messages(stage: PlacedScene, detail: CaseDetail, nanoseconds: int) -> Iterator[tuple[str, Any]]:
     """Topic and message of everything that is to be seen in one case.
 
     Args:
@@ -69,27 +68,27 @@ def messages(stage: PlacedScene, detail: HeightDetail, nanoseconds: int) -> Iter
     """
     now = Timestamp()
     now.FromNanoseconds(nanoseconds)
-    case = pair_name(detail)
+    pair = detail.case.label
     yield "/tf", FrameTransforms(transforms=list(_transforms(stage, detail, now)))
     for name, tree in stage.models.trees.items():
         entities = [_entity(name, tree, link, now) for link in tree.link_by_name]
         yield (
             f"/scene/{name}",
             SceneUpdate(
-                deletions=[SceneEntityDeletion(timestamp=now, type=SceneEntityDeletion.ALL)] if case else [],
+                deletions=[SceneEntityDeletion(timestamp=now, type=SceneEntityDeletion.ALL)] if pair else [],
                 entities=[entity for entity in entities if entity is not None],
             ),
         )
         yield f"/joint_states/{name}", _joint_states(detail.agents[name], now)
     load = SceneEntity(timestamp=now, frame_id=LOAD, id=LOAD, frame_locked=True)
     add_shape(load, Box(*stage.models.payload.size), Placement(), LOAD)
-    if case:
-        add_text(load, ABOVE_LOAD, case_name(detail))
+    if pair:
+        add_text(load, ABOVE_LOAD, detail.case.name)
     yield "/scene/load", SceneUpdate(entities=[load])
     yield "/scene/wrenches", SceneUpdate(entities=list(_wrenches(stage, now)))
 
 
-def _transforms(stage: PlacedScene, detail: HeightDetail, now: Timestamp) -> Iterator[FrameTransform]:
+def _transforms(stage: PlacedScene, detail: CaseDetail, now: Timestamp) -> Iterator[FrameTransform]:
     yield _transform(WORLD, LOAD, stage.world_from_load, now)
     for name, tree in stage.models.trees.items():
         yield _transform(WORLD, frame_id(name, tree.root), stage.frames[name][tree.root], now)

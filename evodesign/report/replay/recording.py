@@ -10,7 +10,7 @@ from typing import IO, Final
 
 from mcap.writer import CompressionType, Writer
 
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 from evodesign.report.replay.messages import TOPICS, messages
 from evodesign.report.replay.schemas import descriptor_set
 from evodesign.report.replay.times import timed
@@ -25,7 +25,7 @@ HOLD: Final = 1_000_000_000
 def write_replay(
     stream: IO[bytes],
     scene_set: SceneSet,
-    heights: Sequence[HeightDetail],
+    cases: Sequence[CaseDetail],
     attachments: Mapping[str, str],
     about: Mapping[str, str],
 ) -> None:
@@ -34,7 +34,7 @@ def write_replay(
     Args:
         stream: to an empty file.
         scene_set: who stands there.
-        heights: postures, in any order; of several people or loads, in that of the cases.
+        cases: postures, in any order; of several people or loads, in the problem's.
         attachments: URDF texts by file name.
         about: what the recording is of, kept as the metadata record `evodesign`.
     """
@@ -44,7 +44,7 @@ def write_replay(
     for name, text in attachments.items():
         writer.add_attachment(0, 0, name, "application/xml", text.encode())
     channels = _channels(writer)
-    shown = timed(heights)
+    shown = timed(cases)
     held = [(time + HOLD, last) for time, last in shown[-1:]]
     for sequence, (time, detail) in enumerate((*shown, *held)):
         for topic, message in messages(scene_set.placed_scene(detail), detail, time):

@@ -9,16 +9,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from evodesign.analysis.cases import named_people_or_loads
-from evodesign.records import HeightDetail
+from evodesign.records import CaseDetail
 
-__all__ = ["SECONDS_PER_CASE", "Timed", "nanoseconds_at", "time_scale", "timed"]
+__all__ = ["SECONDS_PER_CASE", "Timed", "nanoseconds_at", "several", "time_scale", "timed"]
 
 NANOSECONDS: Final = 1_000_000_000
 NANOSECONDS_PER_METRE: Final = 10 * NANOSECONDS
 SECONDS_PER_CASE: Final = 2
 
-Timed = tuple[int, HeightDetail]
+Timed = tuple[int, CaseDetail]
 """Time [ns] and what is shown from then on."""
 
 
@@ -27,16 +26,21 @@ def nanoseconds_at(height: float) -> int:
     return round(height * NANOSECONDS_PER_METRE)
 
 
-def timed(heights: Sequence[HeightDetail]) -> list[Timed]:
+def several(cases: Sequence[CaseDetail]) -> bool:
+    """Whether they are of several people or loads, so that a height does not tell them apart."""
+    return any(detail.case.label for detail in cases)
+
+
+def timed(cases: Sequence[CaseDetail]) -> list[Timed]:
     """All cases with their times, in rising order."""
-    if named_people_or_loads(heights):
-        return [(count * SECONDS_PER_CASE * NANOSECONDS, detail) for count, detail in enumerate(heights)]
-    ordered = sorted(heights, key=lambda detail: detail.height_m)
-    return [(nanoseconds_at(detail.height_m), detail) for detail in ordered]
+    if several(cases):
+        return [(count * SECONDS_PER_CASE * NANOSECONDS, detail) for count, detail in enumerate(cases)]
+    ordered = sorted(cases, key=lambda detail: detail.case.task.height_m)
+    return [(nanoseconds_at(detail.case.task.height_m), detail) for detail in ordered]
 
 
-def time_scale(heights: Sequence[HeightDetail]) -> str:
+def time_scale(cases: Sequence[CaseDetail]) -> str:
     """What time means, in words."""
-    if named_people_or_loads(heights):
+    if several(cases):
         return f"{SECONDS_PER_CASE} s per case: person, load and height in the problem's order"
     return "10 s per metre of the load's height"

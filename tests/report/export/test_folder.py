@@ -64,9 +64,9 @@ def design_of(problem: Problem, detail: Detail, seed: int = 2) -> ExportedDesign
     assessment = Assessment(
         design=dict(problem.space.named(values)),
         objectives={"robot_torque": 11.25, "reach_height": 1.5},
-        violation=0.0 if detail.heights else 0.25,
+        violation=0.0 if detail.cases else 0.25,
         status=Status.SOLVED,
-        reason="solved" if detail.heights else "0.25 m <too> high",
+        reason="solved" if detail.cases else "0.25 m <too> high",
         reach=ReachOutcome(lowest_m=0.1, highest_m=1.5, status=Status.SOLVED, reason=""),
     )
     evaluation = Evaluation(
@@ -77,7 +77,7 @@ def design_of(problem: Problem, detail: Detail, seed: int = 2) -> ExportedDesign
         seconds=0.1,
         worker="here",
     )
-    return ExportedDesign("runs/<b>", header, evaluation, SceneSet.of(problem.scenes, tree), detail.heights)
+    return ExportedDesign("runs/<b>", header, evaluation, SceneSet.of(problem.scenes, tree), detail.cases)
 
 
 @pytest.fixture(scope="module")
@@ -134,9 +134,10 @@ def test_keyframes_are_the_postures(exported: tuple[ExportedDesign, Path]) -> No
     model = mujoco.MjModel.from_xml_path(str(folder / "robot.xml"))
     data = mujoco.MjData(model)
     assert model.nkey == 3
-    for height in design.heights:
-        mujoco.mj_resetDataKeyframe(model, data, model.key(f"load at {height.height_m:g} m").id)
-        posture = height.agents[ROBOT]
+    for detail in design.cases:
+        height = detail.case.task.height_m
+        mujoco.mj_resetDataKeyframe(model, data, model.key(f"load at {height:g} m").id)
+        posture = detail.agents[ROBOT]
         assert data.qpos[:3].tolist() == pytest.approx(posture.base_position_m)
         for joint, position in posture.joints_rad.items():
             assert data.joint(joint).qpos[0] == position
@@ -146,9 +147,10 @@ def test_tables_hold_the_logged_numbers(exported: tuple[ExportedDesign, Path]) -
     design, folder = exported
     rows = list(csv.DictReader(io.StringIO((folder / "postures.csv").read_text())))
     wrenches = list(csv.DictReader(io.StringIO((folder / "wrenches.csv").read_text())))
-    for height in design.heights:
-        for agent, posture in height.agents.items():
-            own = [row for row in rows if (float(row["height_m"]), row["agent"]) == (height.height_m, agent)]
+    for detail in design.cases:
+        height = detail.case.task.height_m
+        for agent, posture in detail.agents.items():
+            own = [row for row in rows if (float(row["height_m"]), row["agent"]) == (height, agent)]
             base = [float(row["position"]) for row in own if row["kind"] == "base"]
             assert base == [*posture.base_position_m, *posture.base_rpy_rad]
             joints = [row for row in own if row["kind"] != "base"]
@@ -161,7 +163,7 @@ def test_tables_hold_the_logged_numbers(exported: tuple[ExportedDesign, Path]) -
                         row
                         for row in wrenches
                         if (float(row["height_m"]), row["agent"], row["contact"])
-                        == (height.height_m, agent, f"{side}_{part}")
+                        == (height, agent, f"{side}_{part}")
                     )
                     numbers = [float(value) for key, value in row.items() if key.endswith(("_n", "_n_m"))]
                     assert numbers == list(wrench)
@@ -174,7 +176,7 @@ def test_json_holds_the_logged_design(exported: tuple[ExportedDesign, Path]) -> 
     assert told["parameters"] == design.evaluation.assessment.design
     assert told["objectives"] == design.evaluation.assessment.objectives
     assert told["on_front"] is True
-    assert told["postures"] == json.loads(msgspec.json.encode(design.heights))
+    assert told["postures"] == json.loads(msgspec.json.encode(design.cases))
 
 
 def test_replay_carries_both_models(exported: tuple[ExportedDesign, Path]) -> None:
@@ -185,7 +187,7 @@ def test_replay_carries_both_models(exported: tuple[ExportedDesign, Path]) -> No
 
 
 def test_design_without_a_posture_is_exported_without_a_replay(problem: Problem, tmp_path: Path) -> None:
-    done = export_design(design_of(problem, Detail(evaluation=0, heights=())), tmp_path, on_front=False)
+    done = export_design(design_of(problem, Detail(evaluation=0, cases=())), tmp_path, on_front=False)
     written = {path.name for path in tmp_path.iterdir()}
     assert written == {"README.md", "robot.urdf", "robot.xml", "human.urdf", "postures.json"}
     assert {path.name for path in done.files} == written
@@ -197,7 +199,7 @@ def test_design_without_a_posture_is_exported_without_a_replay(problem: Problem,
 
 
 def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(problem: Problem, tmp_path: Path) -> None:
-    design = design_of(problem, Detail(evaluation=0, heights=()))
+    design = design_of(problem, Detail(evaluation=0, cases=()))
     trees = {ROBOT: problem.scene.human.tree, "human": crane()}
     (only,) = design.scene_set.models
     scene_set = SceneSet((SceneModels(only.agents, trees, only.payload),))
@@ -209,7 +211,7 @@ def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(problem: Problem
 
 
 def test_folder_with_files_is_refused_and_left_alone(problem: Problem, tmp_path: Path) -> None:
-    design = design_of(problem, Detail(evaluation=0, heights=()))
+    design = design_of(problem, Detail(evaluation=0, cases=()))
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(InputError, match="a new or empty folder"):
         export_design(design, tmp_path, on_front=False)

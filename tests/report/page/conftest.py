@@ -46,7 +46,7 @@ def real_run(problem: Problem, evaluator: Evaluator, tmp_path_factory: pytest.Te
             done.append(evaluation)
             log.evaluation(evaluation)
             if running.enters(evaluation):
-                log.detail(Detail(evaluation=number, heights=assessed.heights))
+                log.detail(Detail(evaluation=number, cases=assessed.cases))
         reference = reference_point(objectives, done)
         assert reference is not None
         log.generation(

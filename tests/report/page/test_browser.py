@@ -148,7 +148,7 @@ def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: Run) ->
     page.wait_for(f"{CANVAS}.toDataURL() !== {json.dumps(before)}")
     assert page.value("document.querySelector('.wrenches').textContent") != wrenches
     details = next(detail for detail in real_run.details if detail.evaluation == number)
-    force = details.heights[2].agents[ROBOT].foot_wrenches["left"][2]
+    force = details.cases[2].agents[ROBOT].foot_wrenches["left"][2]
     cell = "document.querySelector('[data-agent=robot] tr:nth-child(2)').children[3].textContent"
     assert page.value(cell) == f"{force:.1f}"
 
@@ -169,7 +169,7 @@ def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem,
     detail = real_run.details[-1]
     values = list(real_run.evaluations[detail.evaluation].assessment.design.values())
     robot = problem.space.resized(problem.scene.robot.tree, values)
-    for place, height in enumerate(detail.heights):
+    for place, height in enumerate(detail.cases):
         for name, tree, turn in ((ROBOT, robot, 0.0), (HUMAN, problem.scene.human.tree, math.pi)):
             script = (
                 f"(() => {{ const e = window.evodesign, d = e.content.designs[{detail.evaluation}];"

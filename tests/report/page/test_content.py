@@ -63,8 +63,8 @@ def test_every_posture_is_the_logs(real_run: Run, content: Content) -> None:
     on_front = {evaluation.number for evaluation in front(real_run.header.objectives, real_run.evaluations)}
     assert on_front <= set(content.designs)
     for number, design in content.designs.items():
-        assert design.postures == (details[number].heights if number in details else ())
-        assert design.heights == real_run.evaluations[number].assessment.heights
+        assert design.postures == (details[number].cases if number in details else ())
+        assert design.cases == real_run.evaluations[number].assessment.cases
 
 
 def test_masses_are_the_resized_robots(real_run: Run, content: Content, problem: Problem) -> None:

@@ -48,7 +48,7 @@ def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: 
             "const tree = e.treeOf('human', d, posture.human_name);"
             "return e.linkPoses('human', tree, posture.agents.human); })()"
         )
-        posture = run.details[1].heights[place].agents[HUMAN]
+        posture = run.details[1].cases[place].agents[HUMAN]
         check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi)
 
 
@@ -61,8 +61,8 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) ->
         slider = "document.getElementById('height')"
         index = HEIGHTS.index(height)
         page.value(f"(() => {{ {slider}.value = {index}; {slider}.dispatchEvent(new Event('input')); }})()")
-        detail = run.details[number].heights[place]
-        outcome = run.evaluations[number].assessment.heights[place]
+        detail = run.details[number].cases[place]
+        outcome = run.evaluations[number].assessment.cases[place]
         assert outcome.robot_torque_norm is not None
         text = page.value("document.getElementById('height-detail').textContent")
         assert f"robot |torque| {shown_as(outcome.robot_torque_norm)} N m" in text
@@ -75,9 +75,7 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) ->
         assert page.value(pressed) == label
         torques = page.value("document.querySelectorAll('.joint-plot')[0].data[0].y")
         pair = [
-            one
-            for one in run.details[number].heights
-            if (one.human_name, one.payload_name) == (human, payload)
+            one for one in run.details[number].cases if (one.human_name, one.payload_name) == (human, payload)
         ]
         sizes = [abs(torque) for one in pair for torque in one.agents[ROBOT].torques_n_m.values()]
         assert torques == pytest.approx(sizes)
@@ -87,7 +85,7 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) ->
 
 def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: Run) -> None:
     number = page.value("window.evodesign.state.selected")
-    outcomes = run.evaluations[number].assessment.heights
+    outcomes = run.evaluations[number].assessment.cases
     page.value("document.querySelectorAll('input[name=cases]')[1].click()")
     shown = page.value("[...document.querySelectorAll('.cases button')].map(b => [b.title, b.textContent])")
     for (title, text), (human, payload, height), outcome in zip(shown, CASES, outcomes, strict=True):

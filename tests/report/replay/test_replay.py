@@ -64,7 +64,7 @@ def replay(problem: Problem) -> Replay:
     models, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
     stream = io.BytesIO()
     write_replay(
-        stream, SceneSet((models,)), detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
+        stream, SceneSet((models,)), detail.cases, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
     )
     content = stream.getvalue()
     messages = {}
@@ -113,12 +113,13 @@ def stripped(message: object) -> str:
 
 
 def test_frames_stand_where_pinocchio_puts_the_links(replay: Replay) -> None:
-    for height in replay.detail.heights:
-        world_from = frames(replay.at("/tf", height.height_m))
-        assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, height.height_m], rtol=0.0, atol=TOLERANCE)
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
+        world_from = frames(replay.at("/tf", at))
+        assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, at], rtol=0.0, atol=TOLERANCE)
         for agent in replay.models.agents:
             tree = replay.models.trees[agent.name]
-            state = AgentModel.of(agent, tree).at(posture_of(height.agents[agent.name]))
+            state = AgentModel.of(agent, tree).at(posture_of(detail.agents[agent.name]))
             turn = np.diag([agent.sign, agent.sign, 1.0])
             for link in tree.link_by_name:
                 rotation, origin = state.pose(link)
@@ -150,12 +151,13 @@ def matrix(position: object, quaternion: object) -> np.ndarray:
 
 
 def test_scenes_hold_every_shape_at_its_place(replay: Replay) -> None:
-    for height in replay.detail.heights:
-        world_from = frames(replay.at("/tf", height.height_m))
-        expected = placed_scene(replay.models, height).solids
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
+        world_from = frames(replay.at("/tf", at))
+        expected = placed_scene(replay.models, detail).solids
         found = []
         for topic in ("/scene/robot", "/scene/human", "/scene/load"):
-            for entity in replay.at(topic, height.height_m).entities:
+            for entity in replay.at(topic, at).entities:
                 assert entity.frame_locked
                 for primitive in (*entity.spheres, *entity.cylinders, *entity.cubes):
                     size = (primitive.size.x, primitive.size.y, primitive.size.z)
@@ -182,10 +184,11 @@ def size_of(shape: Box | Cylinder | Sphere) -> tuple[float, float, float]:
 
 
 def test_arrows_are_the_wrenches(replay: Replay) -> None:
-    for height in replay.detail.heights:
-        entities = {entity.id: entity for entity in replay.at("/scene/wrenches", height.height_m).entities}
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
+        entities = {entity.id: entity for entity in replay.at("/scene/wrenches", at).entities}
         assert len(entities) == 8
-        for wrench in placed_scene(replay.models, height).wrenches:
+        for wrench in placed_scene(replay.models, detail).wrenches:
             entity = entities[f"{wrench.agent}/{wrench.contact}"]
             assert entity.frame_id == "world"
             force, moment = entity.arrows
@@ -202,10 +205,11 @@ def test_arrows_are_the_wrenches(replay: Replay) -> None:
 
 
 def test_joint_states_are_the_posture(replay: Replay) -> None:
-    for height in replay.detail.heights:
+    for detail in replay.detail.cases:
+        at = detail.case.task.height_m
         for agent in ("robot", "human"):
-            posture = height.agents[agent]
-            joints = replay.at(f"/joint_states/{agent}", height.height_m).joints
+            posture = detail.agents[agent]
+            joints = replay.at(f"/joint_states/{agent}", at).joints
             assert {joint.name: joint.position for joint in joints} == posture.joints_rad
             assert {joint.name: joint.effort for joint in joints} == posture.torques_n_m
             assert not any(joint.HasField("velocity") for joint in joints)
@@ -222,13 +226,13 @@ def test_models_are_attached_and_the_recording_says_of_what_it_is(replay: Replay
 
 def test_one_height_gives_a_recording_with_a_length(problem: Problem) -> None:
     stream = io.BytesIO()
-    write_replay(stream, random_company(problem, 1), random_detail(problem, 1, (1.0,)).heights, {}, {})
+    write_replay(stream, random_company(problem, 1), random_detail(problem, 1, (1.0,)).cases, {}, {})
     times = {message.log_time for _, _, message in make_reader(io.BytesIO(stream.getvalue())).iter_messages()}
     assert times == {10_000_000_000, 11_000_000_000}
 
 
 def test_layout_shows_topics_frames_and_joints_that_exist(replay: Replay) -> None:
-    layout = json.loads(layout_text(SceneSet((replay.models,)), replay.detail.heights))
+    layout = json.loads(layout_text(SceneSet((replay.models,)), replay.detail.cases))
     panels = layout["configById"]
     assert panels_of(layout["layout"]) == set(panels)
     scene = panels["3D!scene"]
@@ -236,7 +240,7 @@ def test_layout_shows_topics_frames_and_joints_that_exist(replay: Replay) -> Non
     known = {"world", *(t.child_frame_id for t in replay.at("/tf", 1.0).transforms)}
     assert {name.removeprefix("frame:") for name in scene["transforms"]} == known
     for agent in ("robot", "human"):
-        torques = [height.agents[agent].torques_n_m for height in replay.detail.heights]
+        torques = [detail.agents[agent].torques_n_m for detail in replay.detail.cases]
         largest = sorted(torques[0], key=lambda joint: -max(abs(at[joint]) for at in torques))[:6]
         labels = [path["label"] for path in panels[f"Plot!{agent}"]["paths"]]
         assert labels == largest

@@ -3,21 +3,19 @@
 const severalPairs = content.people.length * content.payloads.length > 1;
 
 const caseAt = (person, payload, height) => ({
-  human: content.people[person],
+  person: content.people[person],
   payload: content.payloads[payload],
   height: content.heights_m[height],
 });
 const shownCase = () => caseAt(state.person, state.payload, state.height);
 
-// An outcome or a posture of the log; a name that is not there is empty.
-const isOf = (one, at) =>
-  one.height_m === at.height &&
-  (one.human_name ?? "") === at.human &&
-  (one.payload_name ?? "") === at.payload;
-const outcomeAt = (design, at) => design.heights.find((one) => isOf(one, at));
-const postureAt = (design, at) => design.postures.find((one) => isOf(one, at));
+// Whether an outcome or postures of the log are of a case; a name that is not there is empty.
+const isOf = ({ case: { person = "", payload = "", task } }, at) =>
+  task.height_m === at.height && person === at.person && payload === at.payload;
+const outcomeAt = (design, at) => design.cases.find((one) => isOf(one, at));
+const postureAt = (design, at) => design.postures.find((one) => isOf(one, at))?.instants[0];
 
-const pairText = (at) => [at.human, at.payload].filter(Boolean).join(", ");
+const pairText = (at) => [at.person, at.payload].filter(Boolean).join(", ");
 const caseText = (at) => [pairText(at), heightText(at.height)].filter(Boolean).join(", ");
 
 const showCase = (person, payload, height) => {
@@ -77,7 +75,7 @@ const caseCell = (design, agent, most, indices) => {
 };
 
 const caseTable = (design, agent) => {
-  const norms = design.heights.map((one) => one[NORMS[agent]] ?? 0);
+  const norms = design.cases.map((one) => one[NORMS[agent]] ?? 0);
   const most = Math.max(...norms, 0);
   const heads = [
     content.people.length > 1 ? "Person" : null,
@@ -123,7 +121,7 @@ const caseSection = (design) => {
     element(
       "summary",
       { text: "All cases" },
-      element("small", { text: `${design.heights.length}` }),
+      element("small", { text: `${design.cases.length}` }),
     ),
     element("div", { class: "choices", style: "margin-top:10px" }, whoseTorques),
     element("p", { class: "hint", text: "|torque| [N m] of each case; a click shows its posture." }),

@@ -13,7 +13,7 @@ const sceneItems = (design, agents, at, height = at.height) => {
     human: [mixed(rgb("second"), neutral, 0.35), mixed(rgb("second"), neutral, 0.35)],
   };
   for (const [agent, posture] of Object.entries(agents)) {
-    const tree = treeOf(agent, design, at.human);
+    const tree = treeOf(agent, design, at.person);
     const poses = linkPoses(agent, tree, posture);
     tree.links.forEach((link, index) => {
       const tint = tints[agent][agent === "robot" && !content.bodies.changing.includes(index) ? 1 : 0];

@@ -1,0 +1,93 @@
+"""Messages of every format as records of this one.
+
+Format 1 told a case by a height and the names of person and load, and called allocations policies:
+
+    format 1                                           format 2
+    heights: {height_m, human_name, payload_name, ..}  cases: {case: {person, payload, task}, ..}
+    postures at a height: agents, disturbed            instants: {time_s: 0, agents, disturbed}
+    policy.NAME                                        allocation.NAME
+    [[design.policy]], [solver] seeds                  [[design.allocation]], [solver] start_portfolio
+
+A message tells its format itself, a header by its number and another one by its heights, so it can be read
+whatever became of its segment's header.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from typing import Any, Final
+
+import msgspec
+
+from evodesign.runlog.channels import RECORDS, RUN
+
+__all__ = ["record_of", "upgraded"]
+
+RENAMED_KEYS: Final = {
+    re.compile(r"\bseeds(?=\s*=\s*(true|false)\b)"): "start_portfolio",
+    re.compile(r"^(\s*(?:\[*\s*design\s*\.\s*)?)policy(?=\s*[].=])", re.MULTILINE): r"\1allocation",
+}
+"""Keys of problem and population files, told from equal names of joints and groups by what they hold."""
+
+
+def record_of(topic: str, data: bytes) -> msgspec.Struct:
+    """The record that a message holds.
+
+    Raises:
+        msgspec.MsgspecError, UnicodeDecodeError: it holds none of its topic.
+    """
+    if topic != RUN:
+        with suppress(msgspec.ValidationError):
+            return msgspec.json.decode(data, type=RECORDS[topic])
+    return msgspec.convert(upgraded(msgspec.json.decode(data)), RECORDS[topic])
+
+
+def upgraded(message: Any) -> Any:
+    """A decoded message as this format has it; what is none of format 1 stays as it is.
+
+    A header keeps the number of its format, which tells what was read.
+    """
+    match message:
+        case {
+            "format_version": 1,
+            "problem": {"files": dict(files), **source},
+            "parameters": list(parameters),
+        }:
+            files = {name: _with_new_keys(text) for name, text in files.items()}
+            problem = {**source, "text": _with_new_keys(source.get("text")), "files": files}
+            return {**message, "problem": problem, "parameters": [_renamed(each) for each in parameters]}
+        case {"assessment": {"heights": list(heights), "design": dict(design), **rest}}:
+            values = {_name(name): value for name, value in design.items()}
+            cases = [_case(each) for each in heights]
+            return {**message, "assessment": {**rest, "design": values, "cases": cases}}
+        case {"evaluation": number, "heights": list(heights)}:
+            return {"evaluation": number, "cases": [_case(each) for each in heights]}
+    return message
+
+
+def _case(told: Any) -> Any:
+    """How a case ended, or its postures."""
+    match told:
+        case {"height_m": height, **rest}:
+            names = {"person": rest.pop("human_name", ""), "payload": rest.pop("payload_name", "")}
+            case = {**names, "task": {"kind": "hold", "height_m": height}}
+            return {"case": case, **({"instants": [{"time_s": 0.0, **rest}]} if "agents" in rest else rest)}
+    return told
+
+
+def _renamed(parameter: Any) -> Any:
+    match parameter:
+        case {"name": str(name)}:
+            return {**parameter, "name": _name(name)}
+    return parameter
+
+
+def _name(parameter: str) -> str:
+    return re.sub(r"^policy\.", "allocation.", parameter)
+
+
+def _with_new_keys(text: Any) -> Any:
+    for key, now in RENAMED_KEYS.items() if isinstance(text, str) else ():
+        text = key.sub(now, text)
+    return text
