@@ -172,9 +172,10 @@ class RunWriter:
 
 
 def encoded(record: msgspec.Struct) -> bytes:
-    """A record as a message; a header tells this format, which is that of everything written beside it."""
+    """A record as a message; a header of an earlier format is written, as all beside it, in this one."""
     if isinstance(record, RunHeader):
-        record = msgspec.structs.replace(record, format_version=FORMAT_VERSION)
+        version = max(record.format_version, FORMAT_VERSION)
+        record = msgspec.structs.replace(record, format_version=version)
     return msgspec.json.encode(record)
 
 

@@ -31,7 +31,7 @@ from evodesign.records import (
 )
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
-from tests.report.scenes import random_detail
+from tests.report.scenes import hold_json, random_detail
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
 
 
@@ -145,8 +145,8 @@ def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert found["id"] == 0
     assert found["objectives"] == assessment.objectives
     assert found["parameters"] == assessment.design
-    assert found["heights"] == json.loads(msgspec.json.encode(assessment.cases))
-    assert found["postures"] == json.loads(msgspec.json.encode(logged.details[0].cases))
+    assert found["heights"] == [hold_json(outcome) for outcome in assessment.cases]
+    assert found["postures"] == [hold_json(detail) for detail in logged.details[0].cases]
     assert found["reach"] == json.loads(msgspec.json.encode(assessment.reach))
 
 
@@ -157,7 +157,7 @@ def test_design_without_logged_postures_is_solved_anew(
     captured = capsys.readouterr()
     assert captured.err == "note: the log holds no postures of design 1, so it is solved anew\n"
     expected = evaluator.assess(problem.start[1]).cases
-    assert json.loads(captured.out)["postures"] == json.loads(msgspec.json.encode(expected))
+    assert json.loads(captured.out)["postures"] == [hold_json(detail) for detail in expected]
 
 
 def test_plot_writes_three_figures_twice(
@@ -177,7 +177,7 @@ def test_export_writes_the_logged_postures(
     printed = capsys.readouterr().out.split()
     assert sorted(printed) == sorted(str(path) for path in (tmp_path / "design").iterdir())
     told = json.loads((tmp_path / "design" / "postures.json").read_text())
-    assert told["postures"] == json.loads(msgspec.json.encode(read_run(run).details[0].cases))
+    assert told["postures"] == [hold_json(detail) for detail in read_run(run).details[0].cases]
 
 
 HOSTILE = "<script>alert(1)</script>[bold]../x"

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from evodesign.analysis.audit import audit
 from evodesign.analysis.front import front
+from evodesign.evolve import Silent, replay, resume
 from evodesign.records import FORMAT_VERSION
 from evodesign.runlog.digest import digest
+from evodesign.runlog.reader import read_segment
 from evodesign.runlog.rewrite import merge, recover
 from evodesign.runlog.run import Run, read_run
+from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 FOLDER = Path(__file__).parent
 VERSIONS = range(1, FORMAT_VERSION + 1)
-DIGESTS = {1: "3d28b759049a7d644eb245a457431ed2ddafc42aa96f35b067c96a6d180c1701"}
+DIGEST = "0f0f30b2b942b4a73f189ccebe3fd05e92fdbd5821fa3e5a7fa29c8acdb4268b"
+"""Of the same search in every format."""
+
+LIFTING = FOLDER / "lifting"
+LIFTING_DIGEST = "b54f105def3043c833e7e53f7dc77237624016cccfd71dfa0f014f11a03c6e65"
+COMMAND = [sys.executable, "-m", "evodesign.cli"]
 
 
 @pytest.fixture(params=VERSIONS)
@@ -30,8 +41,9 @@ def run(version: int) -> Run:
 
 
 def test_each_format_version_has_its_golden_run() -> None:
-    assert sorted(DIGESTS) == list(VERSIONS)
-    assert sorted(path.name for path in FOLDER.glob("format-*")) == [f"format-{each}" for each in VERSIONS]
+    for folder in (FOLDER, LIFTING):
+        names = sorted(path.name for path in folder.glob("format-*"))
+        assert names == [f"format-{each}" for each in VERSIONS]
 
 
 def test_a_golden_run_reads_as_it_was_written(version: int, run: Run) -> None:
@@ -39,7 +51,7 @@ def test_a_golden_run_reads_as_it_was_written(version: int, run: Run) -> None:
     assert run.header.format_version == version
     assert run.header.problem.text == 'name = "töy"'
     assert (run.header.search.algorithm, run.header.search.seed, run.header.budget) == ("nsga2", 6, 20)
-    assert digest(run.evaluations) == DIGESTS[version]
+    assert digest(run.evaluations) == DIGEST
     assert len(run.details) == 13
     assert run.fronts[-1].evaluations == (5, 7, 8, 11, 14, 16)
     assert run.generations[-1].best == {
@@ -60,7 +72,70 @@ def test_a_golden_run_can_be_merged_and_recovered(version: int, run: Run, tmp_pa
     recovered = recover(tmp_path / "run", tmp_path / "recovered")
     merged = merge(tmp_path / "run", None)
     for again in (recovered, merged):
+        assert again.header.format_version == FORMAT_VERSION
         assert again.evaluations == run.evaluations
         assert again.fronts == run.fronts
         assert again.generations == run.generations
         assert again.details == run.details
+
+
+@pytest.fixture
+def lifting(version: int, tmp_path: Path) -> Path:
+    """A copy of the golden run of real robots: two people, a disturbance, and who carries how much."""
+    return Path(shutil.copytree(LIFTING / f"format-{version}", tmp_path / "run"))
+
+
+def output(*arguments: object) -> str:
+    done = subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_a_run_may_go_on_in_this_format(version: int, tmp_path: Path) -> None:
+    """Its segments are of two formats then, and it equals one that never stopped."""
+    for part in (1, 2):
+        place = tmp_path / f"{part}"
+        shutil.copytree(FOLDER / f"format-{version}", place)
+        if part == 1:
+            (place / "001.mcap").unlink()
+        resume(place, ToyTask, OrderedPool(shuffled(5)), Silent(), 26)
+    short, long = (read_run(tmp_path / f"{part}") for part in (1, 2))
+    assert digest(short.evaluations) == digest(long.evaluations)
+    assert digest(long.evaluations[:20]) == DIGEST
+    assert (long.header.format_version, audit(long), long.notes) == (FORMAT_VERSION, [], ())
+    assert [each.format_version for each in read_segment(tmp_path / "2/000.mcap").headers] == [version]
+    replay(long)
+    assert merge(tmp_path / "2", None).evaluations == long.evaluations
+
+
+def test_every_command_reads_a_golden_run(lifting: Path, tmp_path: Path) -> None:
+    front_of = json.loads(output("front", lifting, "--json", "--where", "robot_torque@tall@1 < 9"))
+    assert [design["id"] for design in front_of["designs"]] == [4, 2, 1]
+    shown = json.loads(output("show", lifting, 4, "--json"))
+    assert shown["parameters"]["allocation.effort_ratio"] == pytest.approx(0.02553, abs=1e-5)
+    assert [(each["human_name"], each["height_m"]) for each in shown["postures"]] == [
+        (name, height) for name in ("short", "tall") for height in (0.8, 1.0)
+    ]
+    assert {*shown["postures"][0]} == {"height_m", "agents", "human_name", "disturbed"}
+    assert {*shown["heights"][0]["disturbed"]} == {"heavier"}
+    assert "tall, 1 m" in output("show", lifting, 4)
+    output("report", lifting, "--output", tmp_path / "report.html")
+    output("export", lifting, 4, "--to", tmp_path / "exported")
+    assert json.loads((tmp_path / "exported/postures.json").read_text())["postures"] == shown["postures"]
+    other = Path(shutil.copytree(lifting, tmp_path / "other"))
+    assert "hypervolumes after 5 evaluations" in output("compare", lifting, other)
+    assert "generation 0: 3/5 evaluations" in output("watch", lifting)
+    summary = json.loads(output("verify", lifting, "--json"))
+    assert (summary["digest"], summary["sound"]) == (LIFTING_DIGEST, True)
+    output("recover", lifting, "--to", tmp_path / "recovered")
+    output("branch", lifting, "--branch-from", 1, "--run", tmp_path / "branched", "--evaluations", 3)
+    assert json.loads(output("merge", other, "--json"))["digest"] == LIFTING_DIGEST
+
+
+def test_a_golden_run_of_real_robots_is_resumed(lifting: Path) -> None:
+    output("resume", lifting, "--evaluations", 6, "--jobs", 1, "--accept-versions")
+    run = read_run(lifting)
+    assert len(run.evaluations) == 6
+    assert digest(run.evaluations[:5]) == LIFTING_DIGEST
+    assert {outcome.case.label for outcome in run.evaluations[5].assessment.cases} == {"short", "tall"}
+    assert json.loads(output("verify", lifting, "--json"))["sound"]

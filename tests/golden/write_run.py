@@ -1,21 +1,43 @@
-"""Writes the golden run of this format version: python -m tests.golden.write_run DIR. Never written over."""
+"""Writes the golden runs of this format version: python -m tests.golden.write_run. Never written over.
+
+One is of toys, the other of real robots in a problem that has everything that the log can hold.
+"""
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from pathlib import Path
 
 from evodesign.evolve import Silent, resume, start
+from evodesign.records import FORMAT_VERSION
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
+FOLDER = Path(__file__).parent
+LIFTING = FOLDER / "lifting"
+
 
 def main() -> None:
-    directory = Path(sys.argv[1])
+    directory = FOLDER / f"format-{FORMAT_VERSION}"
     header = synthetic_header(budget=13, seed=6, population=6)
     start(directory, header, ToyTask(header), OrderedPool(shuffled(2)), Silent())
     resume(directory, ToyTask, OrderedPool(shuffled(3)), Silent(), 20)
-    (directory / "lock").unlink()
+    real = LIFTING / f"format-{FORMAT_VERSION}"
+    search = [
+        sys.executable,
+        "-m",
+        "evodesign.cli",
+        "search",
+        "problem.toml",
+        "--run",
+        real.name,
+        "--jobs",
+        "1",
+    ]
+    subprocess.run(search, cwd=LIFTING, check=True)
+    for run in (directory, real):
+        (run / "lock").unlink()
 
 
 if __name__ == "__main__":

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
+import msgspec
 import numpy as np
 
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.problem.build import Problem
-from evodesign.records import AgentDetail, CaseDetail, Detail, Hold, InstantDetail
+from evodesign.records import AgentDetail, CaseDetail, CaseOutcome, Detail, Hold, InstantDetail
 from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
 from evodesign.report.scene_set import SceneSet
 
@@ -53,6 +57,15 @@ def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
         hand_wrenches={side: numbers(10.0, 6) for side in SIDES},
         foot_wrenches={side: (*numbers(10.0, 2), 300.0, *numbers(10.0, 3)) for side in SIDES},
     )
+
+
+def hold_json(record: CaseDetail | CaseOutcome) -> dict[str, Any]:
+    """A record of a load held still, without names and disturbances, as other programs are told."""
+    told = json.loads(msgspec.json.encode(record))
+    (instant,) = told.pop("instants", [{"time_s": 0.0}])
+    assert told.pop("case") == {"task": {"kind": "hold", "height_m": record.case.task.height_m}}
+    assert instant.pop("time_s") == 0.0
+    return {"height_m": record.case.task.height_m} | told | instant
 
 
 def random_stages(problem: Problem, seed: int) -> list[PlacedScene]:

@@ -47,7 +47,7 @@ def test_a_plot_panel_is_offered_the_objectives_and_parameters_by_name() -> None
     assert generation["/generation.feasible_share"] == "number"
     evaluation = viewer_fields(schemas["/evaluation"], "/evaluation")
     assert evaluation["/evaluation.assessment.design.arm.0"] == "number"
-    assert evaluation["/evaluation.assessment.cases[:].height_m"] == "number"
+    assert evaluation["/evaluation.assessment.cases[:].case.task.height_m"] == "number"
 
 
 @pytest.mark.parametrize("topic", RECORDS)

@@ -7,7 +7,6 @@ import io
 import json
 from pathlib import Path
 
-import msgspec
 import mujoco
 import pinocchio
 import pytest
@@ -30,7 +29,7 @@ from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
 from evodesign.report.scene_models import SceneModels
 from evodesign.report.scene_set import SceneSet
-from tests.report.scenes import random_detail, random_values
+from tests.report.scenes import hold_json, random_detail, random_values
 from tests.tree.crane import crane
 
 FILES = {
@@ -176,7 +175,7 @@ def test_json_holds_the_logged_design(exported: tuple[ExportedDesign, Path]) -> 
     assert told["parameters"] == design.evaluation.assessment.design
     assert told["objectives"] == design.evaluation.assessment.objectives
     assert told["on_front"] is True
-    assert told["postures"] == json.loads(msgspec.json.encode(design.cases))
+    assert told["postures"] == [hold_json(detail) for detail in design.cases]
 
 
 def test_replay_carries_both_models(exported: tuple[ExportedDesign, Path]) -> None:

@@ -169,14 +169,14 @@ def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem,
     detail = real_run.details[-1]
     values = list(real_run.evaluations[detail.evaluation].assessment.design.values())
     robot = problem.space.resized(problem.scene.robot.tree, values)
-    for place, height in enumerate(detail.cases):
+    for place, posture in enumerate(detail.cases):
         for name, tree, turn in ((ROBOT, robot, 0.0), (HUMAN, problem.scene.human.tree, math.pi)):
             script = (
                 f"(() => {{ const e = window.evodesign, d = e.content.designs[{detail.evaluation}];"
-                f"const posture = d.postures[{place}].agents.{name};"
+                f"const posture = d.postures[{place}].instants[0].agents.{name};"
                 f"return e.linkPoses('{name}', e.treeOf('{name}', d, ''), posture); }})()"
             )
-            check_poses(page, script, tree, height.agents[name], turn)
+            check_poses(page, script, tree, posture.agents[name], turn)
 
 
 def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: Problem) -> None:

@@ -45,8 +45,8 @@ def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: 
     for place, (human, _, _) in enumerate(CASES):
         script = (
             f"(() => {{ const e = window.evodesign, d = e.content.designs[1], posture = d.postures[{place}];"
-            "const tree = e.treeOf('human', d, posture.human_name);"
-            "return e.linkPoses('human', tree, posture.agents.human); })()"
+            "const tree = e.treeOf('human', d, posture.case.person);"
+            "return e.linkPoses('human', tree, posture.instants[0].agents.human); })()"
         )
         posture = run.details[1].cases[place].agents[HUMAN]
         check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi)
@@ -74,9 +74,7 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) ->
         pressed = "document.querySelector('.cases [aria-pressed=true]').title"
         assert page.value(pressed) == label
         torques = page.value("document.querySelectorAll('.joint-plot')[0].data[0].y")
-        pair = [
-            one for one in run.details[number].cases if (one.human_name, one.payload_name) == (human, payload)
-        ]
+        pair = [one for one in run.details[number].cases if one.case.pair == (human, payload)]
         sizes = [abs(torque) for one in pair for torque in one.agents[ROBOT].torques_n_m.values()]
         assert torques == pytest.approx(sizes)
         pictures.add(label)
@@ -93,7 +91,7 @@ def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: R
         assert float(text) == pytest.approx(outcome.human_torque_norm, rel=5e-3)
     page.value("document.querySelectorAll('.cases button')[0].click()")
     case = page.value("window.evodesign.shownCase()")
-    assert (case["human"], case["payload"], case["height"]) == CASES[0]
+    assert (case["person"], case["payload"], case["height"]) == CASES[0]
     assert page.value("document.getElementById('person').value") == "0"
 
 
