@@ -23,10 +23,12 @@ from evodesign.cli.ready import evaluator_of
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import DesignDerivative, Sensitivities
 from evodesign.problem.source import read_source
+
+OBJECTIVES = objective_kinds()
 
 HERE = Path(__file__).parent
 TOLERANCE = 1e-12

@@ -26,7 +26,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.posture.warm_start import instant_of, layout_of
+from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.problem.build import Problem
 from evodesign.records import Hold, Status
 
@@ -59,7 +59,7 @@ def sweep(problem: Problem, allocation: str, height: float, starts: int) -> Iter
         best = min(solved, key=lambda end: end.cost)
         tried.append(best.values)
         layout = layout_of(landscape.solver.program)
-        instant = instant_of(layout, symmetric_forms(scene), scene, best.values)
+        instant = instants_of(layout, symmetric_forms(scene), scene, best.values)[0]
         found = instant.postures
         checker = Checker(shared_scene(scene, space, (value,)), scene.robot.tree, person)
         if max(sizes(checker.residuals(instant, height)).values()) > TOLERANCE:

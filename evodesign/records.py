@@ -13,6 +13,8 @@ from typing import Any
 
 import msgspec
 
+from evodesign.tasks import Hold, Record, Task
+
 __all__ = [
     "FORMAT_VERSION",
     "AgentDetail",
@@ -77,23 +79,6 @@ class Sense(StrEnum):
 
     MINIMISE = "minimise"
     MAXIMISE = "maximise"
-
-
-class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Base of all records: immutable, strict, keyword-only."""
-
-
-class Hold(Record, frozen=True, tag_field="kind", tag="hold"):
-    """A task: the load held still, its centre at a height [m]."""
-
-    height_m: float
-
-    def __str__(self) -> str:
-        return f"{self.height_m:g} m"
-
-
-Task = Hold
-"""What is done with the load: a union of tagged records as soon as there is a second kind."""
 
 
 class Case(Record, frozen=True, kw_only=True, omit_defaults=True):
@@ -218,7 +203,7 @@ class CaseOutcome(Record, frozen=True, omit_defaults=True):
     human_torque_norm: float | None
     iterations: int
     residual: float | None
-    disturbed: dict[str, dict[str, float]] = {}
+    disturbed: dict[str, dict[str, float]] = msgspec.field(default_factory=dict)
 
 
 class Assessment(Record, frozen=True):
@@ -275,7 +260,7 @@ class InstantDetail(Record, frozen=True, omit_defaults=True):
 
     time_s: float
     agents: dict[str, AgentDetail]
-    disturbed: dict[str, dict[str, LoadCaseDetail]] = {}
+    disturbed: dict[str, dict[str, LoadCaseDetail]] = msgspec.field(default_factory=dict)
 
 
 class CaseDetail(Record, frozen=True):

@@ -78,6 +78,16 @@ class Checker:
             ]
         return tuple(found)
 
+    def task_residuals(
+        self, instants: Sequence[Instant], load_heights: Sequence[float]
+    ) -> tuple[Residual, ...]:
+        """Those of all instants of a task; where there are several, names begin with the instant's number."""
+        found: list[Residual] = []
+        for number, (instant, height) in enumerate(zip(instants, load_heights, strict=True)):
+            place = f"instant {number}, " if len(instants) > 1 else ""
+            found += [replace(each, name=place + each.name) for each in self.residuals(instant, height)]
+        return tuple(found)
+
     def _load_case(
         self, disturbance: Disturbance, undisturbed: Postures, postures: Postures, load_height: float
     ) -> Iterator[Residual]:

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
-from functools import cached_property
 
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
@@ -27,29 +26,35 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.records import Task
+from evodesign.tasks import Task, TaskRecord
 
 __all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
 
 DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
 """Names of the formulations in results."""
 
-Maker = Callable[[str, Setting, Precomputed, SolverCache], Formulation]
+Maker = Callable[[str, Setting, Precomputed, SolverCache, type[TaskRecord]], Formulation]
 
 
-def _decoupled(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> Formulation:
+def _decoupled(
+    name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
+) -> Formulation:
     return DecoupledPostures(
         name, symmetric_forms(setting.scene), setting, known.values_of(setting.scene), solvers
     )
 
 
-def _symmetric(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> Formulation:
-    return JointPostures(name, symmetric_forms(setting.scene), setting, solvers)
+def _symmetric(
+    name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
+) -> Formulation:
+    return JointPostures(name, symmetric_forms(setting.scene), setting, solvers, kind)
 
 
-def _whole(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> JointPostures:
+def _whole(
+    name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
+) -> JointPostures:
     forms = (whole(setting.scene.robot), whole(setting.scene.human))
-    return JointPostures(name, forms, setting, solvers)
+    return JointPostures(name, forms, setting, solvers, kind)
 
 
 FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
@@ -85,7 +90,7 @@ class PostureProblem:
         self._setting, self._symmetry, self._known = setting, symmetry, known
         self._solvers = solvers or SolverCache()
         self._values = known.values_of(setting.scene)
-        self._made: dict[str, Formulation] = {}
+        self._made: dict[tuple[str, type[TaskRecord]], Formulation] = {}
         if symmetry is not Symmetry.OFF:
             setting.space.check_mirror(setting.scene.robot.tree)
             symmetric_forms(setting.scene)
@@ -112,7 +117,8 @@ class PostureProblem:
                 break
         best = trials[-1].best
         if self._symmetry is Symmetry.POLISH and best is not None:
-            trials.append(self._whole.polish(design, task, best.instants[0], checker))
+            whole = _whole(WHOLE, self._compiled(WHOLE), self._known, self._solvers, type(task))
+            trials.append(whole.polish(design, task, best.instants, checker))
         return case_solution(self._setting.scene.case(task), trials)
 
     def derivative(
@@ -121,19 +127,21 @@ class PostureProblem:
         """How a solved posture moves with the design, or why it has no derivative."""
         if solution.attempt is None:
             return NotDifferentiable(solution.reason)
-        return self._formulation(solution.attempt.formulation).derivative(design, solution)
+        return self._formulation(solution.attempt.formulation, solution.case.task).derivative(
+            design, solution
+        )
 
     def landscape(self, task: Task) -> Landscape:
         """The cost for a task of the formulation that is tried first, of which portfolios are made."""
         name, _ = next(self._in_turn(task))
-        return self._formulation(name).landscape(task)
+        return self._formulation(name, task).landscape(task)
 
     def _trials(
         self, design: Sequence[float], task: Task, checker: Checker, neighbour: Neighbour | None
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn."""
         for name, portfolio in self._in_turn(task):
-            formulation = self._formulation(name)
+            formulation = self._formulation(name, task)
             if neighbour is not None:
                 yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
             yield formulation.solve(design, task, portfolio, checker)
@@ -151,15 +159,12 @@ class PostureProblem:
             yield SYMMETRIC, portfolio
         yield WHOLE, ()
 
-    @cached_property
-    def _whole(self) -> JointPostures:
-        return _whole(WHOLE, self._compiled(WHOLE), self._known, self._solvers)
-
-    def _formulation(self, name: str) -> Formulation:
-        if name not in self._made:
+    def _formulation(self, name: str, task: Task) -> Formulation:
+        key = (name, type(task))
+        if key not in self._made:
             setting = self._compiled(name)
-            self._made[name] = FORMULATIONS[name](name, setting, self._known, self._solvers)
-        return self._made[name]
+            self._made[key] = FORMULATIONS[name](name, setting, self._known, self._solvers, type(task))
+        return self._made[key]
 
     def _compiled(self, name: str) -> Setting:
         """The setting of a formulation; one that is seldom solved is not worth compiling."""

@@ -18,7 +18,7 @@ from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
 from evodesign.posture.results import CaseSolution, Instant
 from evodesign.posture.symmetry import Form
-from evodesign.posture.warm_start import Layout, instant_of
+from evodesign.posture.warm_start import Layout, instants_of
 
 __all__ = ["PostureDerivative", "ReachDerivative", "found_again"]
 
@@ -34,6 +34,7 @@ class PostureDerivative:
         layout: of the variables of both agents.
         forms: of robot and person, for which the values are.
         scene: in which they stand.
+        times: of the instants [s].
         values: by variable name, SI units.
         slopes: their derivatives with respect to the design's parameters, shape (rows, parameters).
         cost: the least cost of the posture problem.
@@ -45,6 +46,7 @@ class PostureDerivative:
     layout: Layout
     forms: tuple[Form, Form]
     scene: Scene
+    times: tuple[float, ...]
     values: Mapping[str, Array]
     slopes: Mapping[str, Array]
     cost: float
@@ -52,20 +54,21 @@ class PostureDerivative:
     compared: float
     limits: tuple[Limit, ...]
 
-    def moved(self, step: Array) -> Instant:
+    def moved(self, step: Array) -> tuple[Instant, ...]:
         """To first order, the postures of a design that differs by a step, one number per parameter."""
         moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
-        return instant_of(self.layout, self.forms, self.scene, moved)
+        return instants_of(self.layout, self.forms, self.scene, moved, self.times)
 
 
 def found_again(
     derivative: PostureDerivative, solution: CaseSolution
 ) -> PostureDerivative | NotDifferentiable:
     """The derivative, if its posture is the one that was solved and everything of the agents has a slope."""
-    found = derivative.moved(np.zeros_like(derivative.cost_slope)).postures
+    found = derivative.moved(np.zeros_like(derivative.cost_slope))
     same = all(
-        abs(found[agent].torques[joint] - torque) < SAME
-        for agent, posture in solution.postures.items()
+        abs(again.postures[agent].torques[joint] - torque) < SAME
+        for again, instant in zip(found, solution.instants, strict=True)
+        for agent, posture in instant.postures.items()
         for joint, torque in posture.torques.items()
     )
     if not same:

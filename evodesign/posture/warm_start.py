@@ -12,7 +12,7 @@ from evodesign.posture.assemble import Slot
 from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.symmetry import Form
 
-__all__ = ["Layout", "filled", "instant_of", "layout_of", "start_from"]
+__all__ = ["Layout", "filled", "instants_of", "layout_of", "start_from"]
 
 Array = Any
 
@@ -26,9 +26,13 @@ def layout_of(program: Program, *parties: str) -> Layout:
     return {slot: name for slot, name in slots.items() if not parties or slot.party in parties}
 
 
-def instant_of(
-    layout: Layout, forms: Sequence[Form], scene: Scene, values: Mapping[str, Array], number: int = 0
-) -> Instant:
+def instants_of(
+    layout: Layout,
+    forms: Sequence[Form],
+    scene: Scene,
+    values: Mapping[str, Array],
+    times: Sequence[float] = (0.0,),
+) -> tuple[Instant, ...]:
     """Whole postures from a solution, with what is carried under each of the scene's disturbances.
 
     Args:
@@ -36,19 +40,25 @@ def instant_of(
         forms: of both agents.
         scene: whose disturbances they are.
         values: of a solution, by variable name, SI units.
-        number: of the instant.
+        times: of each instant [s].
     """
 
-    def postures(load_case: int) -> dict[str, AgentPosture]:
-        return {form.agent.name: form.expand(parts(form.agent.name, load_case)) for form in forms}
+    def postures(instant: int, load_case: int) -> dict[str, AgentPosture]:
+        return {form.agent.name: form.expand(parts(instant, form.agent.name, load_case)) for form in forms}
 
-    def parts(party: str, load_case: int) -> dict[str, Array]:
-        own = {slot: name for slot, name in layout.items() if (slot.party, slot.instant) == (party, number)}
+    def parts(instant: int, party: str, load_case: int) -> dict[str, Array]:
+        own = {slot: name for slot, name in layout.items() if (slot.party, slot.instant) == (party, instant)}
         found = {slot.part: values[name] for slot, name in own.items() if slot.load_case == 0}
         return found | {slot.part: values[name] for slot, name in own.items() if slot.load_case == load_case}
 
-    disturbances = enumerate(scene.disturbances.cases, 1)
-    return Instant(0.0, postures(0), {each.name: postures(case) for case, each in disturbances})
+    return tuple(
+        Instant(
+            time,
+            postures(number, 0),
+            {each.name: postures(number, case) for case, each in enumerate(scene.disturbances.cases, 1)},
+        )
+        for number, time in enumerate(times)
+    )
 
 
 def start_from(program: Program, forms: Sequence[Form], instants: Sequence[Instant]) -> Start:

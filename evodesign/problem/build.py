@@ -26,7 +26,7 @@ from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads
 from evodesign.problem.materials import density_parameters, refuse_choices
-from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
+from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.people import refuse_unrated
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, SearchSettings, Sense, Task
@@ -283,8 +283,9 @@ def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Sce
         key = f"objectives.{sense}[{position}]"
         kind = objective_kind(name)
         if kind is None:
-            wanted = f"one of {', '.join(OBJECTIVES)}"
-            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, OBJECTIVES)}")
+            known = objective_kinds()
+            wanted = f"one of {', '.join(known)}"
+            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
         if name.endswith(HUMAN_EFFORT):

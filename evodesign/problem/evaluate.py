@@ -40,6 +40,10 @@ from evodesign.records import (
 __all__ = ["AssessmentFactory", "Evaluator", "case_outcome", "detail_of", "reach_of"]
 
 
+UNDISTURBED = ""
+"""Name of the load case in which nothing happens."""
+
+
 class Evaluator:
     """The inner problems of a problem, built once and solved for any number of designs.
 
@@ -132,7 +136,7 @@ class Evaluator:
         checker: Checker,
         before: Sequence[CaseSolution],
     ) -> CaseSolution:
-        distance = reach.distance(case.task.height_m)
+        distance = reach.beyond(case.task.heights)
         if distance is None:
             return CaseSolution(case, reach.status, reach.reason)
         if distance > 0.0:
@@ -146,7 +150,7 @@ def _violation(result: DesignResult) -> float | None:
     """Sum over tasks of the distance to the reachable interval [m]; None when a failure hides it."""
     total = 0.0
     for solution in result.cases:
-        distance = result.reach.distance(solution.case.task.height_m)
+        distance = result.reach.beyond(solution.case.task.heights)
         if distance is None or (distance == 0.0 and not solution.solved):
             return None
         total += distance if solution.case.pair == result.scenes[0].pair else 0.0  # the same for everyone
@@ -161,19 +165,23 @@ def reach_of(reach: Reach) -> ReachOutcome:
 
 
 def case_outcome(solution: CaseSolution) -> CaseOutcome:
-    """A case in short, as it is logged."""
+    """A case in short, as it is logged; of several instants the one with the largest torques counts."""
+    norms: dict[str, dict[str, float]] = {}
+    for instant in solution.instants:
+        for load_case, postures in ((UNDISTURBED, instant.postures), *instant.disturbed.items()):
+            largest = norms.setdefault(load_case, dict.fromkeys(postures, 0.0))
+            for name, posture in postures.items():
+                largest[name] = max(largest[name], posture.torque_norm)
+    undisturbed = norms.pop(UNDISTURBED, {})
     return CaseOutcome(
         case=solution.case,
         status=solution.status,
         reason=solution.reason,
-        robot_torque_norm=solution.postures[ROBOT].torque_norm if solution.solved else None,
-        human_torque_norm=solution.postures[HUMAN].torque_norm if solution.solved else None,
+        robot_torque_norm=undisturbed.get(ROBOT),
+        human_torque_norm=undisturbed.get(HUMAN),
         iterations=sum(attempt.iterations for attempt in solution.attempts),
         residual=max(solution.residuals.values()) if solution.solved else None,
-        disturbed={
-            disturbance: {name: posture.torque_norm for name, posture in postures.items()}
-            for disturbance, postures in (solution.disturbed if solution.solved else {}).items()
-        },
+        disturbed=norms,
     )
 
 

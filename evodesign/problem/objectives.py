@@ -30,10 +30,10 @@ from evodesign.records import Objective
 
 __all__ = [
     "HUMAN_EFFORT",
-    "OBJECTIVES",
     "QUANTITIES",
     "SHARED_REACH",
     "objective_kind",
+    "objective_kinds",
     "objective_value",
     "objective_values",
 ]
@@ -120,22 +120,18 @@ WHOLE: Mapping[str, ObjectiveKind] = {
 }
 """Values of a design as a whole."""
 
-OBJECTIVES: Mapping[str, ObjectiveKind] = {
-    **{
-        f"{over}{name}": aggregate(quantity, over)
-        for over in ("", WORST)
-        for name, quantity in QUANTITIES.items()
-    },
-    **WHOLE,
-}
-"""Objectives by name; quantiles, of which there are many, are left to `objective_kind`."""
+
+def objective_kinds() -> Mapping[str, ObjectiveKind]:
+    """Objectives by name; quantiles, of which there are many, are left to `objective_kind`."""
+    ways = ((over, name) for over in ("", WORST) for name in QUANTITIES)
+    return {**{f"{over}{name}": aggregate(QUANTITIES[name], over) for over, name in ways}, **WHOLE}
 
 
 def objective_kind(name: str) -> ObjectiveKind | None:
     """The objective of a name, such as `robot_torque`, `worst_robot_torque` or `q90_robot_torque`."""
     quantile = re.fullmatch(r"(q[1-9]\d?_)(.+)", name)
     if quantile is None or quantile[2] not in QUANTITIES:
-        return OBJECTIVES.get(name)
+        return objective_kinds().get(name)
     return aggregate(QUANTITIES[quantile[2]], quantile[1])
 
 

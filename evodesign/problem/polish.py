@@ -187,7 +187,7 @@ class _Slope:
 
     def _point(self, position: Array, found: Assessment) -> Iterate | None:
         """A design as a point, unless it misses a height or gets worse where nothing may."""
-        margins = _within_reach(found, [task.height_m for task in self._problem.tasks])
+        margins = _within_reach(found, [height for task in self._problem.tasks for height in task.heights])
         if margins is None or not set(self._aim.weights) <= set(found.objectives):
             return None
         worse = {

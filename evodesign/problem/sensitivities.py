@@ -184,7 +184,7 @@ def _moved(
 ) -> CaseSolution:
     if isinstance(derivative, NotDifferentiable):
         return _without(solution)
-    return replace(solution, instants=(derivative.moved(step),))
+    return replace(solution, instants=derivative.moved(step))
 
 
 def _without(solution: CaseSolution) -> CaseSolution:

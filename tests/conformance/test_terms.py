@@ -19,7 +19,7 @@ from evodesign.posture.limit_groups import Enforced, LimitGroup
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import BodyTerm, Coupled, Row, SystemTerm
 from evodesign.posture.terms.registry import TERMS
-from evodesign.posture.warm_start import instant_of, layout_of
+from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.problem.build import Problem
 
 HEIGHT = 0.9
@@ -109,7 +109,7 @@ def test_rows_say_what_the_residuals_say(problem: Problem, forms: tuple[Form, Fo
     values = random_values(program, np.random.default_rng(seed))
     rows = ca.Function("rows", [program.symbols], [c.expression for c in program.constraints])
     numbers = rows(program.packed(values))
-    instant = instant_of(layout_of(program), forms, scene, values)
+    instant = instants_of(layout_of(program), forms, scene, values)[0]
     checker = checker_of(scene)
     found = {residual.name: residual for residual in checker.residuals(instant, HEIGHT)}
     said = {
@@ -165,7 +165,7 @@ def test_every_residual_fires(problem: Problem) -> None:
     silent: set[str] = set()
     for seed in range(12):
         values = random_values(program, np.random.default_rng(seed))
-        instant = instant_of(layout_of(program), forms, scene, values)
+        instant = instants_of(layout_of(program), forms, scene, values)[0]
         pushed = dict(instant.disturbed)
         name, postures = next(iter(pushed.items()))
         moved = {k: replace(p, base_position=p.base_position + 0.01) for k, p in postures.items()}
@@ -183,7 +183,7 @@ def test_a_point_grasp_that_passes_a_moment_is_seen(problem: Problem) -> None:
     forms = (whole(scene.robot), whole(scene.human))
     program = program_of(scene, forms, TERMS)
     values = random_values(program, np.random.default_rng(1))
-    instant = instant_of(layout_of(program), forms, scene, values)
+    instant = instants_of(layout_of(program), forms, scene, values)[0]
     robot = instant.postures[ROBOT]
     moment = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
     twisted = {side: wrench + moment for side, wrench in robot.hand_wrenches.items()}
@@ -200,7 +200,7 @@ def test_torques_beyond_their_limits_are_seen(problem: Problem) -> None:
     program = program_of(scene, forms, TERMS)
     values = random_values(program, np.random.default_rng(1))
     values["robot.torques"] = np.full(len(robot.joints), 3.5)
-    instant = instant_of(layout_of(program), forms, scene, values)
+    instant = instants_of(layout_of(program), forms, scene, values)[0]
     found = {residual.name: residual.size for residual in checker_of(scene).residuals(instant, HEIGHT)}
     assert found["robot.torque_limits"] == pytest.approx(2.5)
     assert "human.torque_limits" not in found

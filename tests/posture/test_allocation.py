@@ -25,7 +25,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
-from evodesign.posture.warm_start import instant_of, layout_of, start_from
+from evodesign.posture.warm_start import instants_of, layout_of, start_from
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Hold, Status
 from tests.posture.violations import violations
@@ -127,7 +127,7 @@ def end(
     start = start_from(solver.program, forms, [Instant(0.0, postures)])
     raw = solver.solve({"design": [], "height": height, "mass": MASS}, start)
     assert raw.status is Status.SOLVED, raw.reason
-    found = instant_of(layout_of(solver.program), forms, scene, raw.values).postures
+    found = instants_of(layout_of(solver.program), forms, scene, raw.values)[0].postures
     assert max(violations(checker(scene), found, height).values()) <= TOLERANCE
     return found
 

@@ -11,10 +11,12 @@ import pytest
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.result import DesignResult
 from evodesign.records import Status
 from evodesign.tree.urdf_write import urdf_text
+
+OBJECTIVES = objective_kinds()
 
 
 @pytest.fixture(scope="module")

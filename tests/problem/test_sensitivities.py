@@ -19,10 +19,12 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import OBJECTIVES
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.sensitivities import DesignDerivative, ObjectiveSensitivity, Sensitivities
 from evodesign.records import Objective, Sense
 from evodesign.tree.kinematics import Pose, forward
+
+OBJECTIVES = objective_kinds()
 
 
 @pytest.fixture(scope="module")

@@ -38,7 +38,7 @@ from evodesign.posture.terms.base import TORQUE_UNIT, Residual
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.terms.torque import effort
-from evodesign.posture.warm_start import instant_of, layout_of, start_from
+from evodesign.posture.warm_start import instants_of, layout_of, start_from
 from evodesign.records import Genome, Status, Task
 
 __all__ = ["JointProblem", "JointSettings", "JointSolution"]
@@ -163,7 +163,7 @@ class JointProblem:
         tree = self._space.resized(self._scene.robot.tree, design)
         checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
         layout, tasks = layout_of(self.program), self._tasks
-        instants = [instant_of(layout, self._forms, self._scene, raw.values, k) for k in range(len(tasks))]
+        instants = instants_of(layout, self._forms, self._scene, raw.values, [0.0] * len(tasks))
         found = [checker.residuals(i, task.height_m) for i, task in zip(instants, tasks, strict=True)]
         kept = [tuple(r for r in of if self._enforced.covers(r.group)) for of in found]
         everywhere = [

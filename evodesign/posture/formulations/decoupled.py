@@ -48,7 +48,7 @@ from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import PUSH, any_load, force_along_x
 from evodesign.posture.terms.registry import TERMS
-from evodesign.posture.warm_start import instant_of, layout_of, start_from
+from evodesign.posture.warm_start import instants_of, layout_of, start_from
 from evodesign.records import Status, Task, worst_status
 
 __all__ = ["DecoupledPostures", "robot_program"]
@@ -135,7 +135,7 @@ class DecoupledPostures:
         With the same load the other person's V(X) is all that differs, and no other start is needed.
         """
         parameters = {"design": design, **self._beside(task)}
-        known = start_from(self._robot.program, self._forms, [neighbour.solution.instants[0]])
+        known = start_from(self._robot.program, self._forms, neighbour.solution.instants)
         ends = [("neighbour", self._robot.near.solve(parameters, known))]
         if not neighbour.same_load:
             starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
@@ -145,7 +145,7 @@ class DecoupledPostures:
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The robot's parameters beside the design."""
         mass, value = self._setting.scene.payload.mass, self._values[task]
-        return {"height": task.height_m, "mass": mass, "value": value.coefficients}
+        return {**task.given, "mass": mass, "value": value.coefficients}
 
     def _trial(self, task: Task, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
         """The robot's postures with the person's at the internal force that was found."""
@@ -160,9 +160,9 @@ class DecoupledPostures:
             both = _joined(robot, human, float(value.cost(internal)))
             if human.status is not Status.SOLVED:
                 return Candidate(checked(self.name, start, both, ()), (), ())
-            instant = instant_of(layout, self._forms, self._setting.scene, both.values)
-            residuals = checker.residuals(instant, task.height_m)
-            return Candidate(checked(self.name, start, both, residuals), (instant,), residuals)
+            instants = instants_of(layout, self._forms, self._setting.scene, both.values)
+            residuals = checker.task_residuals(instants, task.heights)
+            return Candidate(checked(self.name, start, both, residuals), instants, residuals)
 
         return cheapest(self.name, ends, finish)
 
@@ -180,7 +180,7 @@ class DecoupledPostures:
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this pair of programs found moves with the design."""
         value, (robots, humans) = self._values[solution.case.task], self._sensitivities
-        start = start_from(robots.program, self._forms, [solution.instants[0]])
+        start = start_from(robots.program, self._forms, solution.instants)
         found = robots.at({"design": design, **self._beside(solution.case.task)}, start)
         if isinstance(found, NotDifferentiable):
             return found
@@ -197,6 +197,7 @@ class DecoupledPostures:
             layout={**layout_of(robots.program, ROBOT), **layout_of(humans.program, HUMAN)},
             forms=self._forms,
             scene=self._setting.scene,
+            times=solution.case.task.times,
             values={**robot.values, **human.values},
             slopes={**robot.slopes, **human.slopes},
             cost=robot.cost - float(expected(internal)) + human.cost,
@@ -210,8 +211,8 @@ class DecoupledPostures:
         """The person under an internal force [N]; one that is held at its limit does not move the person."""
         humans = self._sensitivities[1]
         mass = self._setting.scene.payload.mass
-        parameters = {"height": solution.case.task.height_m, "mass": mass, "internal_force": internal}
-        start = start_from(humans.program, self._forms, [solution.instants[0]])
+        parameters = {**solution.case.task.given, "mass": mass, "internal_force": internal}
+        start = start_from(humans.program, self._forms, solution.instants)
         raw = humans.solve(parameters, start)
         if not held:
             return humans.of(parameters, raw)

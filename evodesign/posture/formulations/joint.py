@@ -1,4 +1,4 @@
-"""Robot and person in one program: how they stand with the load at one height, at the least effort.
+"""Robot and person in one program: how they stand at every instant of a task, at the least effort.
 
     minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + regularisation
     subject to  every term, for both agents and the load
@@ -36,8 +36,8 @@ from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
-from evodesign.posture.warm_start import filled, instant_of, layout_of, start_from
-from evodesign.records import Task
+from evodesign.posture.warm_start import filled, instants_of, layout_of, start_from
+from evodesign.tasks import Hold, Task, TaskRecord
 
 __all__ = ["JointPostures", "posture_program"]
 
@@ -50,15 +50,23 @@ class JointPostures:
         forms: whole agents, or their halves.
         setting: of the problem.
         solvers: of other scenes.
+        kind: of the tasks.
     """
 
-    def __init__(self, name: str, forms: tuple[Form, Form], setting: Setting, solvers: SolverCache) -> None:
+    def __init__(
+        self,
+        name: str,
+        forms: tuple[Form, Form],
+        setting: Setting,
+        solvers: SolverCache,
+        kind: type[TaskRecord] = Hold,
+    ) -> None:
         self.name = name
-        self._forms, self._setting, self._solvers = forms, setting, solvers
+        self._forms, self._setting, self._solvers, self._kind = forms, setting, solvers, kind
 
     @cached_property
     def _solver(self) -> Solver:
-        key = program_key(self.name, self._setting, self._forms)
+        key = program_key(self.name, self._setting, self._forms, self._kind.__qualname__)
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
@@ -70,7 +78,7 @@ class JointPostures:
         return SolutionSensitivity(self._program(), self._setting.options)
 
     def _program(self) -> Program:
-        return posture_program(self._forms, self._setting)
+        return posture_program(self._forms, self._setting, self._kind)
 
     def landscape(self, task: Task) -> Landscape:
         """The program's cost for a task."""
@@ -91,11 +99,13 @@ class JointPostures:
         checker: Checker,
     ) -> Trial:
         """What the solution in a similar scene leads to, and the first starts of the portfolio."""
-        known = self._start(neighbour.solution.instants[0])
+        known = self._start(neighbour.solution.instants)
         others = named_starts(self._solver, portfolio, self._fixed)[:STARTS_BESIDE]
         return self._trial(design, task, [("neighbour", known), *others], checker)
 
-    def polish(self, design: Sequence[float], task: Task, known: Instant, checker: Checker) -> Trial:
+    def polish(
+        self, design: Sequence[float], task: Task, known: Sequence[Instant], checker: Checker
+    ) -> Trial:
         """What known whole postures lead to."""
         return self._trial(design, task, [("polish", self._start(known))], checker)
 
@@ -104,7 +114,7 @@ class JointPostures:
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this program found moves with the design."""
         program = self._sensitivity.program
-        start = start_from(program, self._forms, [solution.instants[0]])
+        start = start_from(program, self._forms, solution.instants)
         parameters = {"design": design, **self._beside(solution.case.task)}
         found = self._sensitivity.at(parameters, with_worst(start, program, parameters))
         if isinstance(found, NotDifferentiable):
@@ -114,6 +124,7 @@ class JointPostures:
             layout=layout_of(program),
             forms=self._forms,
             scene=self._setting.scene,
+            times=solution.case.task.times,
             values=own.values,
             slopes=own.slopes,
             cost=own.cost,
@@ -123,12 +134,12 @@ class JointPostures:
         )
         return found_again(derivative, solution)
 
-    def _start(self, known: Instant) -> Start:
-        return start_from(self._solver.program, self._forms, [known])
+    def _start(self, known: Sequence[Instant]) -> Start:
+        return start_from(self._solver.program, self._forms, known)
 
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The parameters beside the design."""
-        return {"height": task.height_m, "mass": self._setting.scene.payload.mass}
+        return {**task.given, "mass": self._setting.scene.payload.mass}
 
     def _trial(
         self, design: Sequence[float], task: Task, starts: Sequence[tuple[str, Start]], checker: Checker
@@ -137,34 +148,39 @@ class JointPostures:
         ends = [(name, self._solver.solve(parameters, filled(start, program))) for name, start in starts]
 
         def finish(start: str, raw: RawSolution) -> Candidate:
-            instant = instant_of(layout_of(program), self._forms, self._setting.scene, raw.values)
-            residuals = checker.residuals(instant, task.height_m)
-            return Candidate(checked(self.name, start, raw, residuals), (instant,), residuals)
+            layout, scene = layout_of(program), self._setting.scene
+            instants = instants_of(layout, self._forms, scene, raw.values, task.times)
+            residuals = checker.task_residuals(instants, task.heights)
+            return Candidate(checked(self.name, start, raw, residuals), instants, residuals)
 
         return cheapest(self.name, ends, finish)
 
 
-def posture_program(forms: tuple[Form, Form], setting: Setting) -> Program:
-    """The program over both agents; its parameters are the design, and the load's height and mass."""
+def posture_program(forms: tuple[Form, Form], setting: Setting, kind: type[TaskRecord] = Hold) -> Program:
+    """The program over both agents; its parameters are the design, the task's numbers and the load's mass."""
     space = setting.space
     scene, mass = any_load(setting.scene)
-    design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
+    design = ca.SX.sym("design", len(space.parameters))
+    given = {name: ca.SX.sym(name) for name in kind.PARAMETERS}
     values = ca.vertsplit(design)
     scene, weights = shared_scene(scene, space, values), shared_weights(setting.weights, space, values)
     by_agent = {ROBOT: weights.robot, HUMAN: weights.human}
     robot = Embodied(forms[0], space.resized(scene.robot.tree, values))
     human = Embodied(forms[1], scene.human.tree)
-    assembly = assemble((robot, human), TERMS.values(), CaseSymbols(scene, (height,)))
-    load_case = assembly.undisturbed
+    case = CaseSymbols(scene, kind.load_heights(given))
+    assembly = assemble((robot, human), TERMS.values(), case)
+    undisturbed = [load_cases[0] for load_cases in assembly.instants]
+    whole = [part for each in undisturbed for part in (each.effort(by_agent), *each.regularisation)]
     program = Program(
         name="posture",
         variables=assembly.variables,
         constraints=assembly.constraints,
-        cost=total([load_case.effort(by_agent), *load_case.regularisation]),
-        parameters={"design": design, "height": height, "mass": mass},
+        cost=total(whole),
+        parameters={"design": design, **given, "mass": mass},
     )
     if not scene.disturbances:
         return program
-    costs = [total([each.effort(by_agent), *each.costs]) for each in assembly.instants[0]]
-    posture = replace(program, cost=total(load_case.posture_costs))
+    every = [each for load_cases in assembly.instants for each in load_cases]
+    costs = [total([each.effort(by_agent), *each.costs]) for each in every]
+    posture = replace(program, cost=total(cost for each in undisturbed for cost in each.posture_costs))
     return aggregated(posture, scene.disturbances.effort, costs)

@@ -91,6 +91,11 @@ class Reach:
             return None
         return max(height - self.highest, self.lowest - height, 0.0)
 
+    def beyond(self, heights: Sequence[float]) -> float | None:
+        """How far the worst of some heights [m] lies outside the interval [m]; None if not known."""
+        distances = [self.distance(height) for height in heights]
+        return max((each for each in distances if each is not None), default=None)
+
 
 def common_reach(reaches: Sequence[Reach]) -> Reach:
     """The interval that several loads have in common; the first that failed, if one did."""

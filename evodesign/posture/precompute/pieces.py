@@ -37,7 +37,7 @@ from evodesign.posture.precompute.stored import (
     stored_value,
 )
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.records import Case, Task
+from evodesign.records import Case, Hold, Task
 
 __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
 
@@ -156,7 +156,7 @@ def stages(
         Piece(Subject.PERSON, scene.pair, task)
         for scene in setting.scenes
         for task in tasks
-        if setting.symmetric and _push_alone(scene, setting.space)
+        if setting.symmetric and _push_alone(scene, setting.space) and isinstance(task, Hold)
     ]
     if not portfolios:
         return [people]
@@ -247,7 +247,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     problem = PostureProblem(own, setting.symmetry, known)
     training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
     training = training if setting.symmetric else WHOLE_TRAINING
-    designs = _designs(space, training, lambda design: reach.solve(design).distance(task.height_m) == 0.0)
+    designs = _designs(space, training, lambda design: reach.solve(design).beyond(task.heights) == 0.0)
     return start_portfolio(problem.landscape(task), designs, training)
 
 
