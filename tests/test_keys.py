@@ -32,7 +32,7 @@ from evodesign.problem.evaluation_cache import NO_PART_OF_EVALUATIONS, problem_d
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.source import read_source
-from evodesign.records import ProblemSource
+from evodesign.records import Hold, ProblemSource
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ def key(scene: Scene) -> str:
 @pytest.mark.parametrize("problem", ["shared_lifting", "three_people_three_loads"])
 def test_every_field_of_a_scene_counts_in_the_key_of_its_programs(problem: str) -> None:
     setting = setting_of(problem)
-    scene = setting.scenes[setting.middle]
+    scene = setting.middle
     see_every_field_count(scene, NO_PART_OF_PROGRAMS, key)
     with_both = {kind: names for kind, names in NO_PART_OF_PROGRAMS.items() if kind is not Scene}
     seen = see_every_field_count(scene, with_both, lambda s: program_key("joint", s, s.robot, s.human))
@@ -189,17 +189,17 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
 )
 def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, subject: Subject) -> None:
     setting, without = setting_of(problem), NO_PART_OF[subject]
-    scene = setting.scenes[setting.middle]
+    scene = setting.middle
     if subject in (Subject.HIGHEST, Subject.LOWEST):  # worked out where nothing disturbs
         without = {**without, Scene: {"disturbances": "none"}}
-    one = replace(setting, scenes=(scene,), middle=0)
+    one = replace(setting, scenes=(scene,))
 
-    whole = (one, scene, Piece(subject, 1.0, 0, scene.label))
+    whole = (one, scene, Piece(subject, scene.pair, Hold(height_m=1.0)))
 
     def key(whole: tuple[PrecomputeSetting, Scene, Piece]) -> str:
         """The key with the scene before those of the setting, and the piece in it whatever it says."""
         setting, scene, piece = whole
-        return key_of(replace(setting, scenes=(scene, *setting.scenes)), replace(piece, scene=0))
+        return key_of(replace(setting, scenes=(scene, *setting.scenes)), replace(piece, pair=scene.pair))
 
     seen = see_every_field_count(whole, without, key)
     assert {"Piece", "IpoptOptions", "EffortWeights", "DesignParameter", "Payload", "Tree"} <= seen
@@ -207,13 +207,14 @@ def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, 
 
 def test_a_piece_is_that_of_its_scene_and_of_symmetric_postures_or_not() -> None:
     setting = setting_of("three_people_three_loads")
-    last = len(setting.scenes) - 1
+    first, last = setting.scenes[0].pair, setting.scenes[-1].pair
+    task = Hold(height_m=1.0)
     turned, unlike = replace(setting, scenes=setting.scenes[::-1]), replace(setting, symmetry=Symmetry.OFF)
     for subject in Subject:
-        key = key_of(setting, Piece(subject, 1.0, 0))
-        assert key == key_of(turned, Piece(subject, 1.0, last))
-        assert key != key_of(setting, Piece(subject, 1.0, last))
-        assert key != key_of(unlike, Piece(subject, 1.0, 0))
+        key = key_of(setting, Piece(subject, first, task))
+        assert key == key_of(turned, Piece(subject, first, task))
+        assert key != key_of(setting, Piece(subject, last, task))
+        assert key != key_of(unlike, Piece(subject, first, task))
 
 
 @pytest.mark.parametrize("problem", ["shared_lifting", "three_people_three_loads", "icub_materials"])

@@ -34,7 +34,7 @@ def quick(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = (repository / "problems" / "icub_lifting.toml").read_text()
     text = text.replace("heights_m = [0.8, 1.0, 1.2]", "heights_m = [1.0]")
     text = text.replace("robots/icub_shapes.urdf", str(repository / "problems/robots/icub_shapes.urdf"))
-    text = text.replace('start = "../populations/icub.toml"', "") + "[solver]\nseeds = false\n"
+    text = text.replace('start = "../populations/icub.toml"', "") + "[solver]\nstart_portfolio = false\n"
     (place / "problem.toml").write_text(text)
     return place / "problem.toml"
 

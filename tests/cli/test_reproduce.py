@@ -16,7 +16,7 @@ from evodesign.cli.reproduction import Effort
 from evodesign.errors import InputError
 from evodesign.runlog.run import read_run
 
-QUICK = "\n[solver]\nsymmetry = 'off'\nseeds = false\ncompile = false\n"
+QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\ncompile = false\n"
 """Nothing is worked out beforehand; solves take longer, of which there are few."""
 
 

@@ -36,7 +36,7 @@ def written(place: Path, repository: Path, people: list[str], loads: list[str]) 
         assert old in text
         text = text.replace(old, new)
     path = place / "problem.toml"
-    path.write_text(text + "\n[solver]\ncompile = false\nseeds = false\n")
+    path.write_text(text + "\n[solver]\ncompile = false\nstart_portfolio = false\n")
     return path
 
 

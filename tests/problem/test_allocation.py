@@ -154,7 +154,7 @@ def test_population_files_hold_allocations(shared: Problem) -> None:
 
 
 def test_notebooks_take_allocations_of_any_sign(shared: Problem) -> None:
-    text = shared.source.text + "\n[solver]\nseeds = false\ncompile = false\n"
+    text = shared.source.text + "\n[solver]\nstart_portfolio = false\ncompile = false\n"
     opened = OpenedProblem(msgspec.structs.replace(shared.source, text=text))
     found = opened.evaluate({"allocation.effort_ratio": -0.5, "allocation.robot_share": 0.3})
     assert found.parameters["allocation.effort_ratio"] == -0.5
