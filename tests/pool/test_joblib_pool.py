@@ -255,7 +255,11 @@ def test_no_worker_outlives_its_parent(how: signal.Signals, pause: float) -> Non
             os.killpg(parent.pid, how)  # as a terminal does
         else:
             parent.send_signal(how)
-        wait_until_all_end(pids)
+        try:
+            wait_until_all_end(pids)
+        except AssertionError:
+            parent.kill()  # one that goes on would be waited for without end
+            raise
         if how is signal.SIGINT:
             assert parent.stderr is not None
             assert parent.stderr.read().count("Traceback") == 1  # the parent's own

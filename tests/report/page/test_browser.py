@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import msgspec
-import numpy as np
 import pytest
 
 from evodesign.analysis.front import front
@@ -23,31 +20,16 @@ from evodesign.report.page import page_content, page_html
 from evodesign.report.page.bodies import agent_body
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.tree.kinematics import Pose, euler_rotation, forward
-from evodesign.tree.model import Tree
-from tests.report.page.chromium import Tab, browser, executable
+from tests.report.page.chromium import Tab, browser
+from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
 from tests.runlog.toys import toy_evaluations, toy_header
 from tests.tree.crane import crane
 
-if executable() is None and not os.environ.get("CI"):
-    pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)", allow_module_level=True)
+pytestmark = pytest.mark.needs_chromium
 
-CANVAS = "document.getElementById('posture')"
 PLOT = "document.getElementById('front')"
 SHOWN = "document.getElementById('card-title').textContent"
 NAME = "<script>alert(1)</script>"
-
-
-@pytest.fixture(scope="module")
-def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
-    with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
-        yield tab
-
-
-def open_page(tab: Tab, path: Path, theme: str = "light") -> None:
-    """Open a page and wait until its scripts are through."""
-    tab.open(path.as_uri(), theme=theme)
-    tab.wait_for("window.evodesign !== undefined")
 
 
 @pytest.fixture
@@ -58,11 +40,6 @@ def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
     yield chromium
     assert chromium.complaints() == []
     assert chromium.requests() == [real_page.as_uri()]
-
-
-def shown_as(value: float) -> str:
-    """A number as tiles and tables show it: four significant digits."""
-    return f"{value:#.4g}".rstrip(".").replace("-", "\u2212")
 
 
 def trace(tab: Tab, name: str) -> list[int]:
@@ -186,21 +163,6 @@ def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run)
     assert page.value(f"{CANVAS} === null")
     page.value(f"window.evodesign.select({first})")
     page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
-
-
-def check_poses(tab: Tab, script: str, tree: Tree, posture: AgentDetail, turn: float) -> None:
-    """A script's link poses are those of our kinematics, for an agent's frame turned about z [rad]."""
-    world_from_agent = euler_rotation(ca.DM([0.0, 0.0, turn]))
-    base = Pose(
-        world_from_agent @ euler_rotation(ca.DM(posture.base_rpy_rad)),
-        world_from_agent @ ca.DM(posture.base_position_m),
-    )
-    poses = forward(tree, base, posture.joints_rad)
-    for link, pose in zip(tree.links, tab.value(script), strict=True):
-        wanted = poses[link.name]
-        np.testing.assert_allclose(pose["position"], np.array(wanted.position)[:, 0], atol=1e-9)
-        rotation = np.array(pose["rotation"]).reshape(3, 3)
-        np.testing.assert_allclose(rotation, np.array(wanted.rotation), atol=1e-9)
 
 
 def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem, real_run: Run) -> None:
