@@ -42,7 +42,7 @@ def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
 
 
 def remember(session: Session, outcome: EvaluationOutcome, *, more: bool) -> None:
-    """Put an evaluation on the disk, with its postures if nothing so far beats it; or soon, with `more`."""
+    """Put an evaluation on the disk, with its postures if none so far dominates it; or soon, with `more`."""
     evaluation = outcome.evaluation
     detail = outcome.detail if session.front.enters(evaluation) else None
     session.memory.remember(evaluation, detail, more=more)

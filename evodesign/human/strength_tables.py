@@ -15,7 +15,7 @@ import msgspec
 
 from evodesign.human.anthropometry_tables import Sex
 
-__all__ = ["Direction", "Row", "Scale", "Source", "StrengthTables", "strength_tables"]
+__all__ = ["Direction", "Scale", "Source", "StrengthRow", "StrengthTables", "strength_tables"]
 
 
 class Scale(StrEnum):
@@ -26,11 +26,11 @@ class Scale(StrEnum):
     PER_WEIGHT_AND_STATURE = "per_weight_and_stature"
 
 
-class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class StrengthTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Base of the tables in `data/strength.toml`; what each key means is said there."""
 
 
-class Source(Table, frozen=True):
+class Source(StrengthTable, frozen=True):
     """Where figures come from, what they are multiplied by, and how far they could be checked."""
 
     citation: str
@@ -38,7 +38,7 @@ class Source(Table, frozen=True):
     checked: str
 
 
-class Direction(Table, frozen=True):
+class Direction(StrengthTable, frozen=True):
     """The muscles' moment of one sign about a joint: what it does, and its figure for each sex."""
 
     movement: str
@@ -51,7 +51,7 @@ class Direction(Table, frozen=True):
         return {Sex.MALE: self.male, Sex.FEMALE: self.female}[sex]
 
 
-class Row(Table, frozen=True):
+class StrengthRow(StrengthTable, frozen=True):
     """Strengths of joints that share them; a direction for which nothing is published is left out."""
 
     joints: tuple[str, ...]
@@ -59,11 +59,11 @@ class Row(Table, frozen=True):
     positive: Direction | None = None
 
 
-class StrengthTables(Table, frozen=True):
+class StrengthTables(StrengthTable, frozen=True):
     """The whole data file."""
 
     sources: dict[str, Source]
-    rows: tuple[Row, ...]
+    rows: tuple[StrengthRow, ...]
 
 
 @cache

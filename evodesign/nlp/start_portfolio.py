@@ -1,9 +1,10 @@
 """A portfolio of starts: a few from which nearly every design converges to its best known optimum.
 
-The optima of quasi-random training designs are the candidates. A start serves a design if it converges to
-within 1 % of the best that is known of it; the one that serves most comes first, and starts are added until
-all training designs are served. Then the portfolio is examined on fresh designs; it is trained with those
-that it fails, and examined again on others. The same landscape always gets the same portfolio.
+The optima of quasi-random training designs are the candidates. A start serves a design if the solver
+converges from it to within 1 % of the best known optimum; the one that serves most comes first, and starts
+are added until all training designs are served. Then the portfolio is examined on fresh designs; it is
+trained with those that it fails, and examined again on others. The same landscape always gets the same
+portfolio.
 
 Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 """
@@ -80,7 +81,7 @@ class Landscape:
     absolute: float
 
     def solve(self, design: Design, start: Start) -> RawSolution:
-        """Where a start leads."""
+        """The optimum that the solver finds from a start."""
         return self.solver.solve({"design": design, **self.beside}, start)
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
@@ -199,7 +200,7 @@ def _best(studies: Sequence[_Study]) -> Costs:
 
 
 def _least_costs(landscape: Landscape, chosen: Sequence[Start], studies: Sequence[_Study]) -> Costs:
-    """The least cost to which some starts lead each design; infinite where they lead to none."""
+    """The least cost of each design from some starts; infinite where none converges."""
     costs = np.full((len(studies), 1 + len(chosen)), np.inf)
     for row, study in enumerate(studies):
         for column, start in enumerate(chosen):

@@ -15,6 +15,7 @@ PAGES = sorted(
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 SOURCE = re.compile(r"(?<![\w./*-])((?:evodesign|tests|benchmarks|docs|problems|populations)/[\w./-]*)")
 MODULE = re.compile(r"(?<![\w./*-])((?:\w+/)*\w+\.py)\b")
+NAMED = re.compile(r"`((?:\w+/)*\w+\.py): (\w+)`")
 BENCHMARK = re.compile(r"python -m (benchmarks\.\w+)")
 
 
@@ -47,6 +48,15 @@ def test_modules_exist(page: Path) -> None:
     assert missing == []
     commands = [found.replace(".", "/") + ".py" for found in BENCHMARK.findall(text)]
     assert [path for path in commands if not (REPOSITORY / path).exists()] == []
+
+
+def test_what_is_named_in_a_module_is_defined_there(page: Path) -> None:
+    """As in `posture/terms/feet.py: rows`."""
+    named = NAMED.findall(page.read_text(encoding="utf-8"))
+    modules = {path: (REPOSITORY / "evodesign" / path).read_text(encoding="utf-8") for path, _ in named}
+    assert [
+        (path, name) for path, name in named if not re.search(rf"(def|class) {name}\b", modules[path])
+    ] == []
 
 
 def test_the_pages_name_paths_of_every_kind() -> None:

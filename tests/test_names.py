@@ -1,0 +1,183 @@
+"""Names are the field's: no module, class or function has a word that only this project would understand.
+
+Each word was a private one, or named two things; what to say instead stands beside it.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[1]
+PACKAGE = REPOSITORY / "evodesign"
+
+EXEMPT = (
+    "evodesign/problem/agents.py",
+    "evodesign/problem/evaluate.py",
+    "evodesign/problem/evaluation_json.py",
+)
+"""Where names are still to be changed."""
+
+INSTEAD = {
+    "answer": "result",
+    "arrival": "outcome",
+    "bear": "carry, support, transmit",
+    "bearing": "load case",
+    "borne": "carried; load case",
+    "branched": "restarted",
+    "bridge": "api",
+    "calm": "undisturbed",
+    "cast": "scene models",
+    "comfort": "regularisation",
+    "company": "scene set",
+    "conquer": "dominate",
+    "crew": "worker group",
+    "door": "prefetch",
+    "gate": "stoppable",
+    "house": "project",
+    "kink": "derivative notes; where no derivative exists",
+    "luck": "dependence on the starting point",
+    "policy": "allocation",
+    "quiet": "undisturbed",
+    "retold": "warm start",
+    "room": "package",
+    "shelf": "solver cache",
+    "squeeze": "internal force",
+    "steady": "asynchronous",
+    "strain": "torque",
+    "thinning": "subsample",
+    "told": "reported",
+    "uncrowded": "hypervolume improvement",
+    "watched": "live state",
+    "witness": "reference implementation",
+    "worth": "value, results",
+}
+"""Words for no module, class or function, each with what to say instead."""
+
+MODULES = {
+    "enforced": "limit groups",
+    "memory": "session log",
+    "published": "paper setting",
+    "remember": "evaluation cache",
+    "statics": "mechanics",
+    "tangent": "solution derivative",
+}
+"""Words that say something else in the name of a class or function."""
+
+CLASSES = {"standing": "run state"}
+"""Words for no class; a function may be about a standing robot."""
+
+PLACES = {"pool": {"cell": "worker process"}, "posture": {"stretch": "reach"}}
+"""Words that mean something else in other packages: a cell of a table, a link that is stretched."""
+
+ONCE = ("outcome_of", "over_cases", "value_of")
+"""Functions whose names meant two things."""
+
+ENDINGS = {"": "", "s": "", "es": "", "ies": "y", "ed": "", "ing": ""}
+"""Endings of words with what they stand for."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """A module, class or function."""
+
+    kind: str
+    name: str
+    place: str
+    package: str
+
+    @property
+    def words(self) -> list[str]:
+        """Parts of the name, in lower case: `_PostureTerm` and `posture_term` have two."""
+        return [part.lower() for part in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", self.name)]
+
+    @property
+    def forbidden(self) -> dict[str, str]:
+        """Words that it may not have."""
+        own = {"module": MODULES, "class": CLASSES}.get(self.kind, {})
+        return {**INSTEAD, **own, **PLACES.get(self.package, {})}
+
+
+def modules() -> Iterator[tuple[Path, ast.Module]]:
+    for path in sorted(PACKAGE.rglob("*.py")):
+        yield path, ast.parse(path.read_text(encoding="utf-8"))
+
+
+def names() -> Iterator[Named]:
+    for path, tree in modules():
+        place = str(path.relative_to(REPOSITORY))
+        package = path.relative_to(PACKAGE).parts[0]
+        yield Named("module", path.parent.name if path.stem == "__init__" else path.stem, place, package)
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ClassDef):
+                yield Named("class", node.name, f"{place}:{node.lineno}", package)
+            elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                yield Named("function", node.name, f"{place}:{node.lineno}", package)
+
+
+def stems(word: str) -> set[str]:
+    """A word and what it may be a form of: `strains`, `policies`, `conquered`."""
+    ended = [(ending, stem) for ending, stem in ENDINGS.items() if word.endswith(ending)]
+    return {word[: len(word) - len(ending)] + stem for ending, stem in ended}
+
+
+def faults(found: Named) -> list[str]:
+    forbidden = found.forbidden
+    parts = [(word, stem) for word in found.words for stem in stems(word) if stem in forbidden]
+    return [f"{found.place}: {found.name}: say {forbidden[stem]} instead of {word}" for word, stem in parts]
+
+
+def test_names_are_words_of_the_field() -> None:
+    assert [fault for found in names() if not found.place.startswith(EXEMPT) for fault in faults(found)] == []
+
+
+def test_every_exemption_is_needed() -> None:
+    faulty = [found.place for found in names() if faults(found)]
+    assert [place for place in EXEMPT if not any(found.startswith(place) for found in faulty)] == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "package", "wrong"),
+    [
+        ("class", "RobotStrains", "report", True),
+        ("function", "_policies", "problem", True),
+        ("function", "conquered_by", "search", True),
+        ("function", "set_constraint", "nlp", False),
+        ("module", "memory", "runlog", True),
+        ("function", "out_of_memory", "pool", False),
+        ("function", "_cell", "report", False),
+        ("class", "Cell", "pool", True),
+    ],
+)
+def test_words_are_parts_of_names(kind: str, name: str, package: str, wrong: bool) -> None:
+    assert bool(faults(Named(kind, name, "", package))) is wrong
+
+
+def test_no_class_is_defined_twice() -> None:
+    places: defaultdict[str, list[str]] = defaultdict(list)
+    for found in names():
+        if found.kind == "class":
+            places[found.name].append(found.place)
+    assert {name: where for name, where in places.items() if len(where) > 1} == {}
+
+
+@pytest.mark.parametrize("name", ONCE)
+def test_functions_that_had_two_meanings_have_one(name: str) -> None:
+    assert len([found for found in names() if found.kind == "function" and found.name == name]) <= 1
+
+
+def test_docstrings_cite_only_what_is_in_the_repository() -> None:
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    citing = [
+        str(path.relative_to(REPOSITORY))
+        for path, tree in modules()
+        for node in ast.walk(tree)
+        if isinstance(node, documented) and re.search(r"\bDESIGN\b(?!\.md)", ast.get_docstring(node) or "")
+    ]
+    assert citing == []
