@@ -34,8 +34,8 @@ import numpy as np
 from evodesign.analysis.hypervolume import hypervolume
 from evodesign.cli.ready import known_of
 from evodesign.pool.registry import make_pool
-from evodesign.posture.joint import JointSolution
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.formulations.codesign import JointSolution
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
@@ -63,7 +63,7 @@ Row = dict[str, float | None]
 Step = tuple[Genome, dict[str, float], float | None, float, DesignResult | None]
 
 
-def _known(problem: Problem) -> Preparation:
+def _known(problem: Problem) -> Precomputed:
     """Seeds and the person's part, from the cache or worked out now."""
     with make_pool("joblib", 2) as pool:
         return known_of(problem, pool)

@@ -5,7 +5,7 @@
 Random designs of the default problem are evaluated as a search evaluates them, from the seeds, with a
 tighter tolerance; so are their neighbours along every parameter. Central differences at two steps,
 extrapolated to none, are compared with the gradients, each component times its parameter's range, relative to
-the largest. A design is left out, and counted, where a kink is near.
+the largest. A design is left out, and counted, where a point without a derivative is near.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pathlib import Path
 import numpy as np
 
 from evodesign.cli.ready import evaluator_of
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES
 from evodesign.problem.result import DesignResult
-from evodesign.problem.sensitivities import DesignTangent, Sensitivities
+from evodesign.problem.sensitivities import DesignDerivative, Sensitivities
 from evodesign.problem.source import read_source
 
 HERE = Path(__file__).parent
@@ -57,7 +57,7 @@ class Comparison:
 class Comparer:
     """Gradients and differences of a problem's designs."""
 
-    def __init__(self, problem: Problem, known: Preparation) -> None:
+    def __init__(self, problem: Problem, known: Precomputed) -> None:
         self._problem = replace(
             problem, options=replace(problem.options, tolerance=TOLERANCE, compiled=False)
         )
@@ -69,8 +69,8 @@ class Comparer:
         result = self._evaluator.solve(values)
         if not all(height.solved for height in result.heights):
             return Comparison({}, "a height is out of reach")
-        tangent = self._sensitivities.at(values, result)
-        left_out = self._kink(tangent, np.array(directions))
+        derivative = self._sensitivities.at(values, result)
+        left_out = self._kink(derivative, np.array(directions))
         if left_out:
             return Comparison({}, left_out)
         ranges = np.array([p.upper - p.lower for p in self._problem.space.parameters])
@@ -78,7 +78,7 @@ class Comparer:
         if any(_elsewhere(result, other) for pairs in neighbours for pair in pairs for other in pair):
             return Comparison({}, "another optimum wins at a neighbour")
         errors = {}
-        for name, found in tangent.sensitivities().items():
+        for name, found in derivative.sensitivities().items():
             gradient = np.array(directions) @ (np.array(list(found.gradient.values())) * ranges)
             differences = np.array([_extrapolated(name, pairs) for pairs in neighbours])
             size = max(np.abs(gradient).max(), SMALL * abs(OBJECTIVES[name].value(result)))
@@ -95,10 +95,10 @@ class Comparer:
             for share in (STEP, STEP / 2.0)
         ]
 
-    def _kink(self, tangent: DesignTangent, directions: np.ndarray) -> str:
+    def _kink(self, derivative: DesignDerivative, directions: np.ndarray) -> str:
         """Why a design is left out before any difference is taken; empty for most."""
         ranges = np.array([p.upper - p.lower for p in self._problem.space.parameters])
-        for part in (*tangent.heights, tangent.highest):
+        for part in (*derivative.heights, derivative.highest):
             if not hasattr(part, "limits"):
                 return part.reason
             for limit in part.limits:
@@ -147,9 +147,9 @@ def main() -> None:
             compared.append(found.errors)
             print(" ".join(f"{name} {error:.1e}" for name, error in found.errors.items()), flush=True)
     worst = {name: max(errors[name] for errors in compared) for name in compared[0]}
-    answer = {"designs": wanted, "left_out": dict(left_out), "largest_relative_error": worst}
-    print(json.dumps(answer, indent=2))
-    (HERE / "results" / "gradients.json").write_text(json.dumps(answer, indent=2) + "\n")
+    evaluation_json = {"designs": wanted, "left_out": dict(left_out), "largest_relative_error": worst}
+    print(json.dumps(evaluation_json, indent=2))
+    (HERE / "results" / "gradients.json").write_text(json.dumps(evaluation_json, indent=2) + "\n")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import numpy as np
 from evodesign.cli.ready import known_of
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.source import read_source
 
@@ -31,7 +31,7 @@ def problem_at(heights: Sequence[float]) -> Problem:
     return build_problem(msgspec.structs.replace(source, text="\n".join(lines)))
 
 
-def known_at(problem: Problem, jobs: int) -> Preparation:
+def known_at(problem: Problem, jobs: int) -> Precomputed:
     """What is known of the problem beforehand, from the user's cache or worked out now."""
     with JoblibPool(jobs) as pool:
         return known_of(problem, pool)

@@ -25,13 +25,14 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, known_at, problem_at, random_designs
 from benchmarks.paper_formulation import measure, measure_ours, reaching_designs
+from evodesign.nlp.program import Start
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.start_portfolio import Landscape
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.posture.portfolio import Landscape
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.preparation import Preparation
-from evodesign.posture.program import RawSolution, Solver
-from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
-from evodesign.posture.start import Start
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.records import Status
@@ -66,18 +67,18 @@ def main() -> None:
 
 
 def _landscapes(
-    problem: Problem, known: Preparation, compiled: bool
+    problem: Problem, known: Precomputed, compiled: bool
 ) -> Iterator[tuple[str, Landscape, Sequence[Start]]]:
     """The programs with their starts."""
     options = replace(problem.options, compiled=compiled)
-    scene, space, weights = problem.scene, problem.space, problem.weights
-    reach = ReachProblem(scene, space, options, symmetric=True)
-    yield "highest load", reach.landscape(HIGHEST), known.highest.seeds
-    yield "lowest load", reach.landscape(LOWEST), known.lowest.seeds
-    split = PostureProblem(scene, space, weights, options, Symmetry.ON, known)
-    yield "robot against V(X), 1.0 m", split.landscape(1.0), known.seeds(1.0)
+    setting = Setting(problem.scene, problem.space, problem.weights, options)
+    reach = ReachProblem(setting, symmetric=True)
+    yield "highest load", reach.landscape(HIGHEST), known.highest.starts
+    yield "lowest load", reach.landscape(LOWEST), known.lowest.starts
+    decoupled = PostureProblem(setting, Symmetry.ON, known)
+    yield "robot against V(X), 1.0 m", decoupled.landscape(1.0), known.starts(1.0)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
-        joint = PostureProblem(scene, space, weights, options, symmetry).landscape(1.0)
+        joint = PostureProblem(setting, symmetry).landscape(1.0)
         yield name, joint, joint.starts
 
 
@@ -103,7 +104,7 @@ def _per_solve(
     }
 
 
-def _evaluations(problem: Problem, known: Preparation, designs: Sequence[Design]) -> dict[str, float]:
+def _evaluations(problem: Problem, known: Precomputed, designs: Sequence[Design]) -> dict[str, float]:
     """Whole evaluations in this process."""
     evaluator = Evaluator(problem, known)
     genomes = [problem.space.genome(design) for design in designs]
@@ -139,7 +140,7 @@ def _timed_solves(inside: dict[str, float]) -> Iterator[None]:
         yield
 
 
-def _workers(problem: Problem, known: Preparation, designs: Sequence[Design]) -> dict[str, float]:
+def _workers(problem: Problem, known: Precomputed, designs: Sequence[Design]) -> dict[str, float]:
     """Throughput of two workers over that of one, and what lies between workers' work and the wall."""
     genomes = [problem.space.genome(design) for design in designs]
     rates, busy = {}, {}
@@ -154,7 +155,7 @@ def _workers(problem: Problem, known: Preparation, designs: Sequence[Design]) ->
     return {"two_workers_over_one": rates[2] / rates[1], "busy_share_of_two_workers": busy[2]}
 
 
-def _paper(problem: Problem, known: Preparation, count: int) -> list[dict[str, Any]]:
+def _paper(problem: Problem, known: Precomputed, count: int) -> list[dict[str, Any]]:
     """The paper's formulation and ours at 1.0 m, in processor time."""
     designs = reaching_designs(problem, 1.0, count)
     paper, ours = measure(problem, designs, 1.0), measure_ours(problem, known, designs, 1.0)

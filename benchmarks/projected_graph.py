@@ -6,7 +6,7 @@
 
 M, h and Q of each body are flat SX functions of its posture (and of the design); the linear algebra above is
 MX, with dense LU factorisations that CasADi differentiates. M is block diagonal, so M^-1 Q^T is found body by
-body. Rows and columns are those of `evodesign.statics.coupled`.
+body. Rows and columns are those of `evodesign.mechanics.coupled`.
 
 Source: Sartore et al. 2022, Eq. 5 to 13.
 """
@@ -19,11 +19,12 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.posture.bearing import GRASP_ROWS, hand_wrench
-from evodesign.statics.balance import AppliedWrench, cut
-from evodesign.statics.coupled import PAYLOAD
-from evodesign.statics.scene import SIDES, Agent, Payload, Scene
-from evodesign.tree.dynamics import mass_matrix
+from evodesign.mechanics.balance import AppliedWrench, cut
+from evodesign.mechanics.coupled import PAYLOAD
+from evodesign.mechanics.dynamics import mass_matrix
+from evodesign.mechanics.scene import SIDES, Agent, Payload, Scene
+from evodesign.posture.terms.base import hand_wrench
+from evodesign.posture.terms.grasp import GRASP_ROWS
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Link, Tree
 
@@ -195,8 +196,8 @@ def projected_statics(
     bias = ca.vertcat(*[body.bias for body in bodies])
     selector = ca.diagcat(*[_selector(body) for body in bodies])
     felt = transposed.T @ moved  # Q M^-1 Q^T
-    borne = _solved(felt, moved.T @ ca.horzcat(selector, bias))
-    projected = ca.horzcat(selector, bias) - transposed @ borne  # N B and N h
+    carried = _solved(felt, moved.T @ ca.horzcat(selector, bias))
+    projected = ca.horzcat(selector, bias) - transposed @ carried  # N B and N h
     count = selector.shape[1]
     projected_selector, projected_bias = projected[:, :count], projected[:, count]
     normal = projected_selector.T @ projected_selector + damping * ca.DM.eye(count)

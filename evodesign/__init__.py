@@ -1,4 +1,4 @@
-"""Humanoid robots designed by evolution, so that robot and person lifting together both strain less.
+"""Humanoid robots designed by evolution for low joint torques of robot and person who hold a load together.
 
 From Python:
 
@@ -14,17 +14,17 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from evodesign.bridge.opened_problem import open_problem
-    from evodesign.bridge.opened_run import open_run
-    from evodesign.bridge.pymoo_problem import as_pymoo_problem
+    from evodesign.api.opened_problem import open_problem
+    from evodesign.api.opened_run import open_run
+    from evodesign.api.pymoo_problem import as_pymoo_problem
 
 __version__ = version("evodesign")
 __all__ = ["__version__", "as_pymoo_problem", "open_problem", "open_run"]
 
 HOMES = {
-    "as_pymoo_problem": "evodesign.bridge.pymoo_problem",
-    "open_problem": "evodesign.bridge.opened_problem",
-    "open_run": "evodesign.bridge.opened_run",
+    "as_pymoo_problem": "evodesign.api.pymoo_problem",
+    "open_problem": "evodesign.api.opened_problem",
+    "open_run": "evodesign.api.opened_run",
 }
 """Where each public name lives."""
 

@@ -24,28 +24,28 @@ from typing import NoReturn
 import msgspec
 
 from evodesign.analysis.front import RunningFront
+from evodesign.analysis.run_state import RunState
 from evodesign.analysis.stagnation import stagnant
-from evodesign.analysis.standing import Standing
+from evodesign.asynchronous import evolve_asynchronously
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Pool
-from evodesign.pool.gate import run_gated
 from evodesign.pool.serial import SerialPool
+from evodesign.pool.stoppable import run_stoppable
 from evodesign.records import (
     Evaluation,
     Genome,
     RunHeader,
     SearchSettings,
 )
-from evodesign.runlog.arrival import arrival_of
 from evodesign.runlog.directory import locked, make_directory, run_segments
-from evodesign.runlog.memory import Memory
 from evodesign.runlog.observer import Observer, Silent
+from evodesign.runlog.outcome import evaluation_outcome
 from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.session_log import SessionLog
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
 from evodesign.search.base import Search
-from evodesign.session import Evaluate, Session, conclude, outcome_of, remember
-from evodesign.steady import evolve_steadily
+from evodesign.session import Evaluate, Session, conclude, remember, search_outcome
 
 __all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 
@@ -87,7 +87,7 @@ def start(
     with locked(directory):
         log = RunWriter(directory, header)
         fresh = Run(directory, header, (), (), (), (), complete=False, notes=())
-        with log, Memory(fresh, lambda: log) as memory:
+        with log, SessionLog(fresh, lambda: log) as memory:
             running = RunningFront(header.objectives)
             _work(Session(directory, header, memory, lambda: factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
@@ -127,7 +127,7 @@ def resume(
         header = msgspec.structs.replace(renew(run.header), budget=total)
         evolve = _loop(header.search, make_search)
         factory = functools.cache(lambda: factory_of(header))
-        with Memory(run, lambda: RunWriter.next_segment(directory, header)) as memory:
+        with SessionLog(run, lambda: RunWriter.next_segment(directory, header)) as memory:
             running = RunningFront(header.objectives)
             _work(Session(directory, header, memory, factory, pool, observer, stop, running), evolve)
         return _finished(directory, observer)
@@ -150,7 +150,7 @@ def replay(run: Run, *, make_search: MakeSearch = registry.make_search) -> None:
     last = max((evaluation.number for evaluation in run.evaluations), default=-1)
     header = msgspec.structs.replace(run.header, budget=1 + last, stagnation_generations=None)
     running = RunningFront(header.objectives)
-    with Memory(run, end) as memory, SerialPool() as pool, suppress(_EndOfLog):
+    with SessionLog(run, end) as memory, SerialPool() as pool, suppress(_EndOfLog):
         evolve = _loop(header.search, make_search)
         evolve(Session(run.directory, header, memory, end, pool, Silent(), never, running))
 
@@ -158,7 +158,7 @@ def replay(run: Run, *, make_search: MakeSearch = registry.make_search) -> None:
 def _loop(settings: SearchSettings, make_search: MakeSearch) -> Callable[[Session], None]:
     """The loop that suits the settings, with its search ready to ask."""
     if settings.asynchronous:
-        return functools.partial(evolve_steadily, search=registry.make_steady_search(settings))
+        return functools.partial(evolve_asynchronously, search=registry.make_asynchronous_search(settings))
     return functools.partial(_evolve, search=make_search(settings))
 
 
@@ -182,7 +182,7 @@ def _finished(directory: Path, observer: Observer) -> Run:
 
 def _evolve(session: Session, search: Search) -> None:
     """Go through all generations, from the first one on, until the budget is used up or nothing is gained."""
-    standing = Standing(session.header.objectives)
+    run_state = RunState(session.header.objectives)
     done = generation = 0
     while done < session.header.budget:
         _heed(session.stop)
@@ -192,10 +192,10 @@ def _evolve(session: Session, search: Search) -> None:
         done += len(born)
         if len(born) < len(genomes):
             return
-        conclude(session, generation, standing, born, begun)
-        if stagnant(standing.hypervolumes, session.header.stagnation_generations):
+        conclude(session, generation, run_state, born, begun)
+        if stagnant(run_state.hypervolumes, session.header.stagnation_generations):
             return
-        search.tell([outcome_of(session.header, evaluation) for evaluation in born])
+        search.tell([search_outcome(session.header, evaluation) for evaluation in born])
         generation += 1
 
 
@@ -233,13 +233,13 @@ def _evaluate_missing(
     """
     numbers, parameters = list(missing), session.header.parameters
     arrived: dict[int, Evaluation] = {}
-    results = run_gated(session.pool, session.factory(), missing.values(), session.stop)
+    results = run_stoppable(session.pool, session.factory(), missing.values(), session.stop)
     with closing(results):
         for finished in results:
             number = numbers[finished.index]
-            arrival = arrival_of(number, generation, missing[number], parameters, finished)
-            remember(session, arrival, more=finished.more)
-            arrived[number] = arrival.evaluation
+            outcome = evaluation_outcome(number, generation, missing[number], parameters, finished)
+            remember(session, outcome, more=finished.more)
+            arrived[number] = outcome.evaluation
     if len(arrived) < len(missing):
         raise KeyboardInterrupt
     return arrived

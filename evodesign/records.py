@@ -17,7 +17,6 @@ __all__ = [
     "AgentDetail",
     "Assessed",
     "Assessment",
-    "BorneDetail",
     "Detail",
     "Evaluation",
     "Front",
@@ -25,14 +24,15 @@ __all__ = [
     "Genome",
     "HeightDetail",
     "HeightOutcome",
+    "LoadCaseDetail",
     "Objective",
     "Parameter",
     "ProblemSource",
     "ReachOutcome",
     "RunHeader",
     "SearchSettings",
+    "SearchStage",
     "Sense",
-    "Stage",
     "Status",
     "Turn",
     "choice_at",
@@ -171,7 +171,7 @@ class HeightOutcome(Record, frozen=True, omit_defaults=True):
 
 
 class Assessment(Record, frozen=True):
-    """What a design is worth: a property of problem and genome alone.
+    """The results of a design: a property of problem and genome alone.
 
     `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist.
     `violation` is the sum of constraint violations [m], zero for a feasible design, None when a failure
@@ -188,7 +188,7 @@ class Assessment(Record, frozen=True):
 
 
 class AgentDetail(Record, frozen=True):
-    """How an agent stands and what it bears, in its own frame (looking along +x at the load).
+    """Posture, torques and wrenches of an agent, in its own frame (looking along +x at the load).
 
     Attributes:
         base_position_m: origin of the root link, three coordinates.
@@ -207,8 +207,8 @@ class AgentDetail(Record, frozen=True):
     foot_wrenches: dict[str, tuple[float, ...]]
 
 
-class BorneDetail(Record, frozen=True):
-    """What an agent bears under a disturbance, its posture being what it is; as in `AgentDetail`."""
+class LoadCaseDetail(Record, frozen=True):
+    """Torques and wrenches of an agent under a disturbance, in the same posture; as in `AgentDetail`."""
 
     torques_n_m: dict[str, float]
     hand_wrenches: dict[str, tuple[float, ...]]
@@ -218,18 +218,18 @@ class BorneDetail(Record, frozen=True):
 class HeightDetail(Record, frozen=True, omit_defaults=True):
     """The postures at one height of the load, by the agents' names; who and what as in `HeightOutcome`.
 
-    `disturbed` holds what the agents bear in the same postures, by disturbance and agent.
+    `disturbed` holds torques and wrenches in the same postures, by disturbance and agent.
     """
 
     height_m: float
     agents: dict[str, AgentDetail]
     human_name: str = ""
     payload_name: str = ""
-    disturbed: dict[str, dict[str, BorneDetail]] = {}
+    disturbed: dict[str, dict[str, LoadCaseDetail]] = {}
 
 
 class Assessed(Record, frozen=True):
-    """What a worker gives back: what a genome is worth, and its postures at the heights that were solved."""
+    """What a worker gives back: the results of a genome, and its postures at the heights that were solved."""
 
     assessment: Assessment
     heights: tuple[HeightDetail, ...] = ()
@@ -297,7 +297,7 @@ class Front(Record, frozen=True):
     evaluations: tuple[int, ...]
 
 
-class Stage(Record, frozen=True):
+class SearchStage(Record, frozen=True):
     """What a search was for its first so many generations, before a branch made it another one."""
 
     algorithm: str
@@ -320,7 +320,7 @@ class SearchSettings(Record, frozen=True):
     population: int
     seed: int
     start: tuple[Genome, ...] = ()
-    past: tuple[Stage, ...] = ()
+    past: tuple[SearchStage, ...] = ()
     asynchronous: bool = False
     choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
 

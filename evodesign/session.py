@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evodesign.analysis.front import RunningFront, minimised
-from evodesign.analysis.standing import Standing
+from evodesign.analysis.run_state import RunState
 from evodesign.pool.base import Factory, Pool
 from evodesign.records import Assessed, Evaluation, Genome, RunHeader
-from evodesign.runlog.arrival import Arrival
-from evodesign.runlog.memory import Memory
 from evodesign.runlog.observer import Observer
+from evodesign.runlog.outcome import EvaluationOutcome
+from evodesign.runlog.session_log import SessionLog
 from evodesign.search.base import Outcome
 
-__all__ = ["Evaluate", "Session", "conclude", "outcome_of", "remember"]
+__all__ = ["Evaluate", "Session", "conclude", "remember", "search_outcome"]
 
 Evaluate = Factory[Genome, Assessed]
 
@@ -27,7 +27,7 @@ class Session:
 
     directory: Path
     header: RunHeader
-    memory: Memory
+    memory: SessionLog
     factory: Callable[[], Evaluate]
     pool: Pool
     observer: Observer
@@ -35,27 +35,27 @@ class Session:
     front: RunningFront
 
 
-def outcome_of(header: RunHeader, evaluation: Evaluation) -> Outcome:
+def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
     """What a search may know of an evaluation."""
     values = minimised(header.objectives, evaluation.assessment)
     return Outcome(objectives=values, violation=evaluation.assessment.violation)
 
 
-def remember(session: Session, arrival: Arrival, *, more: bool) -> None:
+def remember(session: Session, outcome: EvaluationOutcome, *, more: bool) -> None:
     """Put an evaluation on the disk, with its postures if nothing so far beats it; or soon, with `more`."""
-    evaluation = arrival.evaluation
-    detail = arrival.detail if session.front.enters(evaluation) else None
+    evaluation = outcome.evaluation
+    detail = outcome.detail if session.front.enters(evaluation) else None
     session.memory.remember(evaluation, detail, more=more)
     session.observer.evaluated(evaluation, session.memory.evaluations, session.header.budget)
 
 
 def conclude(
-    session: Session, generation: int, standing: Standing, born: Sequence[Evaluation], begun: float
+    session: Session, generation: int, run_state: RunState, born: Sequence[Evaluation], begun: float
 ) -> None:
     """Put a generation's state and front on the disk, unless they are known."""
-    standing.add(born)
+    run_state.add(born)
     if session.memory.concluded(generation):
         return
-    state = standing.generation(generation, born, time.perf_counter() - begun)
-    session.memory.conclude(state, standing.front(generation))
+    state = run_state.generation(generation, born, time.perf_counter() - begun)
+    session.memory.conclude(state, run_state.front(generation))
     session.observer.generation_done(state)

@@ -11,20 +11,20 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.posture.cache import user_cache
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.prepare import prepared
+from evodesign.problem.precompute import precomputed
 from evodesign.problem.source import read_source
 from tests.machine import NEEDS, leave_out, left_out
 from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
-settings.register_profile("house", deadline=None, derandomize=True)
-settings.load_profile("house")
+settings.register_profile("evodesign", deadline=None, derandomize=True)
+settings.load_profile("evodesign")
 
 
 def pytest_configure() -> None:
@@ -87,11 +87,11 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="session")
-def known(problem: Problem) -> Preparation:
+def known(problem: Problem) -> Precomputed:
     """What is worked out of the default problem beforehand, where commands started by tests find it too."""
-    cache = user_cache("prepared", os.environ)
+    cache = user_cache("precomputed", os.environ)
     with cache.lock("default"), JoblibPool(2) as pool:
-        return prepared(problem, cache, pool, Unwatched())
+        return precomputed(problem, cache, pool, Unwatched())
 
 
 class Unwatched:
@@ -105,7 +105,7 @@ class Unwatched:
 
 
 @pytest.fixture(scope="session")
-def evaluator(problem: Problem, known: Preparation) -> Evaluator:
+def evaluator(problem: Problem, known: Precomputed) -> Evaluator:
     """The default problem's inner problems."""
     return Evaluator(problem, known)
 

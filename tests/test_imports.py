@@ -28,7 +28,7 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.report.figures.torque_boxes",
         "evodesign.report.replay.layout",
         "evodesign.report.replay.recording",
-        "evodesign.bridge.opened_run",
+        "evodesign.api.opened_run",
         "evodesign.cli.watching",
         "evodesign.cli.comparing",
     ],

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from itertools import groupby
 
-from evodesign.analysis.standing import Standing
+from evodesign.analysis.run_state import RunState
 from evodesign.records import Evaluation, Generation, RunHeader, design_of
 from evodesign.runlog.run import Run
 
@@ -59,14 +59,14 @@ def _holes(run: Run) -> Iterator[str]:
 
 
 def _generations(run: Run) -> Iterator[str]:
-    """Records of generations and fronts that the evaluations do not bear out."""
+    """Records of generations and fronts that contradict the evaluations."""
     states = {state.number: state for state in run.generations}
     fronts = {front.generation: front for front in run.fronts}
-    standing = Standing(run.header.objectives)
+    run_state = RunState(run.header.objectives)
     shown = 0
     for number, group in groupby(run.evaluations, key=lambda evaluation: evaluation.generation):
         born = list(group)
-        standing.add(born)
+        run_state.add(born)
         shown += len(born)
         if number in states and states[number].evaluations != shown:
             yield (
@@ -75,8 +75,8 @@ def _generations(run: Run) -> Iterator[str]:
             )
             return
         if number in states:
-            yield from _differing(states[number], standing.generation(number, born, states[number].seconds))
-        if number in fronts and number in states and fronts[number] != standing.front(number):
+            yield from _differing(states[number], run_state.generation(number, born, states[number].seconds))
+        if number in fronts and number in states and fronts[number] != run_state.front(number):
             yield f"generation {number}: its front is not that of the evaluations"
 
 

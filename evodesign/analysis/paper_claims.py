@@ -1,4 +1,4 @@
-"""What the paper claims of its robots, and whether other robots bear it out.
+"""What the paper claims of its robots, and whether other robots confirm it.
 
 Source: Sartore et al. 2022, Table II and Section IV-A.
 """
@@ -12,8 +12,8 @@ __all__ = [
     "PAPER_OPTIMISED",
     "PAPER_ORIGINAL",
     "Claim",
-    "Strain",
-    "Strains",
+    "TorqueNorms",
+    "TorqueNormsByHeight",
     "human_claim",
     "reach_claim",
     "reduction_claim",
@@ -22,26 +22,26 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class Strain:
+class TorqueNorms:
     """Torque norms of both agents at one height [N m]."""
 
     robot: float
     human: float
 
 
-Strains = Mapping[float, Strain]
+TorqueNormsByHeight = Mapping[float, TorqueNorms]
 """Torque norms by height [m], for the heights at which there is a posture."""
 
-PAPER_ORIGINAL: Strains = {
-    0.8: Strain(41.0307, 181.7120),
-    1.0: Strain(144.2744, 140.6781),
-    1.2: Strain(20.9576, 120.8854),
+PAPER_ORIGINAL: TorqueNormsByHeight = {
+    0.8: TorqueNorms(41.0307, 181.7120),
+    1.0: TorqueNorms(144.2744, 140.6781),
+    1.2: TorqueNorms(20.9576, 120.8854),
 }
-PAPER_OPTIMISED: Strains = {
-    0.8: Strain(58.7634, 192.4057),
-    1.0: Strain(90.4088, 141.5792),
-    1.2: Strain(23.5889, 120.5903),
-    1.5: Strain(38.7279, 113.0994),
+PAPER_OPTIMISED: TorqueNormsByHeight = {
+    0.8: TorqueNorms(58.7634, 192.4057),
+    1.0: TorqueNorms(90.4088, 141.5792),
+    1.2: TorqueNorms(23.5889, 120.5903),
+    1.5: TorqueNorms(38.7279, 113.0994),
 }
 
 ORIGINAL_HEIGHTS, OPTIMISED_HEIGHTS = tuple(PAPER_ORIGINAL), tuple(PAPER_OPTIMISED)
@@ -65,7 +65,7 @@ class Claim:
         by: which robot it was tried on.
         paper: the paper's figure.
         found: ours.
-        reproduced: whether ours bears the claim out.
+        reproduced: whether ours confirms the claim.
         reason: why, in a sentence.
     """
 
@@ -77,7 +77,7 @@ class Claim:
     reason: str
 
 
-def reach_claim(by: str, original: Strains, optimised: Strains) -> Claim:
+def reach_claim(by: str, original: TorqueNormsByHeight, optimised: TorqueNormsByHeight) -> Claim:
     """The original robot holds the load at 0.8 to 1.2 m and not at 1.5 m, the optimised one at all four."""
     right_before = tuple(original) == ORIGINAL_HEIGHTS
     missing = [height for height in OPTIMISED_HEIGHTS if height not in optimised]
@@ -97,7 +97,9 @@ def reach_claim(by: str, original: Strains, optimised: Strains) -> Claim:
     )
 
 
-def reduction_claim(by: str, original: Strains, optimised: Strains, least: float, among: int) -> Claim:
+def reduction_claim(
+    by: str, original: TorqueNormsByHeight, optimised: TorqueNormsByHeight, least: float, among: int
+) -> Claim:
     """The optimised robot's torque at 1.0 m is about 33 % less than the original one's.
 
     Args:
@@ -127,7 +129,7 @@ def reduction_claim(by: str, original: Strains, optimised: Strains, least: float
     )
 
 
-def human_claim(by: str, original: Strains, optimised: Strains) -> Claim:
+def human_claim(by: str, original: TorqueNormsByHeight, optimised: TorqueNormsByHeight) -> Claim:
     """The person's torque rises by no more than a tenth beside the optimised robot."""
     common = [height for height in original if height in optimised]
     changes = [optimised[height].human / original[height].human - 1.0 for height in common]
@@ -137,7 +139,7 @@ def human_claim(by: str, original: Strains, optimised: Strains) -> Claim:
     elif preserved:
         reason = "with point grasps a person carries half the load whatever the robot"
     else:
-        reason = "the postures that were found strain the person more; a better one may exist"
+        reason = "the postures that were found need higher torques of the person; a better one may exist"
     paper = [PAPER_OPTIMISED[h].human / PAPER_ORIGINAL[h].human - 1.0 for h in ORIGINAL_HEIGHTS]
     return Claim(
         subject="human torque preserved",
@@ -149,7 +151,7 @@ def human_claim(by: str, original: Strains, optimised: Strains) -> Claim:
     )
 
 
-def table_claim(by: str, original: Strains, optimised: Strains, broken: str) -> Claim:
+def table_claim(by: str, original: TorqueNormsByHeight, optimised: TorqueNormsByHeight, broken: str) -> Claim:
     """The torque norms of Table II themselves.
 
     Args:
@@ -170,8 +172,8 @@ def table_claim(by: str, original: Strains, optimised: Strains, broken: str) -> 
         )
     ]
     alike = bool(shares) and all(abs(share - 1.0) <= ALIKE for share in shares)
-    people = [strain.human for ours in (original, optimised) for strain in ours.values()]
-    reason = "other postures strain far less, so the table is a local solution and not an optimum"
+    people = [norms.human for ours in (original, optimised) for norms in ours.values()]
+    reason = "other postures need far lower torques, so the table is a local solution and not an optimum"
     if broken:
         reason += f"; without limits nothing holds torques up, and these postures break {broken}"
     return Claim(
@@ -184,5 +186,5 @@ def table_claim(by: str, original: Strains, optimised: Strains, broken: str) -> 
     )
 
 
-def _heights(heights: Mapping[float, Strain] | tuple[float, ...] | list[float]) -> str:
+def _heights(heights: Mapping[float, TorqueNorms] | tuple[float, ...] | list[float]) -> str:
     return ", ".join(f"{height:g}" for height in heights) + " m" if heights else "no height"

@@ -20,7 +20,7 @@ from evodesign.cli.tables import heading
 from evodesign.cli.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter, materials_of
-from evodesign.report.strain import most_strained
+from evodesign.report.ranked_joints import ranked_joints
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
@@ -130,7 +130,7 @@ def _torques(heights: Sequence[HeightDetail]) -> Table:
     table = _height_table(("agent", "joint"), heights)
     for agent in heights[0].agents:
         by_height = [detail.agents[agent].torques_n_m for detail in heights]
-        shown = most_strained(by_height)[:JOINTS_SHOWN]
+        shown = ranked_joints(by_height)[:JOINTS_SHOWN]
         for joint in shown:
             row = [figure(torques.get(joint)) for torques in by_height]
             table.add_row(agent, escape(on_one_line(joint)), *row, end_section=joint == shown[-1])

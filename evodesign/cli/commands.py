@@ -150,12 +150,14 @@ def branch(
     json: Json = False,
 ) -> None:
     """Begin a new run with the first generations of another, and go on with another seed or search."""
-    from evodesign.cli.searching import Budgets, Turn, Wishes, Workers
+    from evodesign.cli.searching import BranchPoint, Budgets, Wishes, Workers
     from evodesign.cli.searching import branch as begin
 
     budgets = Budgets(evaluations, checked_hours(hours), stagnation_generations)
     workers = Workers(pool, jobs, scheduler, cache)
-    begin(run, Turn(branch_from, to), Wishes(algorithm, population, seed, None), budgets, workers, json)
+    begin(
+        run, BranchPoint(branch_from, to), Wishes(algorithm, population, seed, None), budgets, workers, json
+    )
 
 
 def front(

@@ -12,13 +12,13 @@ from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
 from evodesign.cli.person_table import people_table
 from evodesign.cli.tables import heading
+from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
-from evodesign.problem.sensitivities import Sensitivity
+from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment
-from evodesign.statics.scene import HUMAN
 
 __all__ = ["asked_table", "assessment_tables", "sensitivity_table"]
 
@@ -58,7 +58,7 @@ def asked_table(result: DesignResult) -> Table:
     return people_table(cases, titled=True)
 
 
-def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]) -> Table:
+def sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
     """The parameters that move each objective most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
     table = Table(title="what 1 % more of a parameter's range changes", title_justify="left")
@@ -69,7 +69,7 @@ def sensitivity_table(problem: Problem, sensitivities: Mapping[str, Sensitivity]
         if found is None:
             continue
         if found.gradient is None:
-            shown = next((kink for kink in found.kinks if "no gradient" in kink), "no gradient")
+            shown = next((kink for kink in found.notes if "no gradient" in kink), "no gradient")
         else:
             moves = {name: value * ranges[name] * 0.01 for name, value in found.gradient.items()}
             strongest = sorted(moves, key=lambda name: -abs(moves[name]))[:STRONGEST]

@@ -9,9 +9,9 @@ from evodesign.cli.model_table import model_json, model_tables
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.ready import evaluator_of
 from evodesign.errors import InputError, nearest_name
-from evodesign.problem.answer import answer
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs
+from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.notes import notes
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source, read_text
@@ -32,7 +32,7 @@ def evaluate_design(
     assessment = evaluator.assessment(values, result)
     moves = Sensitivities(built, evaluator.known).at(values, result).sensitivities()
     if json:
-        print_json(answer(built, values, result, assessment, moves))
+        print_json(evaluation_json(built, values, result, assessment, moves))
         return
     tables = assessment_tables(built, chosen, result, assessment)
     asked = [asked_table(result)] if any(height.solved for height in result.heights) else []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.cli.opening import company_of, open_design
+from evodesign.cli.opening import open_design, scene_set_of
 from evodesign.cli.output import console, show_notes
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design, refuse_full
@@ -18,7 +18,7 @@ def export_run_design(directory: Path, number: int, to: Path, jobs: int) -> None
     opened = open_design(directory, number, jobs)
     run, evaluation = opened.run, opened.evaluation
     design = ExportedDesign(
-        directory.resolve().name, run.header, evaluation, company_of(opened), opened.heights
+        directory.resolve().name, run.header, evaluation, scene_set_of(opened), opened.heights
     )
     done = export_design(design, to, on_front=opened.on_front)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())

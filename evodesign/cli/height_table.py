@@ -10,8 +10,8 @@ from rich.table import Table
 from evodesign.analysis.cases import pair_name
 from evodesign.cli.output import figure, shown
 from evodesign.errors import on_one_line
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import Assessment, HeightOutcome
-from evodesign.statics.scene import HUMAN, ROBOT
 
 __all__ = ["cases_table", "heights_table", "summary_table"]
 

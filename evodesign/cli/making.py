@@ -11,12 +11,12 @@ from typing import Protocol, TextIO
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from evodesign.cli.output import console
-from evodesign.problem.prepare import Watcher
+from evodesign.problem.precompute import PrecomputeProgress
 
 __all__ = ["making"]
 
 
-class Making(Watcher, Protocol):
+class Making(PrecomputeProgress, Protocol):
     """A watcher of pieces that stops drawing when it is closed."""
 
     def close(self) -> None:
@@ -24,7 +24,7 @@ class Making(Watcher, Protocol):
 
 
 @contextmanager
-def making() -> Iterator[Watcher]:
+def making() -> Iterator[PrecomputeProgress]:
     """The watcher that suits standard error; it shows nothing until something is missing."""
     watcher: Making = Bar() if sys.stderr.isatty() else Lines(sys.stderr)
     try:

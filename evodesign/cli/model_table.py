@@ -12,12 +12,12 @@ from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.cli.output import figure, shown, visible
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.errors import on_one_line
+from evodesign.mechanics.disturbance import Disturbance
+from evodesign.mechanics.scene import Agent, Payload
 from evodesign.problem.build import Problem
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.people import everyone
-from evodesign.statics.disturbance import Disturbance
-from evodesign.statics.scene import Agent, Payload
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
 
@@ -114,12 +114,12 @@ def _task_table(shown: dict[str, Any]) -> Table:
         table.add_row("load", escape(f"{told}, {size}"))
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
     for disturbance in shown.get("disturbances", ()):
-        table.add_row("disturbance", escape(_told(disturbance)))
+        table.add_row("disturbance", escape(_disturbance_text(disturbance)))
     table.add_row("objectives", ", ".join(shown["objectives"]))
     return table
 
 
-def _told(disturbance: dict[str, Any]) -> str:
+def _disturbance_text(disturbance: dict[str, Any]) -> str:
     """A disturbance in words."""
     parts = []
     if disturbance["load_mass_share"]:

@@ -25,12 +25,12 @@ def gradients_of(run: Run, numbers: Iterable[int], jobs: int) -> dict[int, Gradi
     """
     problem = build_problem(run.header.problem)
     evaluator = evaluator_of(problem, jobs)
-    tangents = Sensitivities(problem, evaluator.known)
+    derivatives = Sensitivities(problem, evaluator.known)
     genomes = {evaluation.number: evaluation.genome for evaluation in run.evaluations}
     found = {}
     for number in numbers:
         values = problem.space.values(genomes[number])
-        moves = tangents.at(values, evaluator.solve(values)).sensitivities()
+        moves = derivatives.at(values, evaluator.solve(values)).sensitivities()
         found[number] = {
             name: dict(move.gradient) for name, move in moves.items() if move.gradient is not None
         }

@@ -12,16 +12,16 @@ from evodesign.analysis.front import front
 from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
 from evodesign.records import Evaluation, HeightDetail, RunHeader
-from evodesign.report.company import Company
+from evodesign.report.scene_set import SceneSet
 from evodesign.runlog.run import Run, read_run
 from evodesign.search.base import JOINT_STARTS
 
 if TYPE_CHECKING:
+    from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import Problem
     from evodesign.problem.ergonomics import Ergonomics
-    from evodesign.statics.scene import Agent
 
-__all__ = ["OpenedDesign", "RebuiltProblem", "asked_of_people", "company_of", "open_design"]
+__all__ = ["OpenedDesign", "RebuiltProblem", "asked_of_people", "open_design", "scene_set_of"]
 
 
 class RebuiltProblem:
@@ -110,20 +110,20 @@ def _heights(
     return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
 
 
-def company_of(opened: OpenedDesign) -> Company:
+def scene_set_of(opened: OpenedDesign) -> SceneSet:
     """Robot of the design, people and loads, built from the problem in the run's header."""
     problem = opened.rebuilt.problem
     design = opened.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
     values = [design[parameter.name] for parameter in problem.space.parameters]
-    return Company.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+    return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
 
 
 def asked_of_people(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
     """What the design's postures ask of the people, one for each; none if the people cannot be told."""
     if not opened.heights:
         return ()
+    from evodesign.mechanics.scene import HUMAN
     from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
-    from evodesign.statics.scene import HUMAN
 
     try:
         people = opened.rebuilt.people

@@ -7,22 +7,20 @@ a result.
 from __future__ import annotations
 
 import os
-from importlib.metadata import version
-
-import msgspec
 
 from evodesign.cli.making import making
 from evodesign.cli.output import show_notes
+from evodesign.identity import code_digest, digest
+from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
+from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
-from evodesign.posture.cache import Cache, digest_of, user_cache
-from evodesign.posture.codegen import RECIPE, Compiler, NotCompiled, find_compiler
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.problem.prepare import Watcher, prepared
-from evodesign.records import ProblemSource, RunHeader
+from evodesign.problem.precompute import PrecomputeProgress, precomputed
+from evodesign.records import RunHeader
 from evodesign.search.base import JOINT_STARTS
 
 __all__ = ["evaluator_of", "known_of", "problem_factory"]
@@ -38,15 +36,15 @@ def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
         header: of a run.
         pool: where what is missing is worked out.
     """
-    problem, digest = build_problem(header.problem), _digest(header.problem)
+    problem, name = build_problem(header.problem), digest(header.problem)
     factory: Evaluations
     with making() as watcher:
         if header.search.algorithm == JOINT_STARTS:
-            factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem, problem.limits)
+            factory = BaselineFactory(f"{name}-{JOINT_STARTS}", header.problem, problem.limits)
             compiled = problem.joint.options.compiled
         else:
-            known = prepared(problem, _cache("prepared"), pool, watcher)
-            factory = AssessmentFactory(digest, problem, known)
+            known = precomputed(problem, _cache("precomputed"), pool, watcher)
+            factory = AssessmentFactory(name, problem, known)
             compiled = problem.options.compiled
         if compiled:
             _compile(factory, watcher)
@@ -60,17 +58,13 @@ def evaluator_of(problem: Problem, jobs: int) -> Evaluator:
     return Evaluator(problem, known)
 
 
-def known_of(problem: Problem, pool: Pool) -> Preparation:
+def known_of(problem: Problem, pool: Pool) -> Precomputed:
     """What is known of a problem before any robot is evaluated, worked out where it is missing."""
     with making() as watcher:
-        return prepared(problem, _cache("prepared"), pool, watcher)
+        return precomputed(problem, _cache("precomputed"), pool, watcher)
 
 
-def _digest(source: ProblemSource) -> str:
-    return digest_of(msgspec.json.encode(source, order="deterministic"))
-
-
-def _compile(factory: Evaluations, watcher: Watcher) -> None:
+def _compile(factory: Evaluations, watcher: PrecomputeProgress) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
@@ -88,8 +82,7 @@ def _compile(factory: Evaluations, watcher: Watcher) -> None:
 
 def _mark(factory: Evaluations, compiler: Compiler) -> str:
     """Key of the mark that a problem's functions are compiled."""
-    parts = (factory.digest, RECIPE, version("casadi"), *compiler.command, compiler.version)
-    return digest_of(*(part.encode() for part in parts))
+    return digest((factory.digest, code_digest(type(factory).__module__), compiler))
 
 
 def _cache(subject: str) -> Cache | None:

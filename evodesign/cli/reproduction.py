@@ -26,14 +26,14 @@ from evodesign.cli.progress import observer
 from evodesign.cli.ready import evaluator_of, problem_factory
 from evodesign.errors import Interrupted
 from evodesign.pool.registry import make_pool
-from evodesign.posture.joint import JointSolution
+from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import detail_of
-from evodesign.problem.published import broken_limits, held_at, torque_difference
+from evodesign.problem.paper_setting import broken_limits, held_at, torque_difference
 from evodesign.records import Evaluation, SearchSettings, Status
 from evodesign.report.reproduction import ReproducedRobot
-from evodesign.report.stage import Cast
+from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.run import Run, read_run
 from evodesign.search.base import JOINT_STARTS
 from evodesign.search.registry import make_search
@@ -141,18 +141,21 @@ def reproduction(
     runs = (by_gradient, _searched(with_limits, EVOLUTION, directory, effort, began))
     claims = [
         table_claim(
-            "published setting", published.original.strains, published.optimised.strains, published.broken
+            "published setting",
+            published.original.torque_norms,
+            published.optimised.torque_norms,
+            published.broken,
         )
     ]
     every = [evaluation for one in runs for evaluation in one.run.evaluations if evaluation.feasible]
     least = min((_robot_norm(evaluation, AT) for evaluation in every), default=math.inf)
     for one in runs:
-        strains = (original.strains, one.robot.strains)
+        torque_norms = (original.torque_norms, one.robot.torque_norms)
         name = one.robot.name
         claims += [
-            reach_claim(name, *strains),
-            reduction_claim(name, *strains, least, len(every)),
-            human_claim(name, *strains),
+            reach_claim(name, *torque_norms),
+            reduction_claim(name, *torque_norms, least, len(every)),
+            human_claim(name, *torque_norms),
         ]
     return Reproduction(published, original, highest, runs, tuple(claims))
 
@@ -201,14 +204,16 @@ def _published(problem: Problem) -> Published:
 def _robot(problem: Problem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
     tree = problem.space.resized(problem.scene.robot.tree, solution.design)
     heights = tuple(detail_of(height, problem.scene) for height in solution.heights if height.solved)
-    return ReproducedRobot(name, title, Cast.of(problem.scene, tree), heights)
+    return ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), heights)
 
 
 def _original(problem: Problem, jobs: int) -> tuple[ReproducedRobot, float | None]:
     """The unscaled robot at its own best postures, and its reach [m]."""
     result = evaluator_of(problem, jobs).solve(problem.space.unscaled(problem.scene.robot.tree))
     heights = tuple(detail_of(height, problem.scene) for height in result.heights if height.solved)
-    robot = ReproducedRobot(ORIGINAL, "the robot as it is", Cast.of(problem.scene, result.tree), heights)
+    robot = ReproducedRobot(
+        ORIGINAL, "the robot as it is", SceneModels.of(problem.scene, result.tree), heights
+    )
     return robot, result.reach.highest
 
 
@@ -243,10 +248,13 @@ def _best(problem: Problem, run: Run, name: str) -> Found:
     best = front(run.header.objectives, run.evaluations)
     if not best:
         return Found(
-            ReproducedRobot(name, title, Cast.of(problem.scene, problem.scene.robot.tree), ()), run, None, {}
+            ReproducedRobot(name, title, SceneModels.of(problem.scene, problem.scene.robot.tree), ()),
+            run,
+            None,
+            {},
         )
     design = best[0].assessment.design
     details = {detail.evaluation: detail.heights for detail in run.details}
     tree = problem.space.resized(problem.scene.robot.tree, list(design.values()))
-    robot = ReproducedRobot(name, title, Cast.of(problem.scene, tree), details[best[0].number])
+    robot = ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), details[best[0].number])
     return Found(robot, run, best[0].assessment.objectives[objective.name], design)

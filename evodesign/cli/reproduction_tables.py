@@ -11,7 +11,7 @@ import msgspec
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.paper_claims import PAPER_OPTIMISED, PAPER_ORIGINAL, Claim, Strains
+from evodesign.analysis.paper_claims import PAPER_OPTIMISED, PAPER_ORIGINAL, Claim, TorqueNormsByHeight
 from evodesign.cli.output import figure
 from evodesign.cli.reproduction import Reproduction
 from evodesign.records import Status
@@ -31,26 +31,28 @@ def torque_table(done: Reproduction) -> Table:
         table.add_column(f"{height:g} m", justify="right")
     for model, rows in _models(done).items():
         for agent in ("human", "robot"):
-            for number, (setting, strains) in enumerate(rows.items()):
-                values = [figure(getattr(strains[h], agent)) if h in strains else "-" for h in heights]
+            for number, (setting, torque_norms) in enumerate(rows.items()):
+                values = [
+                    figure(getattr(torque_norms[h], agent)) if h in torque_norms else "-" for h in heights
+                ]
                 first = (model, agent) if number == 0 else ("", "")
                 table.add_row(*first, setting, *values, end_section=number == len(rows) - 1)
     return table
 
 
-def _models(done: Reproduction) -> dict[str, dict[str, Strains]]:
+def _models(done: Reproduction) -> dict[str, dict[str, TorqueNormsByHeight]]:
     """Torque norms by model and setting."""
     published, limits = done.published, "with limits"
     return {
         "original": {
             PAPER: PAPER_ORIGINAL,
-            "published": published.original.strains,
-            limits: done.original.strains,
+            "published": published.original.torque_norms,
+            limits: done.original.torque_norms,
         },
         "optimised": {
             PAPER: PAPER_OPTIMISED,
-            "published": published.optimised.strains,
-            **{f"{limits}, {one.robot.name}": one.robot.strains for one in done.found},
+            "published": published.optimised.torque_norms,
+            **{f"{limits}, {one.robot.name}": one.robot.torque_norms for one in done.found},
         },
     }
 
@@ -83,7 +85,7 @@ def reproduction_json(
     return {
         "directory": str(directory),
         "torque_norms": {
-            model: {setting: _strains(strains) for setting, strains in rows.items()}
+            model: {setting: _torque_norms(torque_norms) for setting, torque_norms in rows.items()}
             for model, rows in _models(done).items()
         },
         "claims": msgspec.to_builtins(list(done.claims)),
@@ -108,10 +110,10 @@ def reproduction_json(
     }
 
 
-def _strains(strains: Strains) -> list[dict[str, float]]:
+def _torque_norms(torque_norms: TorqueNormsByHeight) -> list[dict[str, float]]:
     return [
         {"height_m": height, "robot": strain.robot, "human": strain.human}
-        for height, strain in strains.items()
+        for height, strain in torque_norms.items()
     ]
 
 

@@ -23,18 +23,18 @@ from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import AssessmentFactory
+from evodesign.problem.evaluation_cache import Remembering
 from evodesign.problem.notes import notes
-from evodesign.problem.remember import Remembering
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
 from evodesign.runlog.branch import begin_branch
 from evodesign.runlog.difference import source_differences, version_differences
 from evodesign.runlog.directory import name_in_path, refuse_run, segments
 from evodesign.runlog.run import Run, read_run
-from evodesign.search.registry import make_search, make_steady_search
+from evodesign.search.registry import make_asynchronous_search, make_search
 from evodesign.session import Evaluate
 
-__all__ = ["Budgets", "Turn", "Wishes", "Workers", "branch", "go_on", "start"]
+__all__ = ["BranchPoint", "Budgets", "Wishes", "Workers", "branch", "go_on", "start"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Workers:
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class BranchPoint:
     """After which generation a branch leaves its run, and in which directory it goes on."""
 
     generation: int
@@ -129,7 +129,7 @@ def start(
     header = budgets.applied(header)
     directory = _new_directory(problem.name) if run is None else run
     refuse_run(directory)  # before anything takes time; the search's settings too
-    (make_steady_search if settings.asynchronous else make_search)(settings)
+    (make_asynchronous_search if settings.asynchronous else make_search)(settings)
     stop = Stop(header.hours)
     with _resumable(directory, stop), workers.made() as pool:
         factory = workers.factory(header, pool)
@@ -168,7 +168,9 @@ def go_on(run: Path, budgets: Budgets, workers: Workers, accept_versions: bool, 
     _show_result(done, json)
 
 
-def branch(run: Path, turn: Turn, wishes: Wishes, budgets: Budgets, workers: Workers, json: bool) -> None:
+def branch(
+    run: Path, turn: BranchPoint, wishes: Wishes, budgets: Budgets, workers: Workers, json: bool
+) -> None:
     """Begin a new run with the first generations of another one, go on with it and print the front."""
     old = read_run(run)
     directory = _new_directory(old.header.problem_name) if turn.directory is None else turn.directory
@@ -212,7 +214,7 @@ def _show_result(run: Run, json: bool) -> None:
 
 @contextmanager
 def _resumable(directory: Path, stop: Stop) -> Iterator[None]:
-    """Turn a stop into an error that says how to go on, also one before or after the loop itself."""
+    """BranchPoint a stop into an error that says how to go on, also one before or after the loop itself."""
     try:
         yield
     except KeyboardInterrupt:

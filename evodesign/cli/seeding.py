@@ -11,10 +11,10 @@ from rich.table import Table
 
 from evodesign.cli.output import console, figure, print_json
 from evodesign.cli.ready import known_of
+from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.pool.registry import make_pool
-from evodesign.posture.human_value import COST_UNIT
-from evodesign.posture.portfolio import Portfolio
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.formulations.human_value import COST_UNIT
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.source import read_source
 
@@ -33,7 +33,7 @@ def show_seeds(path: Path, jobs: int, json: bool) -> None:
     console().print(_people_table(problem, known))
 
 
-def _landscapes(problem: Problem, known: Preparation) -> Iterator[tuple[str, Portfolio, str]]:
+def _landscapes(problem: Problem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
     """Each portfolio with what it is for and the unit in which it misses."""
     if not problem.seeds:
         return
@@ -43,7 +43,7 @@ def _landscapes(problem: Problem, known: Preparation) -> Iterator[tuple[str, Por
         yield f"posture at {height:g} m", known.postures[height], "100 N^2 m^2"
 
 
-def _seeds_table(problem: Problem, known: Preparation) -> Table:
+def _seeds_table(problem: Problem, known: Precomputed) -> Table:
     table = Table(title="seeds, and designs that they were not made from", title_justify="left")
     table.add_column("problem")
     for column in ("seeds", "designs tried", "led well", "worst miss"):
@@ -52,11 +52,11 @@ def _seeds_table(problem: Problem, known: Preparation) -> Table:
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
         miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
-        table.add_row(name, str(len(found.seeds)), str(coverage.designs), share, miss)
+        table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
     return table
 
 
-def _people_table(problem: Problem, known: Preparation) -> Table:
+def _people_table(problem: Problem, known: Precomputed) -> Table:
     table = Table(title="the person's part V(X), X the push between the agents", title_justify="left")
     several = len(problem.scenes) > 1
     if several:
@@ -70,7 +70,7 @@ def _people_table(problem: Problem, known: Preparation) -> Table:
     return table
 
 
-def _errors(problem: Problem, known: Preparation) -> Iterator[tuple[str, float, float | None]]:
+def _errors(problem: Problem, known: Precomputed) -> Iterator[tuple[str, float, float | None]]:
     """Each scene's label and height [m] with the error of its value function [N^2 m^2], if it has one."""
     errors = {(value.scene, value.height): value.error * COST_UNIT for value in known.values}
     for number, scene in enumerate(problem.scenes):
@@ -78,13 +78,13 @@ def _errors(problem: Problem, known: Preparation) -> Iterator[tuple[str, float, 
             yield scene.label, height, errors.get((number, height))
 
 
-def _json(problem: Problem, known: Preparation) -> dict[str, Any]:
+def _json(problem: Problem, known: Precomputed) -> dict[str, Any]:
     return {
         "problem": problem.name,
         "seeds": [
             {
                 "for": name,
-                "seeds": len(found.seeds),
+                "seeds": len(found.starts),
                 "designs_tried": found.coverage.designs,
                 "designs_led_well": found.coverage.good,
                 "worst_miss": found.coverage.worst,

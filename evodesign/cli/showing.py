@@ -7,7 +7,7 @@ from pathlib import Path
 
 from evodesign.analysis.cases import named_people_or_loads
 from evodesign.cli.card import card
-from evodesign.cli.opening import OpenedDesign, asked_of_people, company_of, open_design
+from evodesign.cli.opening import OpenedDesign, asked_of_people, open_design, scene_set_of
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.errors import InputError
 from evodesign.report.export.design import design_json
@@ -47,14 +47,14 @@ def _write_figures(opened: OpenedDesign, directory: Path) -> None:
     from evodesign.report.figures.torque_boxes import torque_boxes
 
     name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
-    company = company_of(opened)
+    scene_set = scene_set_of(opened)
     torques = {
         agent: [(detail.height_m, detail.agents[agent].torques_n_m) for detail in opened.heights]
-        for agent in company.casts[0].trees
+        for agent in scene_set.models[0].trees
     }
     several = named_people_or_loads(opened.heights)
     whom = " with all people and loads" if several else ""
-    stages = [company.stage_of(detail) for detail in opened.heights]
+    stages = [scene_set.placed_scene(detail) for detail in opened.heights]
     figures = {
         "torques": torque_boxes(_by_height(torques), f"{name}: joint torques{whom}"),
         "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint{whom}"),

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from evodesign.analysis.hypervolume import best
 from evodesign.analysis.knees import knees
-from evodesign.analysis.watched import Standing
+from evodesign.analysis.live_state import LiveState
 from evodesign.cli.output import figure, shown, visible
 from evodesign.cli.tables import heading
 from evodesign.records import Generation
@@ -26,16 +26,16 @@ SPARKS = 40
 """Most signs of a sparkline."""
 
 
-def screen(directory: Path, standing: Standing, *, ended: bool, now: float) -> Group:
+def screen(directory: Path, live_state: LiveState, *, ended: bool, now: float) -> Group:
     """Everything about a search on one screen.
 
     Args:
         directory: of the run.
-        standing: of the search.
+        live_state: of the search.
         ended: whether the last session closed its log.
         now: seconds since 1970.
     """
-    header = standing.header
+    header = live_state.header
     search = header.search
     title = (
         f"[bold]{shown(header.problem_name)}[/bold]  {shown(search.algorithm)}, "
@@ -43,12 +43,12 @@ def screen(directory: Path, standing: Standing, *, ended: bool, now: float) -> G
     )
     parts: list[RenderableType] = [
         Text.from_markup(title),
-        _bar(standing.done, header.budget),
-        Text(_pace(directory, standing, word(standing, ended=ended, now=now), now)),
-        _numbers(standing),
+        _bar(live_state.done, header.budget),
+        Text(_pace(directory, live_state, word(live_state, ended=ended, now=now), now)),
+        _numbers(live_state),
     ]
-    if standing.front:
-        parts.append(_knees(standing))
+    if live_state.front:
+        parts.append(_knees(live_state))
     return Group(*parts)
 
 
@@ -59,11 +59,11 @@ def _bar(done: int, budget: int) -> Table:
     return line
 
 
-def generation_line(standing: Standing, generation: Generation) -> str:
+def generation_line(live_state: LiveState, generation: Generation) -> str:
     """One generation as a line of text."""
     best = " ".join(f"{visible(name)} {figure(value)}" for name, value in generation.best.items())
     return (
-        f"generation {generation.number}: {generation.evaluations}/{standing.header.budget} evaluations, "
+        f"generation {generation.number}: {generation.evaluations}/{live_state.header.budget} evaluations, "
         f"feasible {generation.feasible_share:.0%}, hypervolume {figure(generation.hypervolume)}, "
         f"best {best or '-'}"
     )
@@ -84,20 +84,20 @@ def sparkline(values: Sequence[float], ends: tuple[float, float] | None = None) 
     return "".join(BARS[round((value - low) / (high - low) * (len(BARS) - 1))] for value in kept)
 
 
-def _pace(directory: Path, standing: Standing, state: str, now: float) -> str:
+def _pace(directory: Path, live_state: LiveState, state: str, now: float) -> str:
     """How far, how fast, and how long still."""
-    count = f"{standing.done} of {standing.header.budget} evaluations"
+    count = f"{live_state.done} of {live_state.header.budget} evaluations"
     match state:
         case "finished":
             return f"{count}, finished"
         case "stopped":
             return f"{count}, stopped; go on with: evodesign resume {visible(str(directory))}"
         case "silent":
-            silent = _span(now - (standing.latest or now))
+            silent = _span(now - (live_state.latest or now))
             return f"{count}, nothing new for {silent}: it was killed, or an evaluation takes long"
         case _:
-            left = standing.seconds_left
-            rate = "-" if standing.pace is None else f"{standing.pace:.3g}"
+            left = live_state.seconds_left
+            rate = "-" if live_state.pace is None else f"{live_state.pace:.3g}"
             return f"{count}, {rate} per second, {'unknown time' if left is None else _span(left)} left"
 
 
@@ -109,10 +109,10 @@ def _span(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def _numbers(standing: Standing) -> Table:
-    generations = standing.generations
+def _numbers(live_state: LiveState) -> Table:
+    generations = live_state.generations
     volumes = [each.hypervolume for each in generations if each.hypervolume is not None]
-    share = f"{standing.feasible / standing.done:.0%}" if standing.done else "-"
+    share = f"{live_state.feasible / live_state.done:.0%}" if live_state.done else "-"
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_column(overflow="fold")
     table.add_column(justify="right")
@@ -120,19 +120,19 @@ def _numbers(standing: Standing) -> Table:
     table.add_row("generations", str(len(generations)), "")
     table.add_row("feasible", share, sparkline([each.feasible_share for each in generations], (0.0, 1.0)))
     table.add_row("hypervolume", figure(volumes[-1] if volumes else None), sparkline(volumes))
-    table.add_row("on the front", str(len(standing.front)), "")
-    for status, count in standing.causes.items():
+    table.add_row("on the front", str(len(live_state.front)), "")
+    for status, count in live_state.causes.items():
         table.add_row(escape(str(status)), str(count), "")
-    for objective in standing.header.objectives:
+    for objective in live_state.header.objectives:
         history = [each.best[objective.name] for each in generations if objective.name in each.best]
-        latest = best(standing.header.objectives, standing.front).get(objective.name)
+        latest = best(live_state.header.objectives, live_state.front).get(objective.name)
         table.add_row(shown(f"best {heading(objective)}"), figure(latest), sparkline(history))
     return table
 
 
-def _knees(standing: Standing) -> Table:
-    objectives = standing.header.objectives
-    found = knees(objectives, standing.front)
+def _knees(live_state: LiveState) -> Table:
+    objectives = live_state.header.objectives
+    found = knees(objectives, live_state.front)
     table = Table(
         title=f"Knees of the front, {len(found[:MOST_KNEES])} of {len(found)}", title_justify="left"
     )

@@ -11,7 +11,7 @@ from pathlib import Path
 import msgspec
 from rich.live import Live
 
-from evodesign.analysis.watched import Standing, Watched
+from evodesign.analysis.live_state import LiveRun, LiveState
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.watch_screen import generation_line, screen
 from evodesign.errors import RunError
@@ -32,10 +32,10 @@ class Watcher:
     def __init__(self, directory: Path) -> None:
         self.directory = directory
         self._follower = Follower(directory)
-        self._watched = Watched()
+        self._watched = LiveRun()
         self._lock = threading.Lock()
 
-    def look(self) -> Standing:
+    def look(self) -> LiveState:
         """Where the search stands now.
 
         Raises:
@@ -43,10 +43,10 @@ class Watcher:
         """
         with self._lock:
             self._watched.learn([(logged.record, logged.time) for logged in self._follower.look()])
-        standing = self._watched.standing
-        if standing is None:
+        live_state = self._watched.state
+        if live_state is None:
             raise RunError(f"{self.directory}: the log has no header yet, so there is nothing to watch")
-        return standing
+        return live_state
 
     @property
     def ended(self) -> bool:
@@ -75,12 +75,12 @@ def watch(directory: Path, *, every: float, serve: bool, port: int, once: bool, 
         json: the present state as JSON.
     """
     watcher = Watcher(directory)
-    standing = watcher.look()
+    live_state = watcher.look()
     show_notes(watcher.notes)
     if json:
-        print_json(state_of(standing, ended=watcher.ended, now=time.time()))
+        print_json(state_of(live_state, ended=watcher.ended, now=time.time()))
     elif once:
-        console().print(screen(directory, standing, ended=watcher.ended, now=time.time()))
+        console().print(screen(directory, live_state, ended=watcher.ended, now=time.time()))
     else:
         _until_ctrl_c(_follow(watcher, every=every, serve=serve, port=port))
 
@@ -112,11 +112,11 @@ def _on_terminal(watcher: Watcher, every: float) -> None:
     out = console()
     with Live(console=out, auto_refresh=False) as live:
         while True:
-            standing = watcher.look()
+            live_state = watcher.look()
             live.update(
-                screen(watcher.directory, standing, ended=watcher.ended, now=time.time()), refresh=True
+                screen(watcher.directory, live_state, ended=watcher.ended, now=time.time()), refresh=True
             )
-            if standing.done >= standing.header.budget:
+            if live_state.done >= live_state.header.budget:
                 return
             time.sleep(every)
 
@@ -126,11 +126,11 @@ def _in_lines(watcher: Watcher, every: float) -> None:
     told = 0
     while True:
         ended = watcher.ended
-        standing = watcher.look()
-        for generation in standing.generations[told:]:
-            sys.stdout.write(generation_line(standing, generation) + "\n")
+        live_state = watcher.look()
+        for generation in live_state.generations[told:]:
+            sys.stdout.write(generation_line(live_state, generation) + "\n")
         sys.stdout.flush()
-        told = len(standing.generations)
-        if ended or standing.done >= standing.header.budget:
+        told = len(live_state.generations)
+        if ended or live_state.done >= live_state.header.budget:
             return
         time.sleep(every)

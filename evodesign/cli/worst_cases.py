@@ -10,7 +10,7 @@ from rich.table import Table
 from evodesign.analysis.cases import case_name
 from evodesign.cli.output import figure, shown
 from evodesign.records import AgentDetail, HeightDetail
-from evodesign.report.strain import most_strained
+from evodesign.report.ranked_joints import ranked_joints
 
 __all__ = ["JOINTS_SHOWN", "worst_forces", "worst_torques"]
 
@@ -25,7 +25,7 @@ def worst_torques(heights: Sequence[HeightDetail]) -> Table:
     table = _table("agent", "joint", ("mean size", "worst"))
     for agent in heights[0].agents:
         torques = [detail.agents[agent].torques_n_m for detail in heights]
-        joints = most_strained(torques)[:JOINTS_SHOWN]
+        joints = ranked_joints(torques)[:JOINTS_SHOWN]
         for joint in joints:
             _add(table, agent, joint, heights, [by[joint] for by in torques], last=joint == joints[-1])
     return table

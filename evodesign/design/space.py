@@ -1,4 +1,4 @@
-"""What may change: length multipliers and densities of groups of links, and policies.
+"""What may change: length multipliers and densities of groups of links, and allocation parameters.
 
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
@@ -14,7 +14,7 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.design.policy import POLICIES
+from evodesign.design.allocation import ALLOCATIONS
 from evodesign.errors import ModelError
 from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
@@ -37,12 +37,13 @@ UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKi
 
 @dataclass(frozen=True, slots=True)
 class DesignParameter:
-    """One number that a design chooses, for a group of links or, as a policy, for none.
+    """One number that a design chooses, for a group of links or, on the allocation of the load, for none.
 
     Args:
-        kind: length multiplier [-], density [kg/m^3] or policy [-].
-        group: name of the group, unique among the parameters of its kind; of a policy, its own.
-        links: names of the links that share the value; none for a policy.
+        kind: length multiplier [-], density [kg/m^3] or allocation parameter [-].
+        group: name of the group, unique among the parameters of its kind; of an allocation parameter, its
+            own.
+        links: names of the links that share the value; none for an allocation parameter.
         lower, upper: bounds.
         materials: of which a density must be one's, the lightest first; none if every value within the
             bounds will do.
@@ -137,14 +138,14 @@ class DesignSpace:
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
         return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
 
-    def policies(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
-        """The policies among a design's values, by their own names."""
+    def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
+        """The allocation parameters among a design's values, by their own names."""
         pairs = zip(self.parameters, values, strict=True)
         return {p.group: value for p, value in pairs if p.kind is ParameterKind.POLICY}
 
     @property
-    def policy_names(self) -> frozenset[str]:
-        """Names of the policies that a design chooses."""
+    def allocation_names(self) -> frozenset[str]:
+        """Names of the allocation parameters that a design chooses."""
         return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
 
     @property
@@ -153,14 +154,14 @@ class DesignSpace:
         return tuple(len(parameter.materials) for parameter in self.parameters)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
-        """The file's robot as a design: multipliers one, densities averaged over groups, usual policies."""
+        """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation."""
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
         if parameter.kind is ParameterKind.LENGTH:
             return 1.0
         if parameter.kind is ParameterKind.POLICY:
-            return POLICIES[parameter.group].usual
+            return ALLOCATIONS[parameter.group].usual
         solids = [
             solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids
         ]

@@ -14,14 +14,14 @@ from typing import Protocol, TypeVar
 
 from evodesign.pool.base import Finished
 
-__all__ = ["Hands", "ends_of"]
+__all__ = ["Workers", "ends_of"]
 
 A = TypeVar("A")
 R = TypeVar("R")
 A_in = TypeVar("A_in", contravariant=True)
 
 
-class Hands(Protocol[A_in, R]):
+class Workers(Protocol[A_in, R]):
     """Workers as the dispatch sees them."""
 
     def free(self) -> int:
@@ -37,7 +37,7 @@ class Hands(Protocol[A_in, R]):
         """Wait for the end of one of the arguments begun; whatever happens to a worker is an end."""
 
 
-def ends_of(hands: Hands[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
+def ends_of(hands: Workers[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
     """The end of every argument, once each, as they come; those tried again come last."""
     source = enumerate(arguments)
     begun: dict[int, A] = {}

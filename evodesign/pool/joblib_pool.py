@@ -11,9 +11,9 @@ from collections.abc import Generator, Iterable, Iterator
 from typing import Any, TypeVar
 
 from evodesign.pool.base import Factory, Finished, Pool
-from evodesign.pool.cell import Cell
-from evodesign.pool.crew import Crew
 from evodesign.pool.dispatch import ends_of
+from evodesign.pool.worker_group import WorkerGroup
+from evodesign.pool.worker_process import WorkerProcess
 
 __all__ = ["JoblibPool"]
 
@@ -32,37 +32,37 @@ class JoblibPool(Pool):
 
     def __init__(self, jobs: int) -> None:
         self._jobs = jobs
-        self._cells: list[Cell[Any, Any]] = []
+        self._processes: list[WorkerProcess[Any, Any]] = []
         self._current: weakref.ref[Generator[Any, None, None]] | None = None
 
     def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, in the order in which they come; ends a run that was left unfinished."""
         self._end_run()
-        if not self._cells or self._cells[0].factory != factory:
-            self._close_cells()
-            self._cells = [Cell(factory, "local") for _ in range(self._jobs)]
-        ends = _ends(Crew(self._cells, door=self._jobs), arguments)
+        if not self._processes or self._processes[0].factory != factory:
+            self._close_processes()
+            self._processes = [WorkerProcess(factory, "local") for _ in range(self._jobs)]
+        ends = _ends(WorkerGroup(self._processes, prefetch=self._jobs), arguments)
         self._current = weakref.ref(ends)
         return ends
 
     def close(self) -> None:
         """End the workers, also those at work."""
         self._end_run()
-        self._close_cells()
+        self._close_processes()
 
     def _end_run(self) -> None:
         unfinished = self._current() if self._current is not None else None
         if unfinished is not None:
             unfinished.close()
 
-    def _close_cells(self) -> None:
-        cells, self._cells = self._cells, []
-        for cell in cells:
-            cell.close()
+    def _close_processes(self) -> None:
+        processes, self._processes = self._processes, []
+        for process in processes:
+            process.close()
 
 
-def _ends(crew: Crew[A, R], arguments: Iterable[A]) -> Generator[Finished[R], None, None]:
+def _ends(group: WorkerGroup[A, R], arguments: Iterable[A]) -> Generator[Finished[R], None, None]:
     try:
-        yield from ends_of(crew, arguments)
+        yield from ends_of(group, arguments)
     finally:
-        crew.end_work()
+        group.end_work()

@@ -1,6 +1,6 @@
 """What runs in a Dask worker: every thread of it keeps a worker process of its own for the evaluations.
 
-So whatever an evaluation does, the Dask worker lives on, knows the reason, and tells it. Its processes end
+So whatever an evaluation does, the Dask worker lives on and reports the reason. Its processes end
 with it.
 """
 
@@ -12,8 +12,8 @@ import threading
 from typing import Any, TypeVar
 
 from evodesign.pool.base import Factory, Finished
-from evodesign.pool.cell import Cell
-from evodesign.pool.crew import Crew
+from evodesign.pool.worker_group import WorkerGroup
+from evodesign.pool.worker_process import WorkerProcess
 
 __all__ = ["deliver", "finish_there"]
 
@@ -22,9 +22,9 @@ R = TypeVar("R")
 
 
 class _Thread(threading.local):
-    """The cell of each thread of this Dask worker."""
+    """The worker process of each thread of this Dask worker."""
 
-    cell: Cell[Any, Any] | None = None
+    process: WorkerProcess[Any, Any] | None = None
 
 
 _thread = _Thread()
@@ -37,11 +37,11 @@ def deliver(factory: Factory[A, R]) -> Factory[A, R]:
 
 def finish_there(factory: Factory[A, R], index: int, argument: A) -> Finished[R]:
     """Run a factory's task on an argument, in the process of this thread."""
-    if _thread.cell is None or _thread.cell.factory != factory:
-        if _thread.cell is not None:
-            _thread.cell.close()
+    if _thread.process is None or _thread.process.factory != factory:
+        if _thread.process is not None:
+            _thread.process.close()
         multiprocessing.current_process().daemon = False  # Dask's mark, with which no process may be started
-        _thread.cell = Cell(factory, socket.gethostname())
-    crew = Crew([_thread.cell])
-    crew.begin(index, argument)
-    return crew.next_end()
+        _thread.process = WorkerProcess(factory, socket.gethostname())
+    group = WorkerGroup([_thread.process])
+    group.begin(index, argument)
+    return group.next_end()

@@ -38,7 +38,7 @@ NO_MEMORY = ("MemoryError", "bad_alloc")
 
 
 @dataclass(frozen=True, slots=True)
-class Attempt(Generic[R]):
+class CallResult(Generic[R]):
     """What a call gave: a value, or a sentence saying why there is none."""
 
     value: R | None
@@ -50,12 +50,12 @@ class Attempt(Generic[R]):
         return self.failure is not None and any(word in self.failure for word in NO_MEMORY)
 
 
-def attempt(call: Callable[[], R]) -> Attempt[R]:
+def attempt(call: Callable[[], R]) -> CallResult[R]:
     """Call, and keep an exception as a sentence. A task that exits has failed as well."""
     try:
-        return Attempt(call(), None)
+        return CallResult(call(), None)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a design that fails must not end the search
-        return Attempt(None, explain(error))
+        return CallResult(None, explain(error))
 
 
 def explain(error: BaseException) -> str:
@@ -82,7 +82,7 @@ class Workbench(Generic[A, R]):
         self.name = f"{place}-{os.getpid()}"
 
     @cached_property
-    def _built(self) -> Attempt[Callable[[A], R]]:
+    def _built(self) -> CallResult[Callable[[A], R]]:
         return attempt(self.factory)
 
     def build(self) -> bool:

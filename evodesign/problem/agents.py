@@ -7,16 +7,16 @@ from dataclasses import replace
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
+from evodesign.human.anthropometry import Person
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.strength import joint_strengths, with_given
+from evodesign.mechanics.contact import SoleSize
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent
 from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable, TorqueLimits
 from evodesign.problem.people import everyone
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
-from evodesign.statics.contact import SoleSize
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Agent
-from evodesign.tree.anthropometry import Person
-from evodesign.tree.human import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
 from evodesign.tree.model import Joint, JointKind, Link, Tree
-from evodesign.tree.strength import joint_strengths, with_given
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
 __all__ = ["human_agents", "refuse_unknown", "robot_agent"]

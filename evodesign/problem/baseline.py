@@ -7,18 +7,20 @@ that fails leaves an assessment without objectives, with its status and reason.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from evodesign.design.policy import EFFORT_RATIO
+from evodesign.design.allocation import EFFORT_RATIO
 from evodesign.errors import InputError
 from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
-from evodesign.posture.joint import JointProblem, JointSolution
-from evodesign.posture.reach import Reach
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.formulations.codesign import JointProblem, JointSolution
+from evodesign.posture.formulations.reach import Reach
+from evodesign.posture.results import HeightSolution
+from evodesign.posture.solution_derivative import known_instant
+from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import detail_of, outcome_of, reach_of
+from evodesign.problem.evaluate import detail_of, height_outcome, reach_of
 from evodesign.problem.materials import refuse_choices
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -35,7 +37,7 @@ def refuse_unsuited(problem: Problem) -> None:
             density of materials.
     """
     refuse_choices(problem.space, problem.source)
-    if EFFORT_RATIO in problem.space.policy_names:
+    if EFFORT_RATIO in problem.space.allocation_names:
         wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"
         raise InputError(problem.source.path, "design.policy", wanted, f"'{EFFORT_RATIO}'")
     if len(problem.scenes) > 1:
@@ -63,7 +65,7 @@ class Baseline:
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
-        """Where a start leads; named designs begin with standard postures, others with drawn ones."""
+        """The result of a start; named designs begin with standard postures, others with drawn ones."""
         return self._joint.solve(start, drawn=start not in self._problem.joint_start)
 
     def polish(self, result: DesignResult) -> JointSolution:
@@ -73,10 +75,10 @@ class Baseline:
             result: of an evaluation; all its heights are solved.
         """
         genome = self._problem.space.genome(result.values)
-        return self._joint.polish(genome, [height.postures for height in result.heights])
+        return self._joint.polish(genome, [known_instant(height) for height in result.heights])
 
     def assess(self, start: Genome) -> Assessed:
-        """What the design in which a start ended is worth, with its postures."""
+        """The results of the design in which a start ended, with its postures."""
         solution = self.solve(start)
         result = self.result(solution)
         heights = tuple(detail_of(height, self._problem.scene) for height in result.heights if height.solved)
@@ -88,7 +90,7 @@ class Baseline:
             reason="solved" if solution.solved else solution.heights[0].reason,
             reach=reach_of(result.reach),
             heights=tuple(
-                outcome_of(replace(height, reason=_reason(height, violations)), self._problem.scene)
+                height_outcome(replace(height, reason=_reason(height, violations)), self._problem.scene)
                 for height, violations in zip(result.heights, solution.violations, strict=True)
             ),
         )
@@ -117,9 +119,9 @@ def _reach(solution: JointSolution) -> Reach:
     return Reach(min(heights), max(heights), Status.SOLVED, reason)
 
 
-def _reason(height: HeightSolution, violations: Mapping[str, float]) -> str:
+def _reason(height: HeightSolution, violations: Sequence[Residual]) -> str:
     """A solved height's reason, with every limit that is not enforced and does not hold."""
-    beyond = [f"{name} by {size:.3g}" for name, size in violations.items() if size > TOLERANCE]
+    beyond = [f"{r.name} by {r.size:.3g}" for r in violations if r.size > TOLERANCE]
     return (
         f"{height.reason}; limits not enforced and exceeded: {', '.join(beyond)}" if beyond else height.reason
     )
@@ -140,5 +142,5 @@ class BaselineFactory:
     limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
-        """Build the joint problem and return the function from start to what it leads to."""
+        """Build the joint problem and return the function from start to its result."""
         return Baseline(build_problem(self.source)).assess

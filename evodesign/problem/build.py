@@ -9,13 +9,16 @@ import msgspec
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
+from evodesign.mechanics.contact import Ground
+from evodesign.mechanics.scene import Scene, StanceLimits
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.pool.base import Limits
-from evodesign.posture.form import symmetric_forms
-from evodesign.posture.joint import JointSettings
-from evodesign.posture.posture import Symmetry
-from evodesign.posture.program import IpoptOptions
-from evodesign.posture.sharing import EffortWeights
+from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.formulations.codesign import JointSettings
+from evodesign.posture.postures import Symmetry
+from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
+from evodesign.problem.allocation import check_allocations, effort_weights, robot_share
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.disturbances import scene_disturbances
@@ -25,12 +28,9 @@ from evodesign.problem.loads import payloads
 from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, OBJECTIVES, SHARED_REACH, objective_kind
 from evodesign.problem.people import refuse_unrated
-from evodesign.problem.sharing import check_policies, effort_weights, robot_share
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import Genome, Objective, ProblemSource, SearchSettings, Sense
 from evodesign.search.base import JOINT_STARTS
-from evodesign.statics.contact import Ground
-from evodesign.statics.scene import Scene, StanceLimits
 from evodesign.tree.model import Tree
 
 __all__ = ["Problem", "build_problem"]
@@ -53,7 +53,7 @@ class Problem:
         options: of the inner solver.
         limits: of one evaluation.
         symmetry: which postures are looked for.
-        seeds: whether solves begin at the problem's seeds.
+        seeds: whether solves begin at the problem's start portfolios.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
         joint: the paper's joint problem.
@@ -82,7 +82,7 @@ class Problem:
         return self.scenes[0]
 
     @property
-    def stretches(self) -> bool:
+    def person_reaches(self) -> bool:
         """Whether the people's own reach counts: it is an objective, or there are several of them."""
         several = len({id(scene.human) for scene in self.scenes}) > 1
         return several or any(objective.name == SHARED_REACH for objective in self.objectives)
@@ -128,7 +128,7 @@ def build_problem(source: ProblemSource) -> Problem:
     scenes = tuple(
         Scene(robot, human, load, ground, stance, disturbances) for human in people for load in loads
     )
-    check_policies(tables, source)
+    check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = _space(tables, source, robot.tree)
     symmetry = _symmetry(tables, source, scenes, space)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from evodesign.design.policy import POLICIES
+from evodesign.design.allocation import ALLOCATIONS
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
@@ -55,8 +55,8 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
                 groups = [other.split(".", 1)[1] for other in known if other.startswith(f"{kind}.")]
                 found = f"'{group}'{nearest_name(group, groups)}"
                 raise InputError(source, f"{key}.{table}", f"a {kind} parameter of the problem", found)
-            if kind is ParameterKind.POLICY and not POLICIES[group].means(value):
-                raise InputError(source, f"{key}.{table}.{group}", POLICIES[group].wanted, f"{value:g}")
+            if kind is ParameterKind.POLICY and not ALLOCATIONS[group].means(value):
+                raise InputError(source, f"{key}.{table}.{group}", ALLOCATIONS[group].wanted, f"{value:g}")
             refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value
     for group, material in entry.material.items():

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from evodesign.errors import InputError
+from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
+from evodesign.mechanics.scene import Agent, Payload
 from evodesign.problem.file import DisturbanceTable, ProblemFile
 from evodesign.records import ProblemSource
-from evodesign.statics.disturbance import Disturbance, Disturbances, PushedAt
-from evodesign.statics.scene import Agent, Payload
 
 __all__ = ["scene_disturbances"]
 

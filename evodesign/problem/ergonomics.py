@@ -8,7 +8,7 @@ Information, not objectives (`human_effort` is one): both follow from a posture 
 An ankle is the origin of the link that carries the sole, which its joint to the leg gives. Straight ahead is
 the way that the person looks at the load.
 
-Source: see `posture.lifting` and `tree.strength`; docs/people.md says what the figures mean.
+Source: see `human.niosh` and `human.strength`; docs/people.md says what the figures mean.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from evodesign.body.placement import Placement, Vector, add, scale
-from evodesign.posture.lifting import LiftingTask, Multipliers, multipliers
+from evodesign.human.niosh import LiftingTask, NioshMultipliers, multipliers
+from evodesign.human.strength import RelativeTorque, largest_relative_torque
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import AgentDetail
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import SIDES, Agent
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
-from evodesign.tree.strength import Strain, largest_strain
 
 __all__ = ["Ergonomics", "ergonomics", "ergonomics_json"]
 
@@ -40,9 +40,9 @@ class Ergonomics:
         load: the part of the load that the person holds up [kg].
     """
 
-    strain: Strain | None
+    strain: RelativeTorque | None
     task: LiftingTask
-    multipliers: Multipliers
+    multipliers: NioshMultipliers
     load: float
 
     @property
@@ -75,7 +75,7 @@ def ergonomics(person: Agent, posture: AgentDetail) -> Ergonomics:
     )
     held = -math.fsum(posture.hand_wrenches[side][2] for side in SIDES) / GRAVITY
     return Ergonomics(
-        strain=largest_strain(posture.torques_n_m, person.strengths),
+        strain=largest_relative_torque(posture.torques_n_m, person.strengths),
         task=task,
         multipliers=multipliers(task),
         load=held,

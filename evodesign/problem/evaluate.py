@@ -1,4 +1,4 @@
-"""One design's worth: reach first, then a posture per height, then the objectives.
+"""The evaluation of one design: reach first, then a posture per height, then the objectives.
 
 An evaluation depends on problem and design alone: no state is carried from one to the next.
 """
@@ -8,14 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.nlp.solver_cache import SolverCache
 from evodesign.pool.base import Limits
+from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.reach import Reach, ReachProblem, common_reach
-from evodesign.posture.sharing import shared_scene
-from evodesign.posture.shelf import Shelf
-from evodesign.posture.solution import AgentPosture, Array, HeightSolution, Neighbour
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.reach import Reach, ReachProblem, common_reach
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.results import AgentPosture, Array, HeightSolution, Neighbour
 from evodesign.problem.build import Problem
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
@@ -23,18 +25,17 @@ from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
-    BorneDetail,
     Genome,
     HeightDetail,
     HeightOutcome,
+    LoadCaseDetail,
     ProblemSource,
     ReachOutcome,
     Status,
     worst_status,
 )
-from evodesign.statics.scene import HUMAN, ROBOT, Scene
 
-__all__ = ["AssessmentFactory", "Evaluator", "detail_of", "outcome_of", "reach_of"]
+__all__ = ["AssessmentFactory", "Evaluator", "detail_of", "height_outcome", "reach_of"]
 
 
 class Evaluator:
@@ -45,19 +46,24 @@ class Evaluator:
         known: what is known beforehand.
     """
 
-    def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
+    def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self.problem = problem
         self.known = known
         space, options, symmetry = problem.space, problem.options, problem.symmetry
-        shelf = Shelf()
+        solvers = SolverCache()
         self._postures = [
-            PostureProblem(scene, space, problem.weights, options, symmetry, known.of_scene(number), shelf)
+            PostureProblem(
+                Setting(scene, space, problem.weights, options), symmetry, known.of_scene(number), solvers
+            )
             for number, scene in enumerate(problem.scenes)
         ]
         symmetric = symmetry is not Symmetry.OFF
         self._reaches = {
             id(scene.payload): ReachProblem(
-                scene, space, options, symmetric=symmetric, known=known, shelf=shelf
+                Setting(scene, space, problem.weights, options),
+                symmetric=symmetric,
+                known=known,
+                solvers=solvers,
             )
             for scene in problem.scenes
         }
@@ -84,7 +90,7 @@ class Evaluator:
             reach=reach,
             heights=tuple(heights),
             paper=problem.joint,
-            people_highest=min((stretch.highest for stretch in self.known.stretches), default=None),
+            people_highest=min((stretch.highest for stretch in self.known.person_reaches), default=None),
         )
 
     def _scene(self, height: HeightSolution) -> Scene:
@@ -102,18 +108,18 @@ class Evaluator:
         return best
 
     def assess(self, genome: Genome) -> Assessed:
-        """What a genome is worth, with its postures."""
+        """The results of a genome, with its postures."""
         return self.assess_values(self.problem.space.values(genome))
 
     def assess_values(self, values: Sequence[float]) -> Assessed:
-        """What a design given as one number per parameter is worth, with its postures."""
+        """The results of a design given as one number per parameter, with its postures."""
         result = self.solve(values)
         heights = tuple(detail_of(height, self._scene(height)) for height in result.heights if height.solved)
         return Assessed(assessment=self.assessment(values, result), heights=heights)
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
-        heights = tuple(outcome_of(height, self._scene(height)) for height in result.heights)
+        heights = tuple(height_outcome(height, self._scene(height)) for height in result.heights)
         failed = [height for height in result.heights if not height.solved]
         return Assessment(
             design=dict(self.problem.space.named(values)),
@@ -136,10 +142,10 @@ class Evaluator:
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
-            return HeightSolution(height, reach.status, reach.reason, {}, {}, (), "")
+            return HeightSolution(height, reach.status, reach.reason, {}, {}, ())
         if distance > 0.0:
             reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, (), "")
+            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, ())
         neighbour = self._neighbour(before, scene, height)
         return self._postures[scene].solve(values, height, checker, neighbour)
 
@@ -162,7 +168,7 @@ def reach_of(reach: Reach) -> ReachOutcome:
     )
 
 
-def outcome_of(height: HeightSolution, scene: Scene) -> HeightOutcome:
+def height_outcome(height: HeightSolution, scene: Scene) -> HeightOutcome:
     """A height in short, as it is logged."""
     return HeightOutcome(
         height_m=height.height,
@@ -207,8 +213,8 @@ def detail_of(height: HeightSolution, scene: Scene) -> HeightDetail:
     )
 
 
-def _borne(posture: AgentPosture) -> BorneDetail:
-    return BorneDetail(
+def _borne(posture: AgentPosture) -> LoadCaseDetail:
+    return LoadCaseDetail(
         torques_n_m=dict(posture.torques),
         hand_wrenches=_numbers(posture.hand_wrenches),
         foot_wrenches=_numbers(posture.foot_wrenches),
@@ -233,7 +239,7 @@ class AssessmentFactory:
 
     digest: str
     problem: Problem = field(compare=False)
-    known: Preparation = field(compare=False)
+    known: Precomputed = field(compare=False)
 
     @property
     def source(self) -> ProblemSource:
@@ -246,5 +252,5 @@ class AssessmentFactory:
         return self.problem.limits
 
     def __call__(self) -> Callable[[Genome], Assessed]:
-        """Build the inner problems and return the function from genome to what it is worth."""
+        """Build the inner problems and return the function from genome to results."""
         return Evaluator(self.problem, self.known).assess

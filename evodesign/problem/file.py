@@ -12,13 +12,13 @@ from typing import Annotated, TypeVar
 import msgspec
 from msgspec import Meta
 
-from evodesign.posture.posture import Symmetry
+from evodesign.human.anthropometry import Sex
+from evodesign.human.population import PopulationSex
+from evodesign.mechanics.disturbance import OverCases, PushedAt
+from evodesign.mechanics.scene import Grasp
+from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
-from evodesign.statics.disturbance import OverCases, PushedAt
-from evodesign.statics.scene import Grasp
-from evodesign.tree.anthropometry import Sex
-from evodesign.tree.population import PopulationSex
 
 __all__ = [
     "DisturbanceTable",
@@ -137,7 +137,7 @@ class WeightsTable(Table, frozen=True):
 class TaskTable(Table, frozen=True):
     """`[task]`: the heights at which the load must be held, and how robot and person divide the work.
 
-    `robot_share` is the part of the load's weight that the robot carries; left out: whatever strains least.
+    `robot_share` is the part of the load's weight that the robot carries; left out: the share of least cost.
     """
 
     heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)]
@@ -147,7 +147,7 @@ class TaskTable(Table, frozen=True):
 
 
 class DisturbanceTable(Table, frozen=True):
-    """`[[disturbance]]`: what a posture must bear besides, with wrenches and torques of its own.
+    """`[[disturbance]]`: a further load case of a posture, with wrenches and torques of its own.
 
     `load_mass_share` adds to the load's mass, `center_of_mass_m` to its centre of mass; `push_n` is a force
     in the world's axes (x from the robot to the person, z up) on the load's centre or on the last frame of
@@ -202,8 +202,8 @@ class MaterialTable(Table, frozen=True):
     source: Name
 
 
-class PolicyTable(Table, frozen=True):
-    """`[[design.policy]]`: how a design divides the work; see `design.policy` for the names."""
+class AllocationTable(Table, frozen=True):
+    """`[[design.policy]]`: how a design shares the load; see `design.policy` for the names."""
 
     name: Name
     lower: float
@@ -215,7 +215,7 @@ class DesignTable(Table, frozen=True):
 
     length: tuple[LengthTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
-    policy: tuple[PolicyTable, ...] = ()
+    policy: tuple[AllocationTable, ...] = ()
 
 
 class ObjectivesTable(Table, frozen=True):

@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 from evodesign.errors import InputError
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.problem.file import PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 
 __all__ = ["payloads"]
 
@@ -47,7 +47,7 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
 
 
 def _hand_moment(key: str, table: PayloadTable, source: ProblemSource) -> float:
-    """What a rigid hand can bear [N m]; without a bound, infinite."""
+    """Largest moment of a rigid hand [N m]; without a bound, infinite."""
     if table.hand_moment_n_m is None:
         return math.inf
     if table.grasp is Grasp.POINT:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from evodesign.body.placement import dot
+from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.body import human_tree
 from evodesign.problem.build import Problem
-from evodesign.tree.anthropometry import Person, Sex
-from evodesign.tree.human import human_tree
 from evodesign.tree.model import Joint
 
 __all__ = ["notes"]

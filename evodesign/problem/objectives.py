@@ -12,22 +12,22 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from evodesign.posture.bearing import TORQUE_UNIT
-from evodesign.posture.solution import AgentPosture
-from evodesign.posture.tasks import pressure_task
-from evodesign.problem.cases import (
+from evodesign.human.strength import largest_relative_torque
+from evodesign.mechanics.balance import standing_height_of_mass
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.terms.base import TORQUE_UNIT
+from evodesign.posture.terms.paper_tasks import pressure_task
+from evodesign.problem.aggregate import (
     WORST,
     CaseQuantity,
     ObjectiveKind,
-    over_cases,
+    aggregate,
     undisturbed,
     values_over_cases,
 )
 from evodesign.problem.result import DesignResult
 from evodesign.records import Objective
-from evodesign.statics.balance import standing_height_of_mass
-from evodesign.statics.scene import HUMAN, ROBOT, Scene
-from evodesign.tree.strength import largest_strain
 
 __all__ = [
     "HUMAN_EFFORT",
@@ -35,8 +35,8 @@ __all__ = [
     "QUANTITIES",
     "SHARED_REACH",
     "objective_kind",
+    "objective_value",
     "objective_values",
-    "value_of",
 ]
 
 
@@ -51,14 +51,14 @@ def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
 
 
 def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The robot's largest |tau| over its limit, over the joints: 1 for a joint that bears all that it can."""
+    """The robot's largest |tau| over its limit, over the joints: 1 for a joint at its limit."""
     torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
     return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
 
 
 def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """The person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
-    strain = largest_strain(postures[HUMAN].torques, scene.human.strengths)
+    strain = largest_relative_torque(postures[HUMAN].torques, scene.human.strengths)
     return 0.0 if strain is None else strain.share
 
 
@@ -124,7 +124,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
 
 OBJECTIVES: Mapping[str, ObjectiveKind] = {
     **{
-        f"{over}{name}": over_cases(quantity, over)
+        f"{over}{name}": aggregate(quantity, over)
         for over in ("", WORST)
         for name, quantity in QUANTITIES.items()
     },
@@ -138,16 +138,16 @@ def objective_kind(name: str) -> ObjectiveKind | None:
     quantile = re.fullmatch(r"(q[1-9]\d?_)(.+)", name)
     if quantile is None or quantile[2] not in QUANTITIES:
         return OBJECTIVES.get(name)
-    return over_cases(QUANTITIES[quantile[2]], quantile[1])
+    return aggregate(QUANTITIES[quantile[2]], quantile[1])
 
 
 def objective_values(objectives: Sequence[Objective], result: DesignResult) -> dict[str, float]:
     """Natural values of a problem's objectives, by name, without those that do not exist."""
-    found = {objective.name: value_of(objective.name, result) for objective in objectives}
+    found = {objective.name: objective_value(objective.name, result) for objective in objectives}
     return {name: value for name, value in found.items() if value is not None}
 
 
-def value_of(name: str, result: DesignResult) -> float | None:
+def objective_value(name: str, result: DesignResult) -> float | None:
     """An objective's value; None where it does not exist.
 
     Raises:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import msgspec
 
 from evodesign.errors import InputError
+from evodesign.human.population import population
+from evodesign.mechanics.scene import Agent
 from evodesign.problem.file import HumanTable, ProblemFile
 from evodesign.records import ProblemSource
-from evodesign.statics.scene import Agent
-from evodesign.tree.population import population
 
 __all__ = ["everyone", "refuse_unrated"]
 

@@ -15,14 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from evodesign.errors import InputError, nearest_name
-from evodesign.posture.kkt import Array, Kink
-from evodesign.posture.reach_tangent import HeightTangent
+from evodesign.nlp.optimality import Array, NotDifferentiable
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Assessment, Genome, Sense
-from evodesign.search.descent import Point, Slopes, descend
+from evodesign.search.descent import Iterate, Slopes, descend
 
 __all__ = ["Aim", "Polished", "Step", "aim_of", "polish"]
 
@@ -77,7 +77,7 @@ class Polished:
     """A design before and after.
 
     Args:
-        before, after: what the design was worth and is worth.
+        before, after: results of the design before and after.
         values: of the polished design, one number per parameter.
         evaluations: how many designs were evaluated, the first one included.
         reason: why it ended, in a sentence.
@@ -132,8 +132,8 @@ class _Slope:
     """The landscape that a polish descends; it remembers what it was shown.
 
     Attributes:
-        first: what the design to be polished is worth.
-        last: what the design looked at last is worth.
+        first: results of the design to be polished.
+        last: results of the design looked at last.
         start: where the descent begins.
         known: designs that exist, by position.
     """
@@ -153,16 +153,16 @@ class _Slope:
             raise InputError("DESIGN", "", "a design that holds the load at every required height", found)
         self.start = start
 
-    def look(self, position: Array) -> Point | None:
+    def look(self, position: Array) -> Iterate | None:
         """The design at a position of the unit cube, if it is a design that counts."""
         self.last = self._evaluate(position).assessment
         return self._point(position, self.last)
 
-    def slopes(self, point: Point) -> Slopes | None:
+    def slopes(self, point: Iterate) -> Slopes | None:
         """The derivatives of a design that was looked at."""
         design = self.known[_key(point.position)]
-        tangent = self._sensitivities.at(design.values, design.result)
-        moves = tangent.sensitivities()
+        derivative = self._sensitivities.at(design.values, design.result)
+        moves = derivative.sensitivities()
         relative: dict[str, Array] = {}
         for name in self._aim.weights:
             gradient = moves[name].gradient
@@ -174,7 +174,7 @@ class _Slope:
             (weight * relative[name] for name, weight in self._aim.weights.items()),
             start=np.zeros(len(self._ranges)),
         )
-        ends = [_turned(tangent.highest, self._ranges), -_turned(tangent.lowest, self._ranges)]
+        ends = [_turned(derivative.highest, self._ranges), -_turned(derivative.lowest, self._ranges)]
         kept = [-slope for slope in relative.values()] if self._aim.none_worse else []
         return Slopes(value, np.array([*ends, *kept]))
 
@@ -185,7 +185,7 @@ class _Slope:
         self.known[_key(position)] = found
         return found
 
-    def _point(self, position: Array, found: Assessment) -> Point | None:
+    def _point(self, position: Array, found: Assessment) -> Iterate | None:
         """A design as a point, unless it misses a height or gets worse where nothing may."""
         margins = _within_reach(found, self._problem.heights)
         if margins is None or not set(self._aim.weights) <= set(found.objectives):
@@ -201,7 +201,7 @@ class _Slope:
                 return None
             margins += [max(-much, 0.0) for much in worse.values()]
         value = sum(weight * worse[name] for name, weight in self._aim.weights.items())
-        return Point(position, value, np.array(margins))
+        return Iterate(position, value, np.array(margins))
 
     def _scale(self, name: str) -> float:
         """The size of an objective at the start."""
@@ -218,9 +218,9 @@ def _within_reach(found: Assessment, heights: Sequence[float]) -> list[float] | 
     return [highest - max(heights), min(heights) - lowest]
 
 
-def _turned(tangent: HeightTangent | Kink, ranges: Array) -> Array:
-    """The slope of an end of reach per range; none at a kink, where the evaluations guard it alone."""
-    return np.zeros(len(ranges)) if isinstance(tangent, Kink) else tangent.slope * ranges
+def _turned(derivative: ReachDerivative | NotDifferentiable, ranges: Array) -> Array:
+    """The slope of an end of reach per range; none where it does not exist: evaluations alone guard it."""
+    return np.zeros(len(ranges)) if isinstance(derivative, NotDifferentiable) else derivative.slope * ranges
 
 
 def _key(position: Array) -> bytes:

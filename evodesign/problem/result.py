@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from evodesign.design.space import DesignSpace
-from evodesign.posture.joint import JointSettings
-from evodesign.posture.reach import Reach
-from evodesign.posture.solution import HeightSolution
-from evodesign.statics.scene import Agent, Scene
+from evodesign.mechanics.scene import Agent, Scene
+from evodesign.posture.formulations.codesign import JointSettings
+from evodesign.posture.formulations.reach import Reach
+from evodesign.posture.results import HeightSolution
 from evodesign.tree.model import Tree
 
 __all__ = ["DesignResult"]

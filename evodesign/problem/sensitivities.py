@@ -1,6 +1,6 @@
 """How a design's objectives move with its parameters.
 
-Postures and reach have exact derivatives (`posture.tangent`), so the results of a neighbouring design are
+Postures and reach have exact derivatives (`posture.derivative`), so the results of a neighbouring design are
 known to first order. An objective is a function of such results; its derivative is that function's along the
 exact tangent, by five-point differences,
 
@@ -10,7 +10,7 @@ which for formulas of a few operations agree with the exact derivative to about 
 nothing beyond its function to have a gradient.
 
 What an objective depends on shows when it is taken away: an objective that does not exist without a height's
-posture has that height's kinks.
+posture gets that height's notes.
 """
 
 from __future__ import annotations
@@ -21,79 +21,73 @@ from functools import partial
 
 import numpy as np
 
-from evodesign.posture.kkt import Array, Kink
-from evodesign.posture.posture import Symmetry
-from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.reach import HIGHEST, LOWEST, ReachProblem
-from evodesign.posture.reach_tangent import HeightTangent, ReachTangents
-from evodesign.posture.shelf import Shelf
-from evodesign.posture.solution import HeightSolution
-from evodesign.posture.tangent import PostureTangent, PostureTangents
+from evodesign.nlp.optimality import Array, NotDifferentiable
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.results import HeightSolution
+from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
-from evodesign.problem.kinks import end_kinks, height_kinks
-from evodesign.problem.objectives import value_of
+from evodesign.problem.derivative_notes import posture_notes, reach_notes
+from evodesign.problem.objectives import objective_value
 from evodesign.problem.result import DesignResult
 from evodesign.records import Status
 
-__all__ = ["DesignTangent", "Sensitivities", "Sensitivity"]
+__all__ = ["DesignDerivative", "ObjectiveSensitivity", "Sensitivities"]
 
 STEP = 1e-4
 """Step of the differences, as a share of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True)
-class Sensitivity:
+class ObjectiveSensitivity:
     """How one objective moves.
 
     Args:
         gradient: derivative by parameter name, in the objective's unit per unit of the parameter; None where
             the objective has none.
-        kinks: sentences on where, how near and why it does not move smoothly.
+        notes: sentences on where, how near and why the derivative does not exist.
     """
 
     gradient: Mapping[str, float] | None
-    kinks: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class DesignTangent:
+class DesignDerivative:
     """A design's results, made exact, and how they move.
 
     Args:
         problem: whose design it is.
         values: of the design, one number per parameter.
         result: what was computed of it.
-        heights: one tangent per required height; a kink where there is none.
+        heights: one tangent per required height; a reason where there is none.
         highest, lowest: tangents of the reach.
     """
 
     problem: Problem
     values: tuple[float, ...]
     result: DesignResult
-    heights: tuple[PostureTangent | Kink, ...]
-    highest: HeightTangent | Kink
-    lowest: HeightTangent | Kink
+    heights: tuple[PostureDerivative | NotDifferentiable, ...]
+    highest: ReachDerivative | NotDifferentiable
+    lowest: ReachDerivative | NotDifferentiable
 
     def moved(self, step: Array) -> DesignResult:
         """To first order, the results of a design that differs by a step; what has no tangent is left out."""
         tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
         heights = tuple(
-            replace(
-                height,
-                postures=tangent.postures(step),
-                disturbed=tangent.disturbed(self.result.scenes[height.scene], step),
-            )
-            if isinstance(tangent, PostureTangent)
-            else _without(height)
-            for height, tangent in zip(self.result.heights, self.heights, strict=True)
+            _moved(height, derivative, step)
+            for height, derivative in zip(self.result.heights, self.heights, strict=True)
         )
         return replace(self.result, tree=tree, reach=reach, heights=heights)
 
-    def sensitivities(self) -> dict[str, Sensitivity]:
+    def sensitivities(self) -> dict[str, ObjectiveSensitivity]:
         """How each of the problem's objectives moves that exists for the design."""
         names = [objective.name for objective in self.problem.objectives]
-        existing = [name for name in names if value_of(name, self.result) is not None]
+        existing = [name for name in names if objective_value(name, self.result) is not None]
         around = [self._around(position) for position in range(len(self.values))]
         return {name: self._sensitivity(name, around) for name in existing}
 
@@ -104,79 +98,94 @@ class DesignTangent:
         unit = np.eye(len(self.values))[position]
         return step, tuple(self.moved(count * step * unit) for count in range(-2, 3))
 
-    def _sensitivity(self, name: str, around: Sequence[tuple[float, Sequence[DesignResult]]]) -> Sensitivity:
-        value = partial(value_of, name)
-        kinks = self._kinks(name)
+    def _sensitivity(
+        self, name: str, around: Sequence[tuple[float, Sequence[DesignResult]]]
+    ) -> ObjectiveSensitivity:
+        value = partial(objective_value, name)
+        notes = self._notes_of(name)
         gradient: dict[str, float] = {}
         for parameter, (step, results) in zip(self.problem.space.parameters, around, strict=True):
             found = [x for result in results if (x := value(result)) is not None]
             if len(found) < len(results):
-                return Sensitivity(None, tuple(kinks))
+                return ObjectiveSensitivity(None, tuple(notes))
             gradient[parameter.name] = _slope(found, step)
-            if _bent(found):
-                kinks.append(
+            if _not_smooth(found):
+                notes.append(
                     f"its formula has a kink in {parameter.name}, where another value becomes largest"
                 )
-        return Sensitivity(gradient, tuple(kinks))
+        return ObjectiveSensitivity(gradient, tuple(notes))
 
-    def _kinks(self, name: str) -> list[str]:
+    def _notes_of(self, name: str) -> list[str]:
         """Sentences on every part of the results that an objective depends on."""
-        value, result = partial(value_of, name), self.result
+        value, result = partial(objective_value, name), self.result
         said: list[str] = []
-        for position, (height, tangent) in enumerate(zip(result.heights, self.heights, strict=True)):
+        for position, (height, derivative) in enumerate(zip(result.heights, self.heights, strict=True)):
             others = [_without(h) if i == position else h for i, h in enumerate(result.heights)]
             if height.solved and value(replace(result, heights=tuple(others))) is None:
-                said += height_kinks(self.problem, height, tangent)
+                said += posture_notes(self.problem, height, derivative)
         if value(replace(result, reach=replace(result.reach, highest=None))) is None:
-            said += end_kinks(self.problem, "highest", self.highest)
+            said += reach_notes(self.problem, "highest", self.highest)
         if value(replace(result, reach=replace(result.reach, lowest=None))) is None:
-            said += end_kinks(self.problem, "lowest", self.lowest)
+            said += reach_notes(self.problem, "lowest", self.lowest)
         return said
 
 
 class Sensitivities:
     """Tangents of a problem's designs; built when somebody asks, for no search needs them."""
 
-    def __init__(self, problem: Problem, known: Preparation = NOTHING_KNOWN) -> None:
+    def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self._problem = problem
-        space, options = problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
-        loads = {id(scene.payload): scene for scene in problem.scenes}
-        shelf = Shelf()
-        reaches = [
-            ReachProblem(scene, space, options, symmetric=symmetric, known=known, shelf=shelf)
-            for scene in loads.values()
+        loads = {id(scene.payload): number for number, scene in enumerate(problem.scenes)}
+        solvers = SolverCache()
+        settings = [
+            Setting(scene, problem.space, problem.weights, problem.options) for scene in problem.scenes
         ]
-        self._reaches = [ReachTangents(reach, options) for reach in reaches]
+        self._reaches = [
+            ReachProblem(settings[number], symmetric=symmetric, known=known, solvers=solvers)
+            for number in loads.values()
+        ]
         self._postures = [
-            PostureTangents(each, space, problem.weights, options, known.of_scene(number).values)
-            for number, each in enumerate(problem.scenes)
+            PostureProblem(setting, problem.symmetry, known.of_scene(number), solvers)
+            for number, setting in enumerate(settings)
         ]
 
-    def at(self, values: Sequence[float], result: DesignResult) -> DesignTangent:
+    def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
-        return DesignTangent(
+        return DesignDerivative(
             problem=self._problem,
             values=tuple(values),
             result=result,
             heights=tuple(
-                self._postures[height.scene].at(values, height) if height.solved else Kink(height.reason)
-                for height in result.heights
+                self._postures[height.scene].derivative(values, height) for height in result.heights
             ),
             highest=self._end(values, HIGHEST),
             lowest=self._end(values, LOWEST),
         )
 
-    def _end(self, values: Sequence[float], sense: float) -> HeightTangent | Kink:
+    def _end(self, values: Sequence[float], sense: float) -> ReachDerivative | NotDifferentiable:
         """The extreme height of the load that binds: the least of the highest, the largest of the lowest."""
-        found = [reach.at(values, sense) for reach in self._reaches]
-        kinks = [tangent for tangent in found if isinstance(tangent, Kink)]
-        ends = [tangent for tangent in found if isinstance(tangent, HeightTangent)]
-        return kinks[0] if kinks else max(ends, key=lambda tangent: sense * tangent.height)
+        found = [reach.derivative(values, sense) for reach in self._reaches]
+        notes = [derivative for derivative in found if isinstance(derivative, NotDifferentiable)]
+        ends = [derivative for derivative in found if isinstance(derivative, ReachDerivative)]
+        return notes[0] if notes else max(ends, key=lambda derivative: sense * derivative.height)
 
 
-def _end(tangent: HeightTangent | Kink, step: Array) -> float | None:
-    return None if isinstance(tangent, Kink) else tangent.height + float(tangent.slope @ step)
+def _end(derivative: ReachDerivative | NotDifferentiable, step: Array) -> float | None:
+    return (
+        None
+        if isinstance(derivative, NotDifferentiable)
+        else derivative.height + float(derivative.slope @ step)
+    )
+
+
+def _moved(
+    height: HeightSolution, derivative: PostureDerivative | NotDifferentiable, step: Array
+) -> HeightSolution:
+    if isinstance(derivative, NotDifferentiable):
+        return _without(height)
+    instant = derivative.moved(step)
+    return replace(height, postures=instant.postures, disturbed=instant.disturbed)
 
 
 def _without(height: HeightSolution) -> HeightSolution:
@@ -189,7 +198,7 @@ def _slope(values: Sequence[float], step: float) -> float:
     return (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step)
 
 
-def _bent(values: Sequence[float]) -> bool:
-    """Whether second differences grow with the step, as at a kink, and not with its square."""
+def _not_smooth(values: Sequence[float]) -> bool:
+    """Whether second differences grow with the step, as without a derivative, and not with its square."""
     near, far = (abs(values[2 - k] - 2.0 * values[2] + values[2 + k]) for k in (1, 2))
     return near > 1e-9 * max(1.0, abs(values[2])) and far < 3.0 * near

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from fnmatch import fnmatchcase
 
 from evodesign.errors import InputError, nearest_name
+from evodesign.mechanics.scene import Agent
 from evodesign.problem.file import ProblemFile, TorqueLimits
 from evodesign.records import ProblemSource, Sense
-from evodesign.statics.scene import Agent
 
 __all__ = ["refuse_unlimited", "torque_limits"]
 

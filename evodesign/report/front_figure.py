@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
-from evodesign.report.thinning import thinned
+from evodesign.report.subsample import subsample
 
 __all__ = ["front_html"]
 
@@ -39,7 +39,7 @@ def front_html(header: RunHeader, evaluations: Sequence[Evaluation]) -> str:
     objectives = sorted(header.objectives, key=lambda objective: -_spread(objective, best))
     numbers = {evaluation.number for evaluation in best}
     others = [e for e in evaluations if e.feasible and e.number not in numbers]
-    shown = thinned(others, MOST_POINTS)
+    shown = subsample(others, MOST_POINTS)
     note = "" if len(shown) == len(others) else f" ({len(shown)} of {len(others)} shown)"
     figure = go.Figure()
     figure.add_trace(_points(objectives, shown, f"dominated{note}", on_front=False))

@@ -14,14 +14,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from evodesign.analysis.paper_claims import Strain, Strains
+from evodesign.analysis.paper_claims import TorqueNorms, TorqueNormsByHeight
 from evodesign.errors import InputError
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import HeightDetail
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.figures.torque_boxes import torque_boxes
-from evodesign.report.stage import Cast, stage_of
-from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.report.scene_models import SceneModels, placed_scene
 from evodesign.tree.urdf_write import urdf_text
 
 __all__ = ["ReproducedRobot", "write_reproduction"]
@@ -34,20 +34,20 @@ class ReproducedRobot:
     Args:
         name: short, of letters and underscores; it names files and figures.
         title: of its figure of postures.
-        cast: the robot, the person and the load.
+        models: the robot, the person and the load.
         heights: postures at the heights that were solved.
     """
 
     name: str
     title: str
-    cast: Cast
+    models: SceneModels
     heights: tuple[HeightDetail, ...]
 
     @property
-    def strains(self) -> Strains:
+    def torque_norms(self) -> TorqueNormsByHeight:
         """Torque norms of both agents by height."""
         return {
-            height.height_m: Strain(
+            height.height_m: TorqueNorms(
                 robot=math.hypot(*height.agents[ROBOT].torques_n_m.values()),
                 human=math.hypot(*height.agents[HUMAN].torques_n_m.values()),
             )
@@ -79,7 +79,7 @@ def write_reproduction(
         figure = torque_boxes(series, f"joint torques of {whose}")
         written += write_figure(figure, directory, f"{agent}_torques")
     for robot in (*compared, *others):
-        stages = [stage_of(robot.cast, height) for height in robot.heights]
+        stages = [placed_scene(robot.models, height) for height in robot.heights]
         written += write_figure(posture_figure(stages, robot.title), directory, f"postures_{robot.name}")
         written.append(_urdf(directory, robot))
     return tuple(written)
@@ -88,7 +88,7 @@ def write_reproduction(
 def _urdf(directory: Path, robot: ReproducedRobot) -> Path:
     path = directory / f"{robot.name}.urdf"
     try:
-        path.write_text(urdf_text(robot.cast.trees[ROBOT]), encoding="utf-8")
+        path.write_text(urdf_text(robot.models.trees[ROBOT]), encoding="utf-8")
     except OSError as error:
         wanted = "a directory that can be written"
         raise InputError(str(directory), "", wanted, f"{error.strerror}") from error

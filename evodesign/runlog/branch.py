@@ -11,7 +11,7 @@ from pathlib import Path
 import msgspec
 
 from evodesign.errors import InputError
-from evodesign.records import SearchSettings, Stage
+from evodesign.records import SearchSettings, SearchStage
 from evodesign.runlog.directory import locked, make_directory
 from evodesign.runlog.run import Run
 from evodesign.runlog.writer import RunWriter
@@ -86,7 +86,7 @@ def _with_past(before: SearchSettings, generations: int, after: SearchSettings) 
             break
     if left > 0:
         stages.append(
-            Stage(
+            SearchStage(
                 algorithm=before.algorithm, population=before.population, seed=before.seed, generations=left
             )
         )

@@ -9,7 +9,7 @@ worst. Improvements are compared within one instance and batch only, as ranks, f
 ever made up for an infeasible design.
 
 There are as many instances as leave each pycma's default population, but two at least, since one alone finds
-one point. They begin at those outcomes that together conquer most, chosen one after another. One that pycma
+one point. They begin at those outcomes that together dominate most, chosen one after another. One that pycma
 declares finished (converged, ill-conditioned, flat) leaves its incumbent behind for the others to reckon with
 and starts again from the next quasi-random point.
 
@@ -35,11 +35,11 @@ from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.discrete import least_deviations
+from evodesign.search.hypervolume_improvement import HypervolumeImprovement
 from evodesign.search.quasi_random import SobolStream
 from evodesign.search.ranking import ranks, usable
-from evodesign.search.uncrowded import UncrowdedGain
 
-__all__ = ["Instances", "check_settings", "default_population", "instance_count", "uncrowded_cost"]
+__all__ = ["Instances", "check_settings", "default_population", "improvement_cost", "instance_count"]
 
 MARGIN = 0.1
 """Share of the range by which the reference point is worse than the worst outcome, so that the ends count."""
@@ -127,7 +127,7 @@ class Instances:
             return lambda objectives: objectives[0]
         held = [*self._incumbents[:index], *self._incumbents[index + 1 :], *self._left_behind]
         others = np.array([values for values in held if values is not None])
-        return uncrowded_cost(others.reshape(-1, self._settings.objectives), self._extent)
+        return improvement_cost(others.reshape(-1, self._settings.objectives), self._extent)
 
 
 def default_population(dimension: int) -> int:
@@ -135,7 +135,7 @@ def default_population(dimension: int) -> int:
     return int(4.0 + 3.0 * math.log(dimension))
 
 
-def uncrowded_cost(others: Array, extent: Array) -> Cost:
+def improvement_cost(others: Array, extent: Array) -> Cost:
     """Minus the uncrowded hypervolume improvement, in units of the extent.
 
     Args:
@@ -147,7 +147,7 @@ def uncrowded_cost(others: Array, extent: Array) -> Cost:
         return lambda objectives: 0.0
     best, worst = extent
     scale = np.where(worst > best, worst - best, 1.0)
-    gain = UncrowdedGain((others - best) / scale, np.full(len(best), 1.0 + MARGIN))
+    gain = HypervolumeImprovement((others - best) / scale, np.full(len(best), 1.0 + MARGIN))
     return lambda objectives: -gain((np.array(objectives) - best) / scale)
 
 

@@ -8,7 +8,7 @@ with linear models of margins that must not become negative:
 B gathers curvature by Powell's damped BFGS update. The reserve, a share of what the margin can change within
 the radius, leaves room for curvature; what of it cannot be had costs. The point that the model proposes is
 looked at as it is, and taken only if it is better: where it is worse, or does not exist, the radius shrinks.
-So neither kinks nor forbidden regions lead astray, and no point is ever worse than the start.
+So points without a derivative and forbidden regions do no harm, and no point is ever worse than the start.
 
 Source: Nocedal and Wright, Numerical Optimization, ch. 4 and 18 (Procedure 18.2: damped BFGS).
 """
@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-__all__ = ["Descent", "Landscape", "Point", "Slopes", "descend"]
+__all__ = ["Descent", "DescentProblem", "Iterate", "Slopes", "descend"]
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ LEAST_GAIN = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class Iterate:
     """A place that exists: all its margins are zero or more.
 
     Args:
@@ -69,14 +69,14 @@ class Slopes:
     margins: Array
 
 
-class Landscape(Protocol):
+class DescentProblem(Protocol):
     """What is descended."""
 
-    def look(self, position: Array) -> Point | None:
+    def look(self, position: Array) -> Iterate | None:
         """The point at a position, or None where there is none."""
 
-    def slopes(self, point: Point) -> Slopes | None:
-        """The derivatives at a point that was looked at, or None at a kink."""
+    def slopes(self, point: Iterate) -> Slopes | None:
+        """The derivatives at a point that was looked at, or None where they do not exist."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +89,13 @@ class Descent:
         reason: why it ended, in a sentence.
     """
 
-    best: Point
+    best: Iterate
     looks: int
     reason: str
 
 
 def descend(
-    landscape: Landscape, start: Point, budget: int, watch: Callable[[int, Point | None, bool], None]
+    landscape: DescentProblem, start: Iterate, budget: int, watch: Callable[[int, Iterate | None, bool], None]
 ) -> Descent:
     """Go downhill from a point.
 
@@ -132,7 +132,7 @@ def descend(
             best, slopes = found, after
         values.append(best.value)
     if slopes is None:
-        reason = "it stands at a kink"
+        reason = "its derivative does not exist"
     elif radius < SMALLEST_RADIUS or _stalls(values):
         reason = "no step improves it much any more"
     else:
@@ -152,7 +152,7 @@ def _radius(radius: float, length: float, share: float) -> float:
     return min(2.0 * radius, LARGEST_RADIUS) if share > 0.75 and length > 0.8 * radius else radius
 
 
-def _step(point: Point, slopes: Slopes, curvature: Array, radius: float) -> Array:
+def _step(point: Iterate, slopes: Slopes, curvature: Array, radius: float) -> Array:
     """The minimiser of the model; missing reserve is a variable beside the step."""
     count = len(point.position)
     sizes = np.abs(slopes.margins).sum(axis=1)

@@ -12,11 +12,11 @@ from typing import Any, Final
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings, choice_at, middle_of
+from evodesign.search.asynchronous import AsynchronousSearch
 from evodesign.search.base import JOINT_STARTS, Search
-from evodesign.search.branched import Branched
-from evodesign.search.steady import SteadySearch
+from evodesign.search.restarted import Restarted
 
-__all__ = ["SEARCHES", "STEADY_SEARCHES", "make_search", "make_steady_search"]
+__all__ = ["ASYNCHRONOUS_SEARCHES", "SEARCHES", "make_asynchronous_search", "make_search"]
 
 SEARCHES: Final[Mapping[str, str]] = {
     "cma-es": "evodesign.search.cma_es:CmaEs",
@@ -25,10 +25,10 @@ SEARCHES: Final[Mapping[str, str]] = {
     "random": "evodesign.search.quasi_random:QuasiRandom",
 }
 
-STEADY_SEARCHES: Final[Mapping[str, str]] = {
-    "cma-es": "evodesign.search.steady_cma_es:SteadyCmaEs",
-    "nsga2": "evodesign.search.steady_nsga2:SteadyNsga2",
-    "random": "evodesign.search.steady_random:SteadyRandom",
+ASYNCHRONOUS_SEARCHES: Final[Mapping[str, str]] = {
+    "cma-es": "evodesign.search.asynchronous_cma_es:AsynchronousCmaEs",
+    "nsga2": "evodesign.search.asynchronous_nsga2:AsynchronousNsga2",
+    "random": "evodesign.search.asynchronous_random:AsynchronousRandom",
 }
 """The same without generations."""
 
@@ -41,19 +41,19 @@ def make_search(settings: SearchSettings) -> Search:
     """
     _check(settings, SEARCHES)
     if settings.past:
-        return Branched(settings, make_search)
+        return Restarted(settings, make_search)
     made: Search = _class(SEARCHES[settings.algorithm])(settings)
     return made
 
 
-def make_steady_search(settings: SearchSettings) -> SteadySearch:
+def make_asynchronous_search(settings: SearchSettings) -> AsynchronousSearch:
     """The asynchronous search that the settings describe, ready to ask.
 
     Raises:
         InputError: as in `make_search`.
     """
-    _check(settings, STEADY_SEARCHES)
-    made: SteadySearch = _class(STEADY_SEARCHES[settings.algorithm])(settings)
+    _check(settings, ASYNCHRONOUS_SEARCHES)
+    made: AsynchronousSearch = _class(ASYNCHRONOUS_SEARCHES[settings.algorithm])(settings)
     return made
 
 

@@ -1,4 +1,4 @@
-"""A score is not luck: twenty designs at four heights, each against 25 random starts of its own."""
+"""Costs hardly depend on the starting point: twenty designs at four heights against 25 random starts each."""
 
 from __future__ import annotations
 

@@ -12,18 +12,17 @@ import pytest
 from benchmarks.paper_formulation import measure_ours
 from benchmarks.paper_posture import PaperProgram, paper_program
 from benchmarks.projected_graph import agent_matrices
-from evodesign.posture.bearing import TORQUE_UNIT
-from evodesign.posture.preparation import Preparation
-from evodesign.posture.program import RawSolution
-from evodesign.posture.solution import AgentPosture
-from evodesign.posture.stand import COMFORT
+from evodesign.mechanics.coupled import CoupledModel
+from evodesign.mechanics.projected import contact_wrenches, projected_torques
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.nlp.solver import RawSolution
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.terms.base import REGULARISATION, TORQUE_UNIT
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
-from evodesign.statics.coupled import CoupledModel
-from evodesign.statics.projected import contact_wrenches, projected_torques
-from evodesign.statics.scene import HUMAN, ROBOT
-from tests.statics.test_projected import boundless, places_of, postures_of, random_case
+from tests.mechanics.test_projected import boundless, places_of, postures_of, random_case
 
 HEIGHT = 1.0  # [m]
 TORQUE = 1e-4  # [N m]
@@ -49,7 +48,7 @@ def solved(problem: Problem, design: tuple[float, ...]) -> RawSolution:
     for variable in solver.program.variables:
         if variable.name.endswith(".joints"):
             start[variable.name] = (variable.lower + variable.upper) / 4.0
-    raw = solver.solve([*design, HEIGHT], start)
+    raw = solver.solve({"design": design, "height": HEIGHT}, start)
     assert raw.status is Status.SOLVED, raw.reason
     return raw
 
@@ -115,7 +114,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
     program = paper.program
     symbols = [variable.symbol for variable in program.variables]
     rows = [constraint.expression for constraint in program.constraints]
-    function = ca.Function("program", [*symbols, program.parameters], [program.cost, *rows])
+    function = ca.Function("program", [*symbols, program.given], [program.cost, *rows])
     values = [solved.values[variable.name] for variable in program.variables]
     cost, *found = function(*values, [*design, HEIGHT])
     expected = sum(np.sum(solved.values[f"{name}.torques"] ** 2) for name in (ROBOT, HUMAN)) / TORQUE_UNIT**2
@@ -123,7 +122,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
         joints = [agent.tree.joint_by_name[name] for name in agent.joints]
         ranges = [min(joint.upper, math.pi) - max(joint.lower, -math.pi) for joint in joints]
         bent = np.sum((solved.values[f"{agent.name}.joints"] / ranges) ** 2)
-        expected += COMFORT * (bent + np.sum(solved.values[f"{agent.name}.base_angles"] ** 2))
+        expected += REGULARISATION * (bent + np.sum(solved.values[f"{agent.name}.base_angles"] ** 2))
     assert float(cost) == pytest.approx(expected, rel=1e-5)
     names = [constraint.name for constraint in program.constraints]
     assert len(names) == 23
@@ -134,7 +133,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
 
 
 def test_figures_count_what_was_solved(
-    problem: Problem, known: Preparation, design: tuple[float, ...]
+    problem: Problem, known: Precomputed, design: tuple[float, ...]
 ) -> None:
     figures = measure_ours(problem, known, [design], HEIGHT)
     assert (figures.solved, figures.tried) == (1, 1)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 
 
 def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -23,7 +23,7 @@ def problem_file(repository: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def run(problem_file: Path, known: Preparation, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(problem_file: Path, known: Precomputed, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two designs, the unscaled one first."""
     place = tmp_path_factory.mktemp("runs") / "run"
     sizes = ["--evaluations", "2", "--population", "2", "--pool", "serial"]
@@ -42,13 +42,13 @@ def test_polished_design_is_evaluated_as_it_was_reported(run: Path, problem_file
     assert told["file"] == str(run / "polished-0.toml")
     again = evodesign("evaluate", problem_file, "--design", told["file"], "--json")
     assert again.returncode == 0, again.stderr
-    answer = json.loads(again.stdout)
-    assert answer["design"] == told["after"]["parameters"]
-    assert answer["objectives"] == pytest.approx(told["after"]["objectives"], rel=1e-9)
-    assert set(answer["sensitivities"]) == set(answer["objectives"])
-    for found in answer["sensitivities"].values():
-        assert set(found) == {"gradient", "kinks"}
-        assert set(found["gradient"]) == set(answer["design"])
+    evaluation_json = json.loads(again.stdout)
+    assert evaluation_json["design"] == told["after"]["parameters"]
+    assert evaluation_json["objectives"] == pytest.approx(told["after"]["objectives"], rel=1e-9)
+    assert set(evaluation_json["sensitivities"]) == set(evaluation_json["objectives"])
+    for found in evaluation_json["sensitivities"].values():
+        assert set(found) == {"gradient", "notes"}
+        assert set(found["gradient"]) == set(evaluation_json["design"])
 
 
 @pytest.mark.parametrize(

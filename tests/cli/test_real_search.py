@@ -14,7 +14,7 @@ import msgspec
 import pytest
 from mcap.reader import make_reader
 
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.records import Evaluation
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
@@ -46,7 +46,7 @@ def bare(evaluation: Evaluation) -> bytes:
 
 @pytest.fixture(scope="module")
 def whole(
-    repository: Path, known: Preparation, tmp_path_factory: pytest.TempPathFactory
+    repository: Path, known: Precomputed, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, str, str]:
     """An uninterrupted run on two workers, with what it printed."""
     assert known.values, "worked out before, so that no search has to"

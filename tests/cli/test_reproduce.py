@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from evodesign.cli.baseline import start_baseline
-from evodesign.cli.opening import company_of, open_design
+from evodesign.cli.opening import open_design, scene_set_of
 from evodesign.cli.reproducing import reproduce_paper
 from evodesign.cli.reproduction import Effort
 from evodesign.errors import InputError
@@ -94,7 +94,7 @@ def test_a_design_of_a_baseline_is_where_its_start_ended(
         norm = math.hypot(*height.agents["robot"].torques_n_m.values())
         assert norm == pytest.approx(norms[height.height_m], rel=1e-9)
     problem = opened.rebuilt.problem
-    arm = company_of(opened).robot.link_by_name["l_upper_arm"].inertia.mass
+    arm = scene_set_of(opened).robot.link_by_name["l_upper_arm"].inertia.mass
     values = list(opened.evaluation.assessment.design.values())
     tree = problem.space.resized(problem.scene.robot.tree, values)
     assert arm == tree.link_by_name["l_upper_arm"].inertia.mass

@@ -31,7 +31,7 @@ from evodesign.records import (
 )
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
-from tests.report.stages import random_detail
+from tests.report.scenes import random_detail
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
 
 

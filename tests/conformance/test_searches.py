@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.records import SearchSettings, Stage
+from evodesign.records import SearchSettings, SearchStage
 from evodesign.search.base import JOINT_STARTS, Outcome
 from evodesign.search.registry import SEARCHES, make_search
 
@@ -259,7 +259,7 @@ class TestEverySearchOfChoices:
         )
 
     def test_a_branch_goes_on_among_the_choices(self, algorithm):
-        past = (Stage(algorithm="random", population=12, seed=3, generations=2),)
+        past = (SearchStage(algorithm="random", population=12, seed=3, generations=2),)
         search = make_search(discrete(algorithm, past=past))
         asked = [genome for genomes in run(search, 8) for genome in genomes]
         assert {genome[3] for genome in asked} == middles(5)

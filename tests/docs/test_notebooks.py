@@ -11,7 +11,7 @@ from jupyter_client.kernelspec import KernelSpec
 from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 
-from evodesign.posture.preparation import Preparation
+from evodesign.posture.precompute.precomputed import Precomputed
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
 
@@ -26,7 +26,7 @@ class ThisPython(AsyncKernelManager):
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_runs(notebook: Path, known: Preparation, tmp_path: Path) -> None:
+def test_notebook_runs(notebook: Path, known: Precomputed, tmp_path: Path) -> None:
     assert known.values, "worked out before, so that the notebook finds it in the cache"
     book = nbformat.read(notebook, as_version=4)
     client = NotebookClient(

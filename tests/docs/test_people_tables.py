@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.human.population import population, population_table
+from evodesign.human.strength import joint_strengths
+from evodesign.human.strength_tables import strength_tables
+from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import Evaluator, detail_of
-from evodesign.statics.scene import HUMAN
-from evodesign.tree.population import population, population_table
-from evodesign.tree.strength import joint_strengths
-from evodesign.tree.strength_tables import strength_tables
 
 
 @pytest.fixture(scope="module")

@@ -170,7 +170,7 @@ def test_arguments_are_taken_when_a_worker_is_free_and_not_before() -> None:
     with JoblibPool(3) as pool:
         for end in pool.run(process, arguments()):
             given.append(end)  # noqa: PERF402 - one by one is the point
-    assert taken == [0] * 6 + [0, 1, 2, 3, 4, 5], "three at work, three at the door"
+    assert taken == [0] * 6 + [0, 1, 2, 3, 4, 5], "three at work, three prefetched"
 
 
 def test_an_argument_that_takes_too_long_is_ended_and_costs_no_other_its_worker() -> None:

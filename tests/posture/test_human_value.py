@@ -10,15 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
-from evodesign.posture.form import symmetric_forms
-from evodesign.posture.human_value import LARGEST_ERROR, HumanProblem, chebyshev_sum
-from evodesign.posture.preparation import NOTHING_KNOWN, Preparation
-from evodesign.posture.prepare import Piece, Subject, stages, with_piece, work_out
+from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.posture.formulations.human_value import LARGEST_ERROR, HumanProblem, chebyshev_sum
+from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, stages, with_piece
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.prepare import setting_of
+from evodesign.problem.precompute import precompute_setting
 from evodesign.records import Status
-from evodesign.statics.scene import Grasp, Scene
 
 
 @given(st.lists(st.floats(-5.0, 5.0), min_size=2, max_size=9), st.floats(-1.0, 1.0))
@@ -26,7 +26,7 @@ def test_clenshaws_sum_is_numpys(coefficients: list[float], x: float) -> None:
     assert chebyshev_sum(coefficients, x) == pytest.approx(chebyshev.chebval(x, coefficients), abs=1e-9)
 
 
-def test_value_is_what_solving_the_person_gives(problem: Problem, known: Preparation) -> None:
+def test_value_is_what_solving_the_person_gives(problem: Problem, known: Precomputed) -> None:
     """At pushes that are no nodes, against a solve from the nearest node."""
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     assert [value.height for value in known.values] == list(problem.heights)
@@ -38,7 +38,7 @@ def test_value_is_what_solving_the_person_gives(problem: Problem, known: Prepara
             assert found.cost == pytest.approx(value.cost(push), abs=max(LARGEST_ERROR, 2.0 * value.error))
 
 
-def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, known: Preparation) -> None:
+def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, known: Precomputed) -> None:
     """Mean below 0.5 % above the joint program from the same number of starts, and often better."""
     split, joint = Evaluator(problem, known), Evaluator(problem)
     rng = np.random.default_rng(5)
@@ -54,7 +54,7 @@ def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, 
     assert float(np.mean(excess)) < 0.005
 
 
-def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, known: Preparation) -> None:
+def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, known: Precomputed) -> None:
     fresh = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options).value(1.0)
     kept = next(value for value in known.values if value.height == 1.0)
     assert fresh is not None
@@ -64,7 +64,7 @@ def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, kn
         assert all(np.array_equal(one[1][name], other[1][name]) for name in one[1])
 
 
-def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem, known: Preparation) -> None:
+def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem, known: Precomputed) -> None:
     value = next(value for value in known.values if value.height == 1.0)
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     (nearest, start), *others = sorted(value.starts, key=lambda node: abs(node[0]))
@@ -77,9 +77,11 @@ def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem
 
 
 def pieces(problem: Problem, scene: Scene) -> list[Subject]:
-    setting = replace(setting_of(problem), scenes=(scene,))
+    setting = replace(precompute_setting(problem), scenes=(scene,))
     return [
-        piece.subject for stage in stages(setting, (1.0,), seeds=False, stretches=False) for piece in stage
+        piece.subject
+        for stage in stages(setting, (1.0,), portfolios=False, person_reaches=False)
+        for piece in stage
     ]
 
 
@@ -91,9 +93,9 @@ def test_rigid_grasps_and_no_push_have_no_value(problem: Problem) -> None:
 
 
 def test_height_out_of_the_persons_reach_has_no_value(problem: Problem) -> None:
-    setting, piece = setting_of(problem), Piece(Subject.PERSON, 2.6)
-    content = work_out(setting, piece, NOTHING_KNOWN)
-    assert with_piece(NOTHING_KNOWN, piece, content) == NOTHING_KNOWN
-    assert with_piece(NOTHING_KNOWN, piece, b'{"height_m":') is None, (
+    setting, piece = precompute_setting(problem), Piece(Subject.PERSON, 2.6)
+    content = compute_piece(setting, piece, NOTHING_PRECOMPUTED)
+    assert with_piece(NOTHING_PRECOMPUTED, piece, content) == NOTHING_PRECOMPUTED
+    assert with_piece(NOTHING_PRECOMPUTED, piece, b'{"height_m":') is None, (
         "a content that cannot be read is missing"
     )

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.posture import PostureProblem, Symmetry
-from evodesign.posture.solution import HeightSolution
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 
 BOX = (0.5, 0.5, 0.025)
 
@@ -22,7 +23,7 @@ BOX = (0.5, 0.5, 0.025)
 def solve(problem: Problem, payload: Payload, height: float = 1.0) -> HeightSolution:
     scene = replace(problem.scene, payload=payload)
     values = problem.space.unscaled(scene.robot.tree)
-    posture = PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
+    posture = PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
     tree = problem.space.resized(scene.robot.tree, values)
     checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
     return posture.solve(values, height, checker)

@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.posture.prepare import Subject, key_of, stages
-from evodesign.problem.answer import answer
+from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.posture.precompute.pieces import Subject, key_of, stages
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.evaluate import Evaluator, detail_of, outcome_of
-from evodesign.problem.objectives import value_of
-from evodesign.problem.prepare import setting_of
+from evodesign.problem.evaluate import Evaluator, detail_of, height_outcome
+from evodesign.problem.evaluation_json import evaluation_json
+from evodesign.problem.objectives import objective_value
+from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import HeightDetail, HeightOutcome, ProblemSource
-from evodesign.statics.disturbance import Disturbance, OverCases, PushedAt
-from evodesign.statics.scene import HUMAN, ROBOT
 
 TABLES = """
 [[disturbance]]
@@ -121,31 +121,33 @@ def test_disturbed_cases_count_as_cases(result: DesignResult) -> None:
     cases = (height.postures, *height.disturbed.values())
     norms = {agent: [postures[agent].torque_norm for postures in cases] for agent in (ROBOT, HUMAN)}
     assert len(norms[ROBOT]) == 3
-    assert value_of("robot_torque", result) == pytest.approx(sum(norms[ROBOT]) / 3.0)
-    assert value_of("worst_human_torque", result) == max(norms[HUMAN])
-    assert value_of("q50_robot_torque", result) == pytest.approx(sorted(norms[ROBOT])[1])
-    quiet = norms[ROBOT][0] ** 2 + norms[HUMAN][0] ** 2
-    assert value_of("paper_cost", result) == pytest.approx(quiet / 100.0), "the paper knows no disturbances"
+    assert objective_value("robot_torque", result) == pytest.approx(sum(norms[ROBOT]) / 3.0)
+    assert objective_value("worst_human_torque", result) == max(norms[HUMAN])
+    assert objective_value("q50_robot_torque", result) == pytest.approx(sorted(norms[ROBOT])[1])
+    undisturbed = norms[ROBOT][0] ** 2 + norms[HUMAN][0] ** 2
+    assert objective_value("paper_cost", result) == pytest.approx(undisturbed / 100.0), (
+        "the paper knows no disturbances"
+    )
 
 
-def test_records_hold_what_is_borne_and_nothing_where_nothing_is(result: DesignResult) -> None:
+def test_records_hold_the_load_cases_and_nothing_where_there_are_none(result: DesignResult) -> None:
     (height,) = result.heights
     scene = result.scenes[0]
-    outcome, detail = outcome_of(height, scene), detail_of(height, scene)
+    outcome, detail = height_outcome(height, scene), detail_of(height, scene)
     posture = height.disturbed["heavier"][ROBOT]
     assert outcome.disturbed["heavier"][ROBOT] == posture.torque_norm
     assert detail.disturbed["heavier"][ROBOT].torques_n_m == posture.torques
     for record, kind in ((outcome, HeightOutcome), (detail, HeightDetail)):
         assert msgspec.json.decode(msgspec.json.encode(record), type=kind) == record
-    quiet = replace(height, disturbed={})
-    for record in (outcome_of(quiet, scene), detail_of(quiet, scene)):
+    undisturbed = replace(height, disturbed={})
+    for record in (height_outcome(undisturbed, scene), detail_of(undisturbed, scene)):
         assert b"disturbed" not in msgspec.json.encode(record)
 
 
-def test_the_answer_shows_torques_and_wrenches_of_every_case(
+def test_the_result_shows_torques_and_wrenches_of_every_case(
     shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
-    (told,) = answer(shaken, values, result, exact.assessment(values, result), {})["heights"]
+    (told,) = evaluation_json(shaken, values, result, exact.assessment(values, result), {})["heights"]
     (height,) = result.heights
     assert list(told["disturbed"]) == ["heavier", "disturbance_2"]
     shown = told["disturbed"]["disturbance_2"]
@@ -170,8 +172,8 @@ def test_gradients_are_differences_of_disturbed_evaluations(
             ends.append(exact.solve(moved))
         for name in wanted:
             gradient = found[name].gradient
-            assert gradient is not None, found[name].kinks
-            above, below = (value_of(name, end) for end in ends)
+            assert gradient is not None, found[name].notes
+            above, below = (objective_value(name, end) for end in ends)
             assert above is not None
             assert below is not None
             slope = (above - below) / (2.0 * step)
@@ -183,15 +185,15 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
 ) -> None:
     subjects = {
         piece.subject
-        for stage in stages(setting_of(shaken), (1.0,), seeds=True, stretches=False)
+        for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False)
         for piece in stage
     }
     assert Subject.PERSON not in subjects
-    quiet = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
-    for stage in stages(setting_of(shaken), (1.0,), seeds=True, stretches=False):
+    undisturbed = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
+    for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False):
         for piece in stage:
-            same = key_of(setting_of(shaken), piece) == key_of(setting_of(quiet), piece)
-            assert same is (piece.subject is not Subject.POSTURE), "quiet seeds of reach do"
+            same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
+            assert same is (piece.subject is not Subject.POSTURE), "start portfolios of undisturbed reach do"
 
 
 def test_check_names_disturbances(

@@ -8,15 +8,15 @@ from dataclasses import replace
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.body import human_tree
+from evodesign.human.strength import joint_strengths
+from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import value_of
+from evodesign.problem.objectives import objective_value
 from evodesign.problem.result import DesignResult
 from evodesign.records import ProblemSource
-from evodesign.statics.scene import HUMAN
-from evodesign.tree.anthropometry import Person, Sex
-from evodesign.tree.human import human_tree
-from evodesign.tree.strength import joint_strengths
 from evodesign.tree.urdf_write import urdf_text
 
 PERSON = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
@@ -64,9 +64,9 @@ def test_a_population_of_one_is_that_person_alone(problem: Problem) -> None:
 
 
 def test_a_population_stands_beside_single_people_under_its_name(problem: Problem) -> None:
-    lists = f'[[human]]\nname = "porter"\n{PERSON}\n\n[[human]]\nname = "crew"\n{population("[25]")}'
+    lists = f'[[human]]\nname = "porter"\n{PERSON}\n\n[[human]]\nname = "team"\n{population("[25]")}'
     built = build_problem(changed(problem.source, (f"[human]\n{PERSON}", lists)))
-    assert [scene.human.label for scene in built.scenes] == ["porter", "crew female P25", "crew male P25"]
+    assert [scene.human.label for scene in built.scenes] == ["porter", "team female P25", "team male P25"]
 
 
 def test_a_population_that_is_also_a_person_is_refused(problem: Problem) -> None:
@@ -123,9 +123,9 @@ def efforts(result: DesignResult) -> list[float]:
 def test_effort_is_the_largest_share_of_a_strength_meant_over_the_cases(result: DesignResult) -> None:
     expected = efforts(result)
     assert 0.0 < min(expected) < max(expected) < 1.0
-    assert value_of("human_effort", result) == pytest.approx(sum(expected) / 3.0)
-    assert value_of("worst_human_effort", result) == pytest.approx(max(expected))
-    assert value_of("q50_human_effort", result) == pytest.approx(sorted(expected)[1])
+    assert objective_value("human_effort", result) == pytest.approx(sum(expected) / 3.0)
+    assert objective_value("worst_human_effort", result) == pytest.approx(max(expected))
+    assert objective_value("q50_human_effort", result) == pytest.approx(sorted(expected)[1])
 
 
 def test_a_person_twice_as_strong_has_half_the_effort(result: DesignResult) -> None:
@@ -138,5 +138,5 @@ def test_a_person_twice_as_strong_has_half_the_effort(result: DesignResult) -> N
         for name, both in result.scenes[0].human.strengths.items()
     }
     scene = replace(result.scenes[0], human=replace(result.scenes[0].human, strengths=strong))
-    once, twice = (value_of("human_effort", of) for of in (result, replace(result, scenes=(scene,))))
+    once, twice = (objective_value("human_effort", of) for of in (result, replace(result, scenes=(scene,))))
     assert twice == pytest.approx(once / 2.0)

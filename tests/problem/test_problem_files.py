@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.posture.posture import Symmetry
+from evodesign.mechanics.scene import Grasp
+from evodesign.posture.postures import Symmetry
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
-from evodesign.statics.scene import Grasp
 
 FILES = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
 

@@ -13,15 +13,15 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.posture.kkt import Kink
-from evodesign.posture.preparation import Preparation
+from evodesign.mechanics.balance import center_of_mass
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import OBJECTIVES
-from evodesign.problem.sensitivities import DesignTangent, Sensitivities, Sensitivity
+from evodesign.problem.sensitivities import DesignDerivative, ObjectiveSensitivity, Sensitivities
 from evodesign.records import Objective, Sense
-from evodesign.statics.balance import center_of_mass
-from evodesign.statics.scene import HUMAN, ROBOT
 from evodesign.tree.kinematics import Pose, forward
 
 
@@ -49,7 +49,7 @@ def wide(problem: Problem) -> Problem:
 
 
 @pytest.fixture(scope="module")
-def tangent(wide: Problem, known: Preparation, evaluator: Evaluator) -> DesignTangent:
+def derivative(wide: Problem, known: Precomputed, evaluator: Evaluator) -> DesignDerivative:
     """Of a design whose agents do not lean on each other as far as they may, so that the person moves too."""
     values = wide.space.unscaled(wide.scene.robot.tree)
     found = replace(evaluator.solve(values), scenes=wide.scenes)
@@ -58,12 +58,12 @@ def tangent(wide: Problem, known: Preparation, evaluator: Evaluator) -> DesignTa
 
 
 @pytest.fixture(scope="module")
-def found(tangent: DesignTangent) -> Mapping[str, Sensitivity]:
-    return tangent.sensitivities()
+def found(derivative: DesignDerivative) -> Mapping[str, ObjectiveSensitivity]:
+    return derivative.sensitivities()
 
 
 def test_gradients_are_differences_of_what_a_search_sees(
-    benchmark_module: ModuleType, problem: Problem, known: Preparation
+    benchmark_module: ModuleType, problem: Problem, known: Precomputed
 ) -> None:
     """From the seeds, along one direction of each design; the benchmark takes all directions."""
     comparer = benchmark_module.Comparer(problem, known)
@@ -79,19 +79,21 @@ def test_gradients_are_differences_of_what_a_search_sees(
     assert compared >= 3
 
 
-def test_every_objective_has_a_gradient(found: Mapping[str, Sensitivity], wide: Problem) -> None:
+def test_every_objective_has_a_gradient(found: Mapping[str, ObjectiveSensitivity], wide: Problem) -> None:
     assert set(found) == set(OBJECTIVES)
     for sensitivity in found.values():
         assert sensitivity.gradient is not None
         assert list(sensitivity.gradient) == [parameter.name for parameter in wide.space.parameters]
 
 
-def test_torque_gradients_follow_the_norm(tangent: DesignTangent, found: Mapping[str, Sensitivity]) -> None:
+def test_torque_gradients_follow_the_norm(
+    derivative: DesignDerivative, found: Mapping[str, ObjectiveSensitivity]
+) -> None:
     """d |tau| = tau . d tau / |tau|, paired joints counted twice."""
     for agent, name in ((ROBOT, "robot_torque"), (HUMAN, "human_torque")):
         slopes = []
-        for part in tangent.heights:
-            assert not isinstance(part, Kink)
+        for part in derivative.heights:
+            assert not isinstance(part, NotDifferentiable)
             form = next(form for form in part.forms if form.agent.name == agent)
             weighted = np.array(form.counts) * part.values[f"{agent}.torques"]
             norm = np.sqrt(weighted @ part.values[f"{agent}.torques"])
@@ -102,7 +104,7 @@ def test_torque_gradients_follow_the_norm(tangent: DesignTangent, found: Mapping
 
 
 def test_closed_forms_of_the_design_have_casadis_derivatives(
-    tangent: DesignTangent, found: Mapping[str, Sensitivity], wide: Problem
+    derivative: DesignDerivative, found: Mapping[str, ObjectiveSensitivity], wide: Problem
 ) -> None:
     design = ca.SX.sym("design", len(wide.space.parameters))
     tree = wide.space.resized(wide.scene.robot.tree, ca.vertsplit(design))
@@ -110,14 +112,14 @@ def test_closed_forms_of_the_design_have_casadis_derivatives(
     mass, center = center_of_mass(tree, poses)
     above = center[2] - poses[wide.scene.robot.soles["left"]].position[2]
     both = ca.Function("both", [design], [ca.jacobian(mass, design), ca.jacobian(above, design)])
-    for name, exact in zip(("mass", "com_height"), both(tangent.values), strict=True):
+    for name, exact in zip(("mass", "com_height"), both(derivative.values), strict=True):
         expected = np.asarray(exact).ravel()
         gradient = np.array(list((found[name].gradient or {}).values()))
         assert gradient == pytest.approx(expected, rel=1e-8, abs=1e-9 * np.abs(expected).max())
 
 
 def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
-    tangent: DesignTangent, wide: Problem, known: Preparation
+    derivative: DesignDerivative, wide: Problem, known: Precomputed
 ) -> None:
     """Robot and person are solved in turn; their summed cost is differenced along one direction."""
     tight = Evaluator(replace(wide, options=replace(wide.options, tolerance=1e-12)), known)
@@ -125,16 +127,16 @@ def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
     along = ranges * np.random.default_rng(2).standard_normal(len(ranges))
     costs = []
     for share in (-1e-4, 1e-4):
-        result = tight.solve((np.array(tangent.values) + share * along).tolist())
+        result = tight.solve((np.array(derivative.values) + share * along).tolist())
         costs.append([min(attempt.cost for attempt in height.attempts) for height in result.heights])
-    for part, before, after in zip(tangent.heights, *costs, strict=True):
-        assert not isinstance(part, Kink)
+    for part, before, after in zip(derivative.heights, *costs, strict=True):
+        assert not isinstance(part, NotDifferentiable)
         assert (after - before) / 2e-4 == pytest.approx(part.cost_slope @ along, rel=1e-5)
 
 
-def test_kinks_name_the_start_that_won(found: Mapping[str, Sensitivity]) -> None:
+def test_notes_name_the_start_that_won(found: Mapping[str, ObjectiveSensitivity]) -> None:
     for name in ("robot_torque", "worst_human_torque"):
         for height in ("0.8", "1", "1.2"):
-            assert any(kink.startswith(f"at {height} m: split: seed ") for kink in found[name].kinks)
-    assert any(kink.startswith("highest load: start ") for kink in found["reach_height"].kinks)
-    assert found["mass"].kinks == ()
+            assert any(kink.startswith(f"at {height} m: decoupled: start ") for kink in found[name].notes)
+    assert any(kink.startswith("highest load: start ") for kink in found["reach_height"].notes)
+    assert found["mass"].notes == ()

@@ -24,17 +24,17 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Sphere
+from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, Status
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import HUMAN, SIDES
-from evodesign.tree.human import DEFAULT_JOINTS, Person, Sex, human_tree
 from evodesign.tree.model import Look, Tree
 from evodesign.tree.urdf_read import MassRule, read_urdf
-from tests.tree.test_human import placements
+from tests.human.test_body import placements
 from tests.tree.test_icub_robot import reference_text
 
 PUBLISHED = "human_subject04_48dof.urdf"
@@ -164,7 +164,7 @@ def totals(tree: Tree) -> dict[str, float]:
 def documented(repository: Path) -> dict[str, list[str]]:
     """Rows of the Markdown tables in the section, by their first cell."""
     text = (repository / "docs" / "person.md").read_text(encoding="utf-8")
-    section = text.split("## Beside the published body\n")[1].split("\n## ")[0]
+    section = text.split("## Comparison with the published body\n")[1].split("\n## ")[0]
     rows = [line.strip("|").split("|") for line in section.splitlines() if line.startswith("|")]
     cells = [[cell.strip() for cell in row] for row in rows]
     return {row[0]: row[1:] for row in cells if row[0] not in ("segment", "whole body", "---")}
@@ -348,7 +348,7 @@ def test_its_posture_is_found_within_the_limits_as_they_are_written(users_proble
 
 def test_every_number_of_the_anthropometric_data_has_a_source() -> None:
     """Read as it lies on the disk, so that a table added later is not forgotten."""
-    data = resources.files("evodesign.tree").joinpath("data/anthropometry.toml").read_text(encoding="utf-8")
+    data = resources.files("evodesign.human").joinpath("data/anthropometry.toml").read_text(encoding="utf-8")
     without = [path for path, sourced in numbers(tomllib.loads(data), "", sourced=False) if not sourced]
     assert without == []
 

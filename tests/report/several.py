@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from evodesign.cli.header import header_of
+from evodesign.human.anthropometry import Person, Sex
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import (
     Assessment,
@@ -20,8 +21,7 @@ from evodesign.records import (
 )
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.tree.anthropometry import Person, Sex
-from tests.report.stages import random_detail, random_values
+from tests.report.scenes import random_detail, random_values
 
 PEOPLE = {"short <b>": Person(1.6, 58.0, Sex.FEMALE), "tall": Person(1.9, 90.0, Sex.MALE)}
 LOADS = {"5 kg": 5.0, "[crate]": 15.0}

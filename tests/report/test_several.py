@@ -23,19 +23,19 @@ from evodesign.analysis.quantities import quantities
 from evodesign.cli.exporting import export_run_design
 from evodesign.cli.output import figure
 from evodesign.cli.showing import show_design
+from evodesign.human.body import human_tree
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import Problem
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.page import gather, page_content
 from evodesign.runlog.run import Run
-from evodesign.statics.scene import HUMAN, ROBOT
-from evodesign.tree.human import human_tree
 from evodesign.tree.urdf_write import urdf_text
 from tests.cli.test_show_and_export import cells
 from tests.report.replay.test_replay import frames
+from tests.report.scenes import random_company
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
-from tests.report.stages import random_company
-from tests.report.test_stage import posture_of
+from tests.report.test_scene_models import posture_of
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.
         assert expected in rows
 
 
-def test_card_names_the_case_in_which_a_joint_or_contact_bears_most(
+def test_card_names_the_case_of_largest_torque_and_contact_force(
     run: Run, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show_design(run.directory, 1, jobs=1, json=False, plot=None)
@@ -143,7 +143,7 @@ def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
 def test_recording_shows_each_case_with_its_own_person_and_load(
     folder: Path, run: Run, several: Problem
 ) -> None:
-    """Link frames are held against pinocchio with persons that are generated anew."""
+    """Link frames are compared with pinocchio with persons that are generated anew."""
     readme = (folder / "README.md").read_text()
     seen = {}
     with (folder / "replay.mcap").open("rb") as stream:
@@ -160,10 +160,10 @@ def test_recording_shows_each_case_with_its_own_person_and_load(
         scene = next(s for s in several.scenes if (s.human.label, s.payload.label) == (human, payload))
         tree = human_tree(PEOPLE[human])
         posture = posture_of(run.details[1].heights[number].agents[HUMAN])
-        instant = AgentModel.of(scene.human, tree).at(posture)
+        state = AgentModel.of(scene.human, tree).at(posture)
         world_from = frames(seen["/tf", time])
         for link in ("LeftPalm", "RightPalm", "Head", "LeftSole"):
-            _, origin = instant.pose(link)
+            _, origin = state.pose(link)
             expected = np.diag([-1.0, -1.0, 1.0]) @ origin
             assert np.allclose(world_from[f"human/{link}"][:3, 3], expected, rtol=0.0, atol=1e-9)
         (load,) = seen["/scene/load", time].entities
@@ -206,8 +206,8 @@ def test_page_keeps_fewer_designs_of_many_pairs(
 
 
 def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(run: Run, several: Problem) -> None:
-    company = random_company(several, 1)
-    stages = [company.stage_of(run.details[1].heights[number]) for number in (0, 1, 3)]
+    scene_set = random_company(several, 1)
+    stages = [scene_set.placed_scene(run.details[1].heights[number]) for number in (0, 1, 3)]
     names = ["{}, {}\nload at {:g} m".format(*CASES[number]) if number != 2 else "" for number in range(4)]
     assert [axes.get_title() for axes in posture_figure(stages, "all but the third").axes] == names
 

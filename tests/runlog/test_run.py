@@ -123,7 +123,7 @@ def test_a_run_is_locked_against_a_second_writer_until_it_is_released(tmp_path: 
 
 def test_reading_a_run_does_not_import_casadi() -> None:
     code = (
-        "import sys, evodesign.runlog.run, evodesign.runlog.writer, evodesign.runlog.memory;"
+        "import sys, evodesign.runlog.run, evodesign.runlog.writer, evodesign.runlog.session_log;"
         "sys.exit(any(name.split('.')[0] in ('casadi', 'pinocchio', 'pymoo') for name in sys.modules))"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

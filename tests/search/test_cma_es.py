@@ -11,7 +11,7 @@ from evodesign.errors import InputError
 from evodesign.records import SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.cma_es import CmaEs
-from evodesign.search.cma_instances import MARGIN, default_population, uncrowded_cost
+from evodesign.search.cma_instances import MARGIN, default_population, improvement_cost
 
 FAILED = Outcome(None, None)
 
@@ -126,14 +126,14 @@ def two_bowls(x):
 
 
 def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
-    """The four incumbents conquer as much as four points of the line can, found by another optimiser."""
+    """The four incumbents dominate as much as four points of the line can, found by another optimiser."""
     cma_es = search(objectives=2, dimension=4, population=32)
     for _ in range(60):
         cma_es.tell([Outcome(two_bowls(np.array(genome)), 0.0) for genome in cma_es.ask()])
     best, worst = cma_es._instances._extent
     reference = worst + MARGIN * (worst - best)
 
-    def conquered_by(places):
+    def dominated_by(places):
         line = sorted(two_bowls(np.full(4, place)) for place in places)
         heights = [reference[1], *(values[1] for values in line)]
         return sum(
@@ -141,13 +141,13 @@ def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
             for (left, below), above in zip(line, heights, strict=False)
         )
 
-    most = -minimize(lambda places: -conquered_by(places), [0.3, 0.45, 0.55, 0.7], method="Nelder-Mead").fun
+    most = -minimize(lambda places: -dominated_by(places), [0.3, 0.45, 0.55, 0.7], method="Nelder-Mead").fun
     found = moocore.hypervolume(np.array(cma_es._instances._incumbents), ref=reference)
     assert len(cma_es._instances._incumbents) == 4
     assert 0.995 * most < found < 1.0001 * most
 
 
-def test_instances_begin_where_they_conquer_most_together():
+def test_instances_begin_where_they_dominate_most_together():
     """Of outcomes crowded at (1, 1) one is taken, then the ends; a violated one when none is left."""
     told = [Outcome((1.0 + 0.001 * i, 1.0 + 0.001 * i), 0.0) for i in range(29)]
     told += [Outcome((0.0, 3.0), 0.0), Outcome((3.0, 0.0), 0.0), Outcome(None, 0.1)]
@@ -210,13 +210,13 @@ def test_default_population_is_that_of_the_tutorial(dimension, population):
 
 def test_the_cost_is_the_gain_in_units_of_the_range():
     """Extent 4 and 10: others at (0.25, 0.5), reference 1.1; (0.5, 0.2) adds (1.1 - 0.5) (0.5 - 0.2)."""
-    cost = uncrowded_cost(np.array([[2.0, 15.0]]), np.array([[1.0, 10.0], [5.0, 20.0]]))
+    cost = improvement_cost(np.array([[2.0, 15.0]]), np.array([[1.0, 10.0], [5.0, 20.0]]))
     assert cost((3.0, 12.0)) == pytest.approx(-0.18, rel=1e-12)
     assert cost((4.0, 17.0)) == pytest.approx(0.2, rel=1e-12)
 
 
 def test_the_cost_without_a_range_keeps_the_unit():
     """Reference 7 + 1.1 in the first objective, whose values all agree."""
-    cost = uncrowded_cost(np.empty((0, 2)), np.array([[7.0, 0.0], [7.0, 2.0]]))
+    cost = improvement_cost(np.empty((0, 2)), np.array([[7.0, 0.0], [7.0, 2.0]]))
     assert cost((7.5, 1.0)) == pytest.approx(-0.6 * 0.6, rel=1e-12)
-    assert uncrowded_cost(np.empty((0, 2)), np.empty((0, 2)))((7.5, 1.0)) == 0.0
+    assert improvement_cost(np.empty((0, 2)), np.empty((0, 2)))((7.5, 1.0)) == 0.0

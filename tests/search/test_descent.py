@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evodesign.search.descent import Descent, Landscape, Point, Slopes, descend
+from evodesign.search.descent import Descent, DescentProblem, Iterate, Slopes, descend
 
 Array = NDArray[np.float64]
 
@@ -24,19 +24,19 @@ class Bowl:
     looked: list[Array] = field(default_factory=list)
     weights = np.array([1.0, 10.0, 0.1])
 
-    def look(self, position: Array) -> Point | None:
+    def look(self, position: Array) -> Iterate | None:
         self.looked.append(position)
         margins = np.array([1.0 - self.margin @ position]) if len(self.margin) else np.zeros(0)
         if not self.exists(position) or (margins < 0.0).any():
             return None
-        return Point(position, float(self.weights @ (position - self.bottom) ** 2), margins)
+        return Iterate(position, float(self.weights @ (position - self.bottom) ** 2), margins)
 
-    def slopes(self, point: Point) -> Slopes | None:
+    def slopes(self, point: Iterate) -> Slopes | None:
         rows = -self.margin[None, :] if len(self.margin) else np.zeros((0, 3))
         return Slopes(2.0 * self.weights * (point.position - self.bottom), rows)
 
 
-def go(landscape: Landscape, position: list[float], budget: int = 100) -> Descent:
+def go(landscape: DescentProblem, position: list[float], budget: int = 100) -> Descent:
     start = landscape.look(np.array(position))
     assert start is not None
     found = descend(landscape, start, budget, lambda number, point, taken: None)
@@ -74,17 +74,17 @@ def test_region_that_does_not_exist_is_not_entered() -> None:
 
 @dataclass
 class Ridge:
-    """|x - 0.5| + y^2: a kink along x = 0.5, with the slope of one side on it."""
+    """|x - 0.5| + y^2: not differentiable along x = 0.5, where it has the slope of one side."""
 
-    def look(self, position: Array) -> Point | None:
-        return Point(position, float(abs(position[0] - 0.5) + position[1] ** 2), np.zeros(0))
+    def look(self, position: Array) -> Iterate | None:
+        return Iterate(position, float(abs(position[0] - 0.5) + position[1] ** 2), np.zeros(0))
 
-    def slopes(self, point: Point) -> Slopes | None:
+    def slopes(self, point: Iterate) -> Slopes | None:
         sign = 1.0 if point.position[0] > 0.5 else -1.0
         return Slopes(np.array([sign, 2.0 * point.position[1]]), np.zeros((0, 2)))
 
 
-def test_kink_is_approached_without_getting_worse() -> None:
+def test_points_without_a_derivative_are_approached_without_getting_worse() -> None:
     assert go(Ridge(), [0.8, 0.8]).best.value < 0.1
 
 
@@ -92,16 +92,16 @@ def test_kink_is_approached_without_getting_worse() -> None:
 class Fold:
     """A slope that has no derivative to the left of x = 0.4."""
 
-    def look(self, position: Array) -> Point | None:
-        return Point(position, float(position[0]), np.zeros(0))
+    def look(self, position: Array) -> Iterate | None:
+        return Iterate(position, float(position[0]), np.zeros(0))
 
-    def slopes(self, point: Point) -> Slopes | None:
+    def slopes(self, point: Iterate) -> Slopes | None:
         return None if point.position[0] < 0.4 else Slopes(np.ones(1), np.zeros((0, 1)))
 
 
 def test_descent_ends_where_there_is_no_derivative() -> None:
     found = go(Fold(), [0.7])
-    assert found.reason == "it stands at a kink"
+    assert found.reason == "its derivative does not exist"
     assert found.best.position[0] < 0.4
 
 

@@ -14,7 +14,7 @@ from evodesign.search.base import Outcome
 from evodesign.search.discrete import least_deviations, snapped
 from evodesign.search.mixed_operators import MixedCrossover, MixedMutation
 from evodesign.search.quasi_random import SobolStream
-from evodesign.search.registry import make_search, make_steady_search
+from evodesign.search.registry import make_asynchronous_search, make_search
 
 COUNTS = (0, 4, 3, 7)
 
@@ -140,7 +140,7 @@ def genomes_of(algorithm, seed, generations=40):
     return asked
 
 
-def conquered(genomes):
+def dominated(genomes):
     points = np.array([assess(genome).objectives for genome in genomes])
     return float(moocore.hypervolume(points, ref=(2.0, 2.0)))
 
@@ -158,7 +158,7 @@ def test_right_choices_are_found_where_random_sampling_finds_none(algorithm, see
     asked = genomes_of(algorithm, seed)
     best = min(asked, key=lambda genome: math.hypot(*assess(genome).objectives))
     assert [choice_at(each, PARTS) for each in best[6:]] == list(BEST)
-    assert conquered(asked) > 1.5 * conquered(genomes_of("random", seed))
+    assert dominated(asked) > 1.5 * dominated(genomes_of("random", seed))
 
 
 def stuck(monkeypatch):
@@ -193,6 +193,6 @@ def test_choices_go_on_being_varied_after_all_else_has_converged(algorithm, monk
 
 def test_one_discrete_coordinate_alone_is_not_for_cma_es():
     alone = SearchSettings(algorithm="cma-es", dimension=1, objectives=1, population=6, seed=1, choices=(4,))
-    for make in (make_search, make_steady_search):
+    for make in (make_search, make_asynchronous_search):
         with pytest.raises(InputError, match="one discrete coordinate"):
             make(alone)

@@ -18,9 +18,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from evodesign.mechanics.balance import GRAVITY, center_of_mass, cut
+from evodesign.mechanics.dynamics import ROOT_ROWS, bias, mass_matrix
 from evodesign.problem.build import Problem
-from evodesign.statics.balance import GRAVITY, center_of_mass, cut
-from evodesign.tree.dynamics import ROOT_ROWS, bias, mass_matrix
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text

@@ -19,9 +19,9 @@ from evodesign.body.placement import Placement
 from evodesign.body.quaternion import quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
+from evodesign.mechanics.balance import GRAVITY
 from evodesign.problem.build import Problem
-from evodesign.report.stage import looks_of
-from evodesign.statics.balance import GRAVITY
+from evodesign.report.scene_models import looks_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.model import Joint, JointKind, Link, Tree

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from evodesign.records import Evaluation, HeightDetail, RunHeader, materials_of
-from evodesign.report.company import Company
+from evodesign.report.scene_set import SceneSet
 from evodesign.tree.model import Tree
 
 __all__ = ["ExportedDesign", "design_json"]
@@ -22,20 +22,20 @@ class ExportedDesign:
         run: name of the run, for people.
         header: of the run.
         evaluation: the design.
-        company: robot of the design, people and loads.
+        scene_set: robot of the design, people and loads.
         heights: postures of the cases that were solved, in the problem's order.
     """
 
     run: str
     header: RunHeader
     evaluation: Evaluation
-    company: Company
+    scene_set: SceneSet
     heights: tuple[HeightDetail, ...]
 
     @property
     def people(self) -> dict[str, tuple[str, Tree]]:
         """By file name: each person's label and tree. Several people are numbered, whatever their labels."""
-        people = self.company.people
+        people = self.scene_set.people
         if len(people) == 1:
             ((person, tree),) = people
             return {"human.urdf": (person.label, tree)}

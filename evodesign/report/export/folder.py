@@ -13,14 +13,14 @@ import msgspec
 
 from evodesign.analysis.cases import pair_name
 from evodesign.errors import InputError, ModelError
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import ROBOT
 from evodesign.report.export.design import ExportedDesign, design_json
 from evodesign.report.export.readme import readme_text
 from evodesign.report.export.tables import postures_csv, wrenches_csv
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.recording import write_replay
 from evodesign.report.replay.times import time_scale
-from evodesign.statics.balance import GRAVITY
-from evodesign.statics.scene import ROBOT
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.urdf_write import urdf_text
 
@@ -62,7 +62,7 @@ def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) ->
     Args:
         design: what to write.
         directory: a new or empty folder.
-        on_front: whether no design of the run beats it.
+        on_front: whether no design of the run dominates it.
     Raises:
         InputError: the folder holds files already, or cannot be written.
     """
@@ -82,14 +82,14 @@ def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) ->
 
 def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, bytes], dict[str, str]]:
     """Bytes of each file by name, and why others are missing."""
-    company, heights = design.company, design.heights
+    scene_set, heights = design.scene_set, design.heights
     people = {name: urdf_text(tree) for name, (_, tree) in design.people.items()}
-    urdfs = {"robot.urdf": urdf_text(company.robot), **people}
+    urdfs = {"robot.urdf": urdf_text(scene_set.robot), **people}
     told = design_json(design.header, design.evaluation, heights, on_front=on_front)
     contents = {"robot.urdf": urdfs["robot.urdf"].encode()}
     left_out = {}
     try:
-        contents["robot.xml"] = mjcf_text(company.robot, GRAVITY, _keys(design)).encode()
+        contents["robot.xml"] = mjcf_text(scene_set.robot, GRAVITY, _keys(design)).encode()
     except ModelError as error:
         left_out["robot.xml"] = str(error)
     contents.update({name: text.encode() for name, text in people.items()})
@@ -97,22 +97,22 @@ def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, byte
     if not heights:
         reason = "no posture was found at any height"
         return contents, {**left_out, "postures.csv": reason, "replay.mcap": reason}
-    contents["postures.csv"] = postures_csv(company, heights).encode()
-    contents["wrenches.csv"] = wrenches_csv(company, heights).encode()
+    contents["postures.csv"] = postures_csv(scene_set, heights).encode()
+    contents["wrenches.csv"] = wrenches_csv(scene_set, heights).encode()
     recording = io.BytesIO()
-    write_replay(recording, company, heights, urdfs, _about(design))
+    write_replay(recording, scene_set, heights, urdfs, _about(design))
     contents["replay.mcap"] = recording.getvalue()
-    contents["layout.json"] = layout_text(company, heights).encode()
+    contents["layout.json"] = layout_text(scene_set, heights).encode()
     return contents, left_out
 
 
 def _keys(design: ExportedDesign) -> dict[str, KeyPosture]:
     """The robot's postures as keyframes, by person and load where there are several, and by height."""
-    root = design.company.robot.root
+    root = design.scene_set.robot.root
     keys = {}
     for detail in design.heights:
         name = ", ".join(part for part in (pair_name(detail), f"load at {detail.height_m:g} m") if part)
-        frames = design.company.stage_of(detail).frames[ROBOT]
+        frames = design.scene_set.placed_scene(detail).frames[ROBOT]
         keys[name] = KeyPosture(frames[root], detail.agents[ROBOT].joints_rad)
     return keys
 

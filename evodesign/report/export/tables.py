@@ -12,10 +12,10 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 
 from evodesign.analysis.cases import named_people_or_loads
+from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import HeightDetail
-from evodesign.report.company import Company
-from evodesign.report.stage import Cast
-from evodesign.statics.scene import SIDES, Agent
+from evodesign.report.scene_models import SceneModels
+from evodesign.report.scene_set import SceneSet
 from evodesign.tree.model import JointKind, Tree
 
 __all__ = ["postures_csv", "wrenches_csv"]
@@ -32,18 +32,20 @@ BASE = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), (
 """Coordinates of the root link in its agent's frame."""
 
 
-def postures_csv(company: Company, heights: Sequence[HeightDetail]) -> str:
+def postures_csv(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
     """Base coordinates, joint positions and torques of robot and person."""
-    return _text(POSTURE_COLUMNS, heights, [_posture_rows(company.cast_of(each), each) for each in heights])
+    return _text(
+        POSTURE_COLUMNS, heights, [_posture_rows(scene_set.models_of(each), each) for each in heights]
+    )
 
 
-def wrenches_csv(company: Company, heights: Sequence[HeightDetail]) -> str:
+def wrenches_csv(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
     """Wrenches on hands (about the grasp point) and feet (about the sole's origin)."""
-    return _text(WRENCH_COLUMNS, heights, [_wrench_rows(company.cast_of(each), each) for each in heights])
+    return _text(WRENCH_COLUMNS, heights, [_wrench_rows(scene_set.models_of(each), each) for each in heights])
 
 
-def _posture_rows(cast: Cast, detail: HeightDetail) -> Iterator[Row]:
-    for name, tree in cast.trees.items():
+def _posture_rows(models: SceneModels, detail: HeightDetail) -> Iterator[Row]:
+    for name, tree in models.trees.items():
         posture = detail.agents[name]
         base = (*posture.base_position_m, *posture.base_rpy_rad)
         for (coordinate, unit), value in zip(BASE, base, strict=True):
@@ -60,8 +62,8 @@ def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
     return (kind, "m", "N") if kind is JointKind.PRISMATIC else (kind, "rad", "N m")
 
 
-def _wrench_rows(cast: Cast, detail: HeightDetail) -> Iterator[Row]:
-    for agent in cast.agents:
+def _wrench_rows(models: SceneModels, detail: HeightDetail) -> Iterator[Row]:
+    for agent in models.agents:
         yield from _wrenches_of(agent, detail)
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from evodesign.report.figures.faces import Camera, faces_of
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, new_figure
-from evodesign.report.stage import ContactWrench, Stage
+from evodesign.report.scene_models import ContactWrench, PlacedScene
 
 __all__ = ["posture_figure"]
 
@@ -45,7 +45,7 @@ COLORS = {True: GROUND_FORCE, False: HAND_FORCE}
 """Of the forces that the ground exerts, and of those that the load does."""
 
 
-def posture_figure(stages: Sequence[Stage], title: str, camera: Camera | None = None) -> Figure:
+def posture_figure(stages: Sequence[PlacedScene], title: str, camera: Camera | None = None) -> Figure:
     """A figure of postures.
 
     Args:
@@ -80,22 +80,22 @@ def posture_figure(stages: Sequence[Stage], title: str, camera: Camera | None = 
     return figure
 
 
-def _rows(stages: Sequence[Stage]) -> list[list[Stage | None]]:
+def _rows(stages: Sequence[PlacedScene]) -> list[list[PlacedScene | None]]:
     """The stages of each person and load, at the same place those of a height; at least one row."""
-    pairs = [*dict.fromkeys(stage.cast.label for stage in stages)]
+    pairs = [*dict.fromkeys(stage.models.label for stage in stages)]
     if len(pairs) < 2:
         return [[*stages]]
     heights = sorted({stage.height for stage in stages})
-    found = {(stage.cast.label, stage.height): stage for stage in stages}
+    found = {(stage.models.label, stage.height): stage for stage in stages}
     return [[found.get((pair, height)) for height in heights] for pair in pairs]
 
 
-def _heading(stage: Stage) -> str:
+def _heading(stage: PlacedScene) -> str:
     height = f"load at {stage.height:g} m"
-    return f"{stage.cast.label}\n{height}" if stage.cast.label else height
+    return f"{stage.models.label}\n{height}" if stage.models.label else height
 
 
-def _paint(axes: Axes, stage: Stage, view: Camera) -> None:
+def _paint(axes: Axes, stage: PlacedScene, view: Camera) -> None:
     ground = view.seen(np.array([(x, y, 0.0) for x, y in FLOOR]))[:, :2]
     axes.add_collection(PolyCollection([ground], facecolors="#eef0f2", edgecolors="#c6cbd1", linewidths=0.6))
     light = np.array([-0.35, 0.55, 0.76]) @ view.axes
@@ -120,7 +120,7 @@ def _shade(name: str, slope: float) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _longest(stages: Sequence[Stage], by_ground: bool) -> float:
+def _longest(stages: Sequence[PlacedScene], by_ground: bool) -> float:
     """The largest force of a kind [N]."""
     wrenches = [wrench for stage in stages for wrench in stage.wrenches if wrench.by_ground == by_ground]
     return max((math.hypot(*wrench.force) for wrench in wrenches), default=0.0)
@@ -135,7 +135,7 @@ def _arrow(axes: Axes, wrench: ContactWrench, view: Camera, scale: float) -> Non
     axes.annotate("", (to_x, to_y), (x, y), arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, zorder=5)
 
 
-def _limits(stages: Sequence[Stage], view: Camera) -> tuple[Array, Array]:
+def _limits(stages: Sequence[PlacedScene], view: Camera) -> tuple[Array, Array]:
     """Least and largest right and up [m] of everything that is drawn, each of shape (2,)."""
     points = [np.array([(x, y, 0.0) for x, y in FLOOR])]
     for stage in stages:

@@ -58,7 +58,7 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get("Host", "").rpartition(":")[0] not in NAMES:
             self.send_error(403, "only by the name of this machine")
         elif self.path == "/":
-            self._answer("text/html; charset=utf-8", self.server.page)
+            self._respond("text/html; charset=utf-8", self.server.page)
         elif self.path == "/state.json":
             self._state()
         else:
@@ -68,14 +68,14 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             state = self.server.state()
         except EvodesignError as error:  # the run has gone, or cannot be read
-            self._answer("text/plain; charset=utf-8", str(error).encode(), code=503)
+            self._respond("text/plain; charset=utf-8", str(error).encode(), code=503)
         else:
-            self._answer("application/json", state)
+            self._respond("application/json", state)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - as the base class has it
-        """Keep the terminal quiet."""
+        """Write nothing to the terminal."""
 
-    def _answer(self, kind: str, content: bytes, *, code: int = 200) -> None:
+    def _respond(self, kind: str, content: bytes, *, code: int = 200) -> None:
         self.send_response(code)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))

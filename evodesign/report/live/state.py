@@ -9,7 +9,7 @@ from typing import Any
 
 from evodesign.analysis.hypervolume import best
 from evodesign.analysis.knees import knees
-from evodesign.analysis.watched import Standing
+from evodesign.analysis.live_state import LiveState
 from evodesign.records import Evaluation, RunHeader
 
 __all__ = ["MOST_KNEES", "MOST_POINTS", "state_of", "word"]
@@ -24,31 +24,31 @@ SILENCE = 60.0
 """Seconds without a new evaluation after which a search is called silent."""
 
 
-def state_of(standing: Standing, *, ended: bool, now: float) -> dict[str, Any]:
-    """The JSON object of a standing.
+def state_of(live_state: LiveState, *, ended: bool, now: float) -> dict[str, Any]:
+    """The JSON object of a live run's state.
 
     Args:
-        standing: of the search.
+        live_state: of the search.
         ended: whether the last session closed its log.
         now: seconds since 1970.
     """
-    header = standing.header
+    header = live_state.header
     objectives = header.objectives
-    found = best(objectives, standing.front)
-    drawn = standing.front[:: 1 + len(standing.front) // MOST_POINTS]
+    found = best(objectives, live_state.front)
+    drawn = live_state.front[:: 1 + len(live_state.front) // MOST_POINTS]
     return {
         "problem": header.problem_name,
         "algorithm": header.search.algorithm,
         "population": header.search.population,
         "seed": header.search.seed,
-        "state": word(standing, ended=ended, now=now),
-        "done": standing.done,
+        "state": word(live_state, ended=ended, now=now),
+        "done": live_state.done,
         "budget": header.budget,
-        "feasible": standing.feasible,
-        "failures": {str(status): count for status, count in standing.causes.items()},
-        "per_second": standing.pace,
-        "seconds_left": standing.seconds_left,
-        "silent_seconds": None if standing.latest is None else max(0.0, now - standing.latest),
+        "feasible": live_state.feasible,
+        "failures": {str(status): count for status, count in live_state.causes.items()},
+        "per_second": live_state.pace,
+        "seconds_left": live_state.seconds_left,
+        "silent_seconds": None if live_state.latest is None else max(0.0, now - live_state.latest),
         "objectives": [
             {"name": each.name, "unit": each.unit, "sense": each.sense, "best": found.get(each.name)}
             for each in objectives
@@ -60,22 +60,22 @@ def state_of(standing: Standing, *, ended: bool, now: float) -> dict[str, Any]:
                 "hypervolume": each.hypervolume,
                 "feasible_share": each.feasible_share,
             }
-            for each in standing.generations
+            for each in live_state.generations
         ],
         "front": [_point(header, each) for each in drawn],
-        "front_size": len(standing.front),
-        "others": [_point(header, each) for each in standing.others],
-        "knees": [_point(header, each) for each in knees(objectives, standing.front)[:MOST_KNEES]],
+        "front_size": len(live_state.front),
+        "others": [_point(header, each) for each in live_state.others],
+        "knees": [_point(header, each) for each in knees(objectives, live_state.front)[:MOST_KNEES]],
     }
 
 
-def word(standing: Standing, *, ended: bool, now: float) -> str:
+def word(live_state: LiveState, *, ended: bool, now: float) -> str:
     """The state in a word: finished, stopped, running, or silent for a minute or more."""
-    if standing.done >= standing.header.budget:
+    if live_state.done >= live_state.header.budget:
         return "finished"
     if ended:
         return "stopped"
-    latest = standing.latest
+    latest = live_state.latest
     return "silent" if latest is not None and now - latest > SILENCE else "running"
 
 

@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape
+from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import Problem
 from evodesign.report.page.content import Bodies, JointBody, LinkBody, LoadBody, ShapeBody, TreeBody
-from evodesign.statics.scene import Agent
 from evodesign.tree.model import Joint, Link, Tree
 
 __all__ = ["agent_body", "bodies", "changes"]

@@ -11,9 +11,9 @@ from evodesign.records import Generation, HeightDetail, HeightOutcome, Objective
 
 __all__ = [
     "Bodies",
-    "Cause",
+    "CauseContent",
     "Content",
-    "Design",
+    "DesignContent",
     "Facts",
     "JointBody",
     "LinkBody",
@@ -62,14 +62,14 @@ class Points(Part, frozen=True):
 
 
 class Mark(Part, frozen=True):
-    """A design worth a look; `kind` is `unscaled`, `best`, `knee`, `asked` or `near`."""
+    """A marked design; `kind` is `unscaled`, `best`, `knee`, `asked` or `near`."""
 
     number: int
     kind: str
     label: str
 
 
-class Cause(Part, frozen=True):
+class CauseContent(Part, frozen=True):
     """A cause of failure, how many designs failed by it, and the first one's reason."""
 
     cause: str
@@ -150,7 +150,7 @@ class Bodies(Part, frozen=True):
     changing: tuple[int, ...]
 
 
-class Design(Part, frozen=True):
+class DesignContent(Part, frozen=True):
     """A design that can be opened.
 
     Attributes:
@@ -179,7 +179,7 @@ class Content(Part, frozen=True):
     points: Points
     marks: tuple[Mark, ...]
     generations: tuple[Generation, ...]
-    failures: tuple[Cause, ...]
+    failures: tuple[CauseContent, ...]
     bodies: Bodies | None
-    designs: dict[int, Design]
+    designs: dict[int, DesignContent]
     notes: tuple[str, ...]

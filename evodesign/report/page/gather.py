@@ -12,9 +12,9 @@ from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Detail, Evaluation, HeightOutcome
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
-from evodesign.report.page.content import Cause, Content, Design, Facts, Mark
+from evodesign.report.page.content import CauseContent, Content, DesignContent, Facts, Mark
 from evodesign.report.page.points import MOST_POINTS, chosen_points, points
-from evodesign.report.thinning import thinned
+from evodesign.report.subsample import subsample
 from evodesign.runlog.run import Run
 
 __all__ = ["MOST_POSTURES", "page_content"]
@@ -49,7 +49,7 @@ def page_content(run: Run, asked: Collection[int] = ()) -> Content:
         marks=marked,
         generations=run.generations,
         failures=tuple(
-            Cause(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
+            CauseContent(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
             for each in causes_of_infeasibility(run.evaluations)
         ),
         bodies=None if problem is None else bodies(problem),
@@ -131,7 +131,7 @@ def _opened(
     known = {detail.evaluation: detail for detail in run.details}
     first = list(dict.fromkeys(mark.number for mark in marked if mark.number in known))
     others = [e.number for e in shown if e.number in on_front and e.number in known and e.number not in first]
-    kept = thinned(others, max(0, _most_designs(known.values()) - len(first)))
+    kept = subsample(others, max(0, _most_designs(known.values()) - len(first)))
     opened = {number: known[number] for number in (*first, *kept)}
     if len(kept) == len(others):
         return opened, ()
@@ -154,7 +154,7 @@ def _designs(
     opened: dict[int, Detail],
     marked: Sequence[Mark],
     on_front: Collection[int],
-) -> dict[int, Design]:
+) -> dict[int, DesignContent]:
     wanted = {*on_front, *(mark.number for mark in marked)}
     return {
         evaluation.number: _design(problem, evaluation, opened.get(evaluation.number))
@@ -163,11 +163,11 @@ def _designs(
     }
 
 
-def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | None) -> Design:
+def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | None) -> DesignContent:
     heights = evaluation.assessment.heights
     if problem is None or detail is None:
-        return Design(heights=heights)
+        return DesignContent(heights=heights)
     parameters = problem.space.parameters
     values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
     links, joints = changes(problem, values)
-    return Design(heights=heights, postures=detail.heights, links=links, joints=joints)
+    return DesignContent(heights=heights, postures=detail.heights, links=links, joints=joints)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 from evodesign.records import Evaluation, RunHeader
 from evodesign.report.page.content import Points
-from evodesign.report.thinning import thinned
+from evodesign.report.subsample import subsample
 
 __all__ = ["MOST_POINTS", "chosen_points", "points"]
 
@@ -35,7 +35,7 @@ def chosen_points(
             groups[2 if evaluation.feasible else 3].append(evaluation)
     chosen: list[Evaluation] = list(groups[0])
     for group in groups[1:]:
-        chosen += thinned(group, max(0, most - len(chosen)))
+        chosen += subsample(group, max(0, most - len(chosen)))
     return sorted(chosen, key=lambda evaluation: evaluation.number)
 
 

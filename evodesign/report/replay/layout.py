@@ -12,13 +12,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from evodesign.analysis.cases import named_people_or_loads
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import HeightDetail
-from evodesign.report.company import Company
+from evodesign.report.ranked_joints import ranked_joints
 from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
 from evodesign.report.replay.times import time_scale
-from evodesign.report.stage import LOAD
-from evodesign.report.strain import most_strained
-from evodesign.statics.scene import HUMAN, ROBOT
+from evodesign.report.scene_models import LOAD
+from evodesign.report.scene_set import SceneSet
 
 __all__ = ["layout_text"]
 
@@ -57,14 +57,14 @@ GRID: Final = {
 }
 
 
-def layout_text(company: Company, heights: Sequence[HeightDetail]) -> str:
+def layout_text(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> str:
     """The layout as JSON text.
 
     Args:
-        company: who stands there.
+        scene_set: who stands there.
         heights: postures, whose torques choose the joints that are plotted.
     """
-    panels = {SCENE: _scene(company, heights), **{PLOTS[name]: _plot(name, heights) for name in PLOTS}}
+    panels = {SCENE: _scene(scene_set, heights), **{PLOTS[name]: _plot(name, heights) for name in PLOTS}}
     plots = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
     layout = {"first": SCENE, "second": plots, "direction": "row", "splitPercentage": 64}
     whole = {
@@ -77,8 +77,8 @@ def layout_text(company: Company, heights: Sequence[HeightDetail]) -> str:
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def _scene(company: Company, heights: Sequence[HeightDetail]) -> dict[str, Any]:
-    trees = [(name, tree) for cast in company.casts for name, tree in cast.trees.items()]
+def _scene(scene_set: SceneSet, heights: Sequence[HeightDetail]) -> dict[str, Any]:
+    trees = [(name, tree) for models in scene_set.models for name, tree in models.trees.items()]
     links = [frame_id(name, link) for name, tree in trees for link in tree.link_by_name]
     frames = [LOAD, *dict.fromkeys(links)]
     letters = 1.0 if named_people_or_loads(heights) else 0.0
@@ -127,5 +127,5 @@ def _path(agent: str, joint: str) -> dict[str, Any]:
 
 
 def _plotted(torques: Sequence[Mapping[str, float]]) -> list[str]:
-    """The most strained joints, but for names that a message path cannot hold."""
-    return [joint for joint in most_strained(torques) if not set(joint) & set('"\\{}')][:JOINTS_SHOWN]
+    """The joints of largest torque, but for names that a message path cannot hold."""
+    return [joint for joint in ranked_joints(torques) if not set(joint) & set('"\\{}')][:JOINTS_SHOWN]

@@ -25,7 +25,7 @@ from evodesign.body.placement import Placement, scale
 from evodesign.body.shape import Box
 from evodesign.records import AgentDetail, HeightDetail
 from evodesign.report.replay.shapes import add_arrow, add_shape, add_text, orientation, vector
-from evodesign.report.stage import LOAD, Stage, looks_of
+from evodesign.report.scene_models import LOAD, PlacedScene, looks_of
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Tree
 
@@ -59,7 +59,7 @@ def frame_id(agent: str, link: str) -> str:
     return f"{agent}/{link}"
 
 
-def messages(stage: Stage, detail: HeightDetail, nanoseconds: int) -> Iterator[tuple[str, Any]]:
+def messages(stage: PlacedScene, detail: HeightDetail, nanoseconds: int) -> Iterator[tuple[str, Any]]:
     """Topic and message of everything that is to be seen in one case.
 
     Args:
@@ -71,7 +71,7 @@ def messages(stage: Stage, detail: HeightDetail, nanoseconds: int) -> Iterator[t
     now.FromNanoseconds(nanoseconds)
     case = pair_name(detail)
     yield "/tf", FrameTransforms(transforms=list(_transforms(stage, detail, now)))
-    for name, tree in stage.cast.trees.items():
+    for name, tree in stage.models.trees.items():
         entities = [_entity(name, tree, link, now) for link in tree.link_by_name]
         yield (
             f"/scene/{name}",
@@ -82,16 +82,16 @@ def messages(stage: Stage, detail: HeightDetail, nanoseconds: int) -> Iterator[t
         )
         yield f"/joint_states/{name}", _joint_states(detail.agents[name], now)
     load = SceneEntity(timestamp=now, frame_id=LOAD, id=LOAD, frame_locked=True)
-    add_shape(load, Box(*stage.cast.payload.size), Placement(), LOAD)
+    add_shape(load, Box(*stage.models.payload.size), Placement(), LOAD)
     if case:
         add_text(load, ABOVE_LOAD, case_name(detail))
     yield "/scene/load", SceneUpdate(entities=[load])
     yield "/scene/wrenches", SceneUpdate(entities=list(_wrenches(stage, now)))
 
 
-def _transforms(stage: Stage, detail: HeightDetail, now: Timestamp) -> Iterator[FrameTransform]:
+def _transforms(stage: PlacedScene, detail: HeightDetail, now: Timestamp) -> Iterator[FrameTransform]:
     yield _transform(WORLD, LOAD, stage.world_from_load, now)
-    for name, tree in stage.cast.trees.items():
+    for name, tree in stage.models.trees.items():
         yield _transform(WORLD, frame_id(name, tree.root), stage.frames[name][tree.root], now)
         positions = detail.agents[name].joints_rad
         for joint in tree.joints:
@@ -120,7 +120,7 @@ def _entity(agent: str, tree: Tree, link: str, now: Timestamp) -> SceneEntity | 
     return entity
 
 
-def _wrenches(stage: Stage, now: Timestamp) -> Iterator[SceneEntity]:
+def _wrenches(stage: PlacedScene, now: Timestamp) -> Iterator[SceneEntity]:
     for wrench in stage.wrenches:
         name = f"{wrench.agent}/{wrench.contact}"
         entity = SceneEntity(timestamp=now, frame_id=WORLD, id=name, frame_locked=True)

@@ -11,10 +11,10 @@ from typing import IO, Final
 from mcap.writer import CompressionType, Writer
 
 from evodesign.records import HeightDetail
-from evodesign.report.company import Company
 from evodesign.report.replay.messages import TOPICS, messages
 from evodesign.report.replay.schemas import descriptor_set
 from evodesign.report.replay.times import timed
+from evodesign.report.scene_set import SceneSet
 
 __all__ = ["write_replay"]
 
@@ -24,7 +24,7 @@ HOLD: Final = 1_000_000_000
 
 def write_replay(
     stream: IO[bytes],
-    company: Company,
+    scene_set: SceneSet,
     heights: Sequence[HeightDetail],
     attachments: Mapping[str, str],
     about: Mapping[str, str],
@@ -33,7 +33,7 @@ def write_replay(
 
     Args:
         stream: to an empty file.
-        company: who stands there.
+        scene_set: who stands there.
         heights: postures, in any order; of several people or loads, in that of the cases.
         attachments: URDF texts by file name.
         about: what the recording is of, kept as the metadata record `evodesign`.
@@ -47,7 +47,7 @@ def write_replay(
     shown = timed(heights)
     held = [(time + HOLD, last) for time, last in shown[-1:]]
     for sequence, (time, detail) in enumerate((*shown, *held)):
-        for topic, message in messages(company.stage_of(detail), detail, time):
+        for topic, message in messages(scene_set.placed_scene(detail), detail, time):
             writer.add_message(
                 channel_id=channels[topic],
                 log_time=time,

@@ -15,6 +15,7 @@ import yourdfpy
 from mcap.reader import make_reader
 
 from evodesign.errors import InputError
+from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.build import Problem
 from evodesign.records import (
     FORMAT_VERSION,
@@ -25,12 +26,11 @@ from evodesign.records import (
     RunHeader,
     Status,
 )
-from evodesign.report.company import Company
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
-from evodesign.report.stage import Cast
-from evodesign.statics.scene import ROBOT
-from tests.report.stages import random_detail, random_values
+from evodesign.report.scene_models import SceneModels
+from evodesign.report.scene_set import SceneSet
+from tests.report.scenes import random_detail, random_values
 from tests.tree.crane import crane
 
 FILES = {
@@ -77,7 +77,7 @@ def design_of(problem: Problem, detail: Detail, seed: int = 2) -> ExportedDesign
         seconds=0.1,
         worker="here",
     )
-    return ExportedDesign("runs/<b>", header, evaluation, Company.of(problem.scenes, tree), detail.heights)
+    return ExportedDesign("runs/<b>", header, evaluation, SceneSet.of(problem.scenes, tree), detail.heights)
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +108,7 @@ def test_readme_shows_names_as_text(exported: tuple[ExportedDesign, Path]) -> No
 
 def test_robot_files_open_with_the_mass_of_the_design(exported: tuple[ExportedDesign, Path]) -> None:
     design, folder = exported
-    mass = sum(link.inertia.mass for link in design.company.robot.links)
+    mass = sum(link.inertia.mass for link in design.scene_set.robot.links)
     urdf = folder / "robot.urdf"
     assert "package://" not in urdf.read_text()
     assert "<mesh" not in urdf.read_text()
@@ -125,7 +125,7 @@ def test_robot_files_open_with_the_mass_of_the_design(exported: tuple[ExportedDe
 
 def welded_root_mass(design: ExportedDesign) -> float:
     """MuJoCo welds a URDF's root, and everything fixed to it, into its massless world."""
-    tree = design.company.robot
+    tree = design.scene_set.robot
     return float(tree.link_by_name[tree.root].inertia.mass)
 
 
@@ -199,9 +199,9 @@ def test_design_without_a_posture_is_exported_without_a_replay(problem: Problem,
 def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(problem: Problem, tmp_path: Path) -> None:
     design = design_of(problem, Detail(evaluation=0, heights=()))
     trees = {ROBOT: problem.scene.human.tree, "human": crane()}
-    (only,) = design.company.casts
-    company = Company((Cast(only.agents, trees, only.payload),))
-    other = ExportedDesign(design.run, design.header, design.evaluation, company, ())
+    (only,) = design.scene_set.models
+    scene_set = SceneSet((SceneModels(only.agents, trees, only.payload),))
+    other = ExportedDesign(design.run, design.header, design.evaluation, scene_set, ())
     done = export_design(other, tmp_path, on_front=False)
     assert "mass, which MuJoCo asks of every link that moves" in done.left_out["robot.xml"]
     assert not (tmp_path / "robot.xml").exists()

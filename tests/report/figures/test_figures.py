@@ -16,7 +16,7 @@ from evodesign.report.figures.joint_torques import joint_torques
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.figures.torque_boxes import torque_boxes
-from tests.report.stages import random_stages
+from tests.report.scenes import random_stages
 
 TORQUES = {
     "old $robot$": {0.8: [0.0, 1.0, -2.0, 5.0], 1.0: [3.0, 3.5, -1.0, 0.25]},

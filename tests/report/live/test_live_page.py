@@ -13,7 +13,7 @@ import msgspec
 import pytest
 
 from evodesign.analysis.front import front
-from evodesign.analysis.watched import Watched
+from evodesign.analysis.live_state import LiveRun
 from evodesign.errors import InputError, RunError
 from evodesign.report.live.server import ADDRESS, LiveServer
 from evodesign.report.live.state import state_of
@@ -27,11 +27,11 @@ CHROMIUM = chromium()
 
 
 def state(*, ended: bool = False, now: float = 45.0, count: int = len(RUN)) -> dict[str, object]:
-    watched = Watched()
+    watched = LiveRun()
     records = [HEADER, *RUN[:count], toy_generation(0, 4), toy_generation(1, 8)]
     watched.learn([(record, float(second)) for second, record in enumerate(records)])
-    assert watched.standing is not None
-    return state_of(watched.standing, ended=ended, now=now)
+    assert watched.state is not None
+    return state_of(watched.state, ended=ended, now=now)
 
 
 @pytest.fixture
@@ -123,8 +123,8 @@ def test_browser_shows_names_as_text(server: LiveServer, tmp_path: Path) -> None
         "--disable-background-networking",
         "--no-first-run",
     ]
-    quiet = ["--disable-component-update", "--disable-sync", f"--user-data-dir={tmp_path}"]
-    command = [str(CHROMIUM), *flags, *quiet, "--virtual-time-budget=4000", "--dump-dom", server.url]
+    silent = ["--disable-component-update", "--disable-sync", f"--user-data-dir={tmp_path}"]
+    command = [str(CHROMIUM), *flags, *silent, "--virtual-time-budget=4000", "--dump-dom", server.url]
     page = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
     assert "40 of 100 evaluations" in page

@@ -1,4 +1,4 @@
-"""The page in a real browser: it is quiet, asks for nothing, and its parts answer to each other."""
+"""The page in a real browser: it reports no error, asks for nothing, and its parts answer to each other."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import msgspec
 import pytest
 
 from evodesign.analysis.front import front
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import Problem
 from evodesign.records import AgentDetail, Objective, Sense
 from evodesign.report.page import page_content, page_html
 from evodesign.report.page.bodies import agent_body
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.statics.scene import HUMAN, ROBOT
 from tests.report.page.chromium import Tab, browser
 from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
 from tests.runlog.toys import toy_evaluations, toy_header
@@ -34,7 +34,7 @@ NAME = "<script>alert(1)</script>"
 
 @pytest.fixture
 def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
-    """The real run's page, newly opened; at the end it must have been quiet."""
+    """The real run's page, newly opened; at the end it must have reported no error."""
     chromium.events.clear()
     open_page(chromium, real_page)
     yield chromium
@@ -78,7 +78,7 @@ def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: 
     page.drag((left + 0.5 * width, top + height / 2), (left + 0.99 * width, top + height / 2))
     low, high = page.value("[...window.evodesign.state.brushes.values()][0]")
     assert low == pytest.approx(0.6 + 0.5 * 1.2, abs=0.01)
-    inside = [n for n, worth in front_of(real_run).items() if low <= worth.design["length.thigh"] <= high]
+    inside = [n for n, found in front_of(real_run).items() if low <= found.design["length.thigh"] <= high]
     assert 0 < len(inside) < len(front_of(real_run))
     page.wait_for(f"{PLOT}.data.find(t => t.name === 'front').x.length === {len(inside)}")
     assert trace(page, "front") == inside
@@ -119,11 +119,11 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: Run) -> None:
     page.click(*spot(page, number))
     page.wait_for(f"{SHOWN} === 'Design {number}'")
     assert page.value("document.getElementById('announce').textContent") == f"Design {number} is shown."
-    worth = front_of(real_run)[number]
-    for name, value in worth.objectives.items():
+    found = front_of(real_run)[number]
+    for name, value in found.objectives.items():
         tile = f"document.querySelector('[data-objective=\"{name}\"]').firstChild.textContent"
         assert page.value(tile) == shown_as(value)
-    for name, value in worth.design.items():
+    for name, value in found.design.items():
         cell = f"document.querySelector('[data-parameter=\"{name}\"]').textContent"
         assert page.value(cell) == shown_as(value)
 
@@ -198,10 +198,10 @@ def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: Run) -> No
     rows = page.value(
         "[...document.querySelectorAll('#table tbody tr')].map(r => [...r.children].map(c => c.textContent))"
     )
-    worth = front_of(real_run)
-    assert sorted(int(row[0]) for row in rows) == list(worth)
+    found = front_of(real_run)
+    assert sorted(int(row[0]) for row in rows) == list(found)
     for row in rows:
-        assert row[1:4] == [shown_as(value) for value in worth[int(row[0])].objectives.values()]
+        assert row[1:4] == [shown_as(value) for value in found[int(row[0])].objectives.values()]
     page.value("document.querySelector('#table .open').click()")
     assert page.value(SHOWN) == f"Design {rows[0][0]}"
 
@@ -233,7 +233,7 @@ def test_laptop_width_needs_no_sideways_scrolling(page: Tab) -> None:
 
 
 def open_run(tab: Tab, run: Run) -> None:
-    """Write and open the page of a run, which must be quiet."""
+    """Write and open the page of a run, which must report no error."""
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")
     tab.events.clear()
@@ -258,10 +258,10 @@ def toy_run(
     with RunWriter(directory, header) as log:
         for evaluation in toy_evaluations(header, count):
             if feasible or not evaluation.feasible:
-                worth = evaluation.assessment
+                found = evaluation.assessment
                 values = {one.name: (0.5 - evaluation.genome[i % 2]) ** 2 for i, one in enumerate(more)}
-                worth = msgspec.structs.replace(worth, objectives={**worth.objectives, **values})
-                log.evaluation(msgspec.structs.replace(evaluation, assessment=worth))
+                found = msgspec.structs.replace(found, objectives={**found.objectives, **values})
+                log.evaluation(msgspec.structs.replace(evaluation, assessment=found))
     return read_run(directory)
 
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 import pytest
 
+from evodesign.human.body import human_tree
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import Problem
 from evodesign.report.page import page_content, page_html
 from evodesign.runlog.run import Run
-from evodesign.statics.scene import HUMAN, ROBOT
-from evodesign.tree.human import human_tree
 from tests.report.page.chromium import Tab
 from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several

@@ -21,13 +21,13 @@ from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import Problem
 from evodesign.records import Detail
-from evodesign.report.company import Company
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 from evodesign.report.replay.recording import write_replay
-from evodesign.report.stage import Cast, looks_of, stage_of
-from tests.report.stages import random_cast, random_company, random_detail
-from tests.report.test_stage import posture_of
+from evodesign.report.scene_models import SceneModels, looks_of, placed_scene
+from evodesign.report.scene_set import SceneSet
+from tests.report.scenes import random_cast, random_company, random_detail
+from tests.report.test_scene_models import posture_of
 
 CLASSES = {
     "foxglove.FrameTransforms": FrameTransforms,
@@ -50,7 +50,7 @@ TOLERANCE = 1e-9
 class Replay:
     """A written replay and what it should hold."""
 
-    cast: Cast
+    models: SceneModels
     detail: Detail
     content: bytes
     messages: Mapping[tuple[str, int], object]
@@ -61,10 +61,10 @@ class Replay:
 
 @pytest.fixture(scope="module")
 def replay(problem: Problem) -> Replay:
-    cast, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
+    models, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
     stream = io.BytesIO()
     write_replay(
-        stream, Company((cast,)), detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
+        stream, SceneSet((models,)), detail.heights, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
     )
     content = stream.getvalue()
     messages = {}
@@ -73,7 +73,7 @@ def replay(problem: Problem) -> Replay:
         found = CLASSES[schema.name]()
         found.ParseFromString(message.data)
         messages[channel.topic, message.log_time] = found
-    return Replay(cast, detail, content, messages)
+    return Replay(models, detail, content, messages)
 
 
 def test_channels_have_the_well_known_schemas(replay: Replay) -> None:
@@ -116,12 +116,12 @@ def test_frames_stand_where_pinocchio_puts_the_links(replay: Replay) -> None:
     for height in replay.detail.heights:
         world_from = frames(replay.at("/tf", height.height_m))
         assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, height.height_m], rtol=0.0, atol=TOLERANCE)
-        for agent in replay.cast.agents:
-            tree = replay.cast.trees[agent.name]
-            instant = AgentModel.of(agent, tree).at(posture_of(height.agents[agent.name]))
+        for agent in replay.models.agents:
+            tree = replay.models.trees[agent.name]
+            state = AgentModel.of(agent, tree).at(posture_of(height.agents[agent.name]))
             turn = np.diag([agent.sign, agent.sign, 1.0])
             for link in tree.link_by_name:
-                rotation, origin = instant.pose(link)
+                rotation, origin = state.pose(link)
                 found = world_from[f"{agent.name}/{link}"]
                 assert np.allclose(found[:3, :3], turn @ rotation, rtol=0.0, atol=TOLERANCE)
                 assert np.allclose(found[:3, 3], turn @ origin, rtol=0.0, atol=TOLERANCE)
@@ -152,7 +152,7 @@ def matrix(position: object, quaternion: object) -> np.ndarray:
 def test_scenes_hold_every_shape_at_its_place(replay: Replay) -> None:
     for height in replay.detail.heights:
         world_from = frames(replay.at("/tf", height.height_m))
-        expected = stage_of(replay.cast, height).solids
+        expected = placed_scene(replay.models, height).solids
         found = []
         for topic in ("/scene/robot", "/scene/human", "/scene/load"):
             for entity in replay.at(topic, height.height_m).entities:
@@ -185,7 +185,7 @@ def test_arrows_are_the_wrenches(replay: Replay) -> None:
     for height in replay.detail.heights:
         entities = {entity.id: entity for entity in replay.at("/scene/wrenches", height.height_m).entities}
         assert len(entities) == 8
-        for wrench in stage_of(replay.cast, height).wrenches:
+        for wrench in placed_scene(replay.models, height).wrenches:
             entity = entities[f"{wrench.agent}/{wrench.contact}"]
             assert entity.frame_id == "world"
             force, moment = entity.arrows
@@ -228,7 +228,7 @@ def test_one_height_gives_a_recording_with_a_length(problem: Problem) -> None:
 
 
 def test_layout_shows_topics_frames_and_joints_that_exist(replay: Replay) -> None:
-    layout = json.loads(layout_text(Company((replay.cast,)), replay.detail.heights))
+    layout = json.loads(layout_text(SceneSet((replay.models,)), replay.detail.heights))
     panels = layout["configById"]
     assert panels_of(layout["layout"]) == set(panels)
     scene = panels["3D!scene"]
@@ -252,7 +252,7 @@ def panels_of(node: object) -> set[str]:
 
 
 def test_link_without_a_shape_has_a_frame_and_no_entity(replay: Replay) -> None:
-    bare = [link.name for link in replay.cast.trees["robot"].links if not looks_of(link)]
+    bare = [link.name for link in replay.models.trees["robot"].links if not looks_of(link)]
     assert "l_sole" in bare
     shown = {entity.id for entity in replay.at("/scene/robot", 1.0).entities}
     assert not shown & {f"robot/{name}" for name in bare}

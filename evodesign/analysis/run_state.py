@@ -1,0 +1,72 @@
+"""Where a run stands: its front, best values and hypervolume, carried on from generation to generation.
+
+A design that is dominated once never counts again, so that only the front is carried on, and of its members
+what they are compared by. The work and the memory of a generation grow with the front, not with the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import msgspec
+
+from evodesign.analysis.front import front
+from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.records import Evaluation, Front, Generation, Objective
+
+__all__ = ["RunState"]
+
+
+class RunState:
+    """The state of a run after the generations shown to it.
+
+    Args:
+        objectives: of the run.
+    """
+
+    def __init__(self, objectives: Sequence[Objective]) -> None:
+        self._objectives = tuple(objectives)
+        self._members: tuple[Evaluation, ...] = ()
+        self._reference: dict[str, float] | None = None
+        self._shown = 0
+        self._hypervolumes: list[float | None] = []
+
+    @property
+    def hypervolumes(self) -> Sequence[float | None]:
+        """Hypervolume after each generation; None before the first feasible design."""
+        return self._hypervolumes
+
+    def add(self, born: Sequence[Evaluation]) -> None:
+        """Take in a generation. The first that holds a feasible design fixes the reference."""
+        self._shown += len(born)
+        self._reference = self._reference or reference_point(self._objectives, born)
+        self._members = front(self._objectives, (*self._members, *map(_bare, born)))
+        self._hypervolumes.append(self._hypervolume())
+
+    def generation(self, number: int, born: Iterable[Evaluation], seconds: float) -> Generation:
+        """The record of a generation that was added last, and took so long [s]."""
+        feasible = [evaluation.feasible for evaluation in born]
+        return Generation(
+            number=number,
+            evaluations=self._shown,
+            feasible_share=sum(feasible) / len(feasible),
+            hypervolume=self._hypervolumes[-1],
+            reference=self._reference,
+            best=best(self._objectives, self._members),
+            seconds=seconds,
+        )
+
+    def front(self, number: int) -> Front:
+        """The front after a generation that was added last."""
+        return Front(generation=number, evaluations=tuple(member.number for member in self._members))
+
+    def _hypervolume(self) -> float | None:
+        if self._reference is None:
+            return None
+        return hypervolume(self._objectives, self._members, self._reference)
+
+
+def _bare(evaluation: Evaluation) -> Evaluation:
+    """An evaluation with no more than what a front needs."""
+    assessment = msgspec.structs.replace(evaluation.assessment, design={}, reach=None, heights=())
+    return msgspec.structs.replace(evaluation, genome=(), assessment=assessment)

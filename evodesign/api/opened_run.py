@@ -1,0 +1,200 @@
+"""A run in a notebook: its front, its evaluations as a table, its designs and postures.
+
+Reading a run loads no solver; only postures that the log does not hold are solved anew.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from evodesign.analysis.choice import Choice, Order, choose
+from evodesign.analysis.conditions import conditions
+from evodesign.analysis.quantities import Quantity, quantities
+from evodesign.api.design import Design
+from evodesign.errors import InputError
+from evodesign.records import Evaluation, HeightDetail, Objective, Parameter
+from evodesign.runlog.run import Run, read_run
+
+__all__ = ["OpenedRun", "open_run"]
+
+
+def open_run(path: str | os.PathLike[str]) -> OpenedRun:
+    """Open a run's directory, also one that was cut off or is still being written.
+
+    Raises:
+        RunError: it is not a run, or cannot be read.
+    """
+    return OpenedRun(read_run(Path(path)))
+
+
+class OpenedRun:
+    """What a run found.
+
+    Args:
+        run: as it was read.
+    """
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self._details = {detail.evaluation: detail.heights for detail in run.details}
+
+    def __repr__(self) -> str:
+        return (
+            f"<run of {self.name} in {self.run.directory}: {len(self)} evaluations, "
+            f"{len(self.front)} on the front>"
+        )
+
+    def __len__(self) -> int:
+        return len(self.run.evaluations)
+
+    @property
+    def name(self) -> str:
+        """Of the problem."""
+        return self.run.header.problem_name
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The design parameters, with bounds and units."""
+        return self.run.header.parameters
+
+    @property
+    def objectives(self) -> tuple[Objective, ...]:
+        """The objectives, with senses and units."""
+        return self.run.header.objectives
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence for everything that is missing or strange in the log."""
+        return self.run.notes
+
+    @property
+    def designs(self) -> tuple[Design, ...]:
+        """Every evaluated design, in order of number."""
+        return tuple(self._design(evaluation) for evaluation in self.run.evaluations)
+
+    @property
+    def front(self) -> tuple[Design, ...]:
+        """The designs that no other one dominates, best first in the first objective."""
+        return self.choose()
+
+    def design(self, number: int) -> Design:
+        """The design of a number.
+
+        Raises:
+            InputError: the run has no such design.
+        """
+        for evaluation in self.run.evaluations:
+            if evaluation.number == number:
+                return self._design(evaluation)
+        wanted = f"a design of {self.run.directory}, which has {len(self)}"
+        raise InputError("number", "", wanted, f"{number}")
+
+    def choose(
+        self,
+        *,
+        where: str = "",
+        knee: bool = False,
+        near: Mapping[str, float] | None = None,
+        different: bool = False,
+        limit: int | None = None,
+    ) -> tuple[Design, ...]:
+        """Designs of the front, as `evodesign front` chooses them.
+
+        Args:
+            where: conditions such as `reach_height >= 1.5 and robot_torque@1.2 < 10`; the front is that of
+                the designs that meet them.
+            knee: only knees, sharpest first.
+            near: closest first to these values of objectives.
+            different: the most different designs, as many as the limit says.
+            limit: at most so many.
+        Raises:
+            InputError: more than one way to choose, or a name that the run does not know.
+        """
+        orders = {Order.KNEE: knee, Order.NEAR: near is not None, Order.DIFFERENT: different}
+        asked = [order for order, wanted in orders.items() if wanted]
+        if len(asked) > 1:
+            raise InputError("choose", "", "one of knee, near and different", " and ".join(asked))
+        choice = Choice(
+            where=conditions(where, self._quantities, "where") if where.strip() else (),
+            order=asked[0] if asked else Order.FIRST_OBJECTIVE,
+            aspiration=near or {},
+            limit=limit,
+        )
+        chosen = choose(self.objectives, self.run.evaluations, choice)
+        return tuple(self._design(evaluation) for evaluation in chosen.designs)
+
+    def table(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
+        """Designs as columns: `pandas.DataFrame(run.table())`.
+
+        Args:
+            designs: of this run; left out, all evaluations.
+        Returns:
+            Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
+            the reach [m], torque norms by height and by case [N m], parameters; None where a value does not
+            exist.
+        """
+        wanted = None if designs is None else [design.number for design in designs]
+        by_number = {evaluation.number: evaluation for evaluation in self.run.evaluations}
+        rows = [
+            by_number[number] for number in (by_number if wanted is None else wanted) if number is not None
+        ]
+        columns: dict[str, list[Any]] = {
+            "number": [row.number for row in rows],
+            "generation": [row.generation for row in rows],
+            "feasible": [row.feasible for row in rows],
+            "status": [str(row.assessment.status) for row in rows],
+            "violation": [row.assessment.violation for row in rows],
+            "seconds": [row.seconds for row in rows],
+        }
+        return columns | {name: [value(row) for row in rows] for name, value in self._quantities.items()}
+
+    def cases(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
+        """Every case of designs as columns, a row per design, person, load and height.
+
+        Args:
+            designs: of this run; left out, all evaluations.
+        Returns:
+            Columns by name: number, human, payload (empty where the problem has one), height [m], status,
+            reason, robot_torque and human_torque [N m], residual; None where a value does not exist.
+        """
+        chosen = self.designs if designs is None else designs
+        rows = [(design.number, case) for design in chosen for case in design.heights]
+        return {
+            "number": [number for number, _ in rows],
+            "human": [case.human_name for _, case in rows],
+            "payload": [case.payload_name for _, case in rows],
+            "height": [case.height_m for _, case in rows],
+            "status": [str(case.status) for _, case in rows],
+            "reason": [case.reason for _, case in rows],
+            "robot_torque": [case.robot_torque_norm for _, case in rows],
+            "human_torque": [case.human_torque_norm for _, case in rows],
+            "residual": [case.residual for _, case in rows],
+        }
+
+    def postures(self, number: int) -> tuple[HeightDetail, ...]:
+        """How robot and person of a design stand at each height that was solved, with torques and wrenches.
+
+        The log holds them for every design that was on the front when it was found. For another one they are
+        solved anew, which takes seconds and needs the solver.
+
+        Raises:
+            InputError: the run has no such design.
+        """
+        design = self.design(number)
+        if design.postures:
+            return design.postures
+        from evodesign.api.opened_problem import OpenedProblem  # brings the solver
+
+        return OpenedProblem(self.run.header.problem).evaluate(design.parameters).postures
+
+    @property
+    def _quantities(self) -> dict[str, Quantity]:
+        first = self.run.evaluations[0] if self.run.evaluations else None
+        return quantities(self.run.header, first)
+
+    def _design(self, evaluation: Evaluation) -> Design:
+        postures = self._details.get(evaluation.number, ())
+        return Design(evaluation.number, evaluation.assessment, postures)

@@ -1,0 +1,1 @@
+"""Bodies of people: generated from figures that were measured, with their strength."""

@@ -1,0 +1,160 @@
+"""The published figures behind a generated person, as `data/anthropometry.toml` holds them.
+
+What each key means, its unit and its source are said in that file; here is its form, read strictly.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from enum import StrEnum
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import msgspec
+
+__all__ = ["Articulation", "AxisRange", "BodySegment", "Column", "Sex", "Tables", "tables"]
+
+
+class Sex(StrEnum):
+    """Which column of the tables is read."""
+
+    MALE = "male"
+    FEMALE = "female"
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of the tables in `data/anthropometry.toml`; what each key means is said there."""
+
+
+class Accepted(Table, frozen=True):
+    """Persons for whom the tables are believed."""
+
+    source: str
+    stature_m: tuple[float, float]
+    mass_kg: tuple[float, float]
+
+
+class Lengths(Table, frozen=True):
+    """Lengths, fractions of stature."""
+
+    source: str
+    ankle_height: float
+    shank: float
+    thigh: float
+    trunk: float
+    neck: float
+    head: float
+    shoulder_width: float
+    upper_arm: float
+    forearm: float
+    hand: float
+    hip_breadth: float
+    foot_length: float
+    foot_breadth: float
+
+
+class Foot(Table, frozen=True):
+    """Where ankle, ball and centre of mass lie in the foot."""
+
+    source: str
+    ball_from_heel: float
+    ankle_from_heel: float
+    centre_height: float
+    toe_thickness: float
+
+
+class Trunk(Table, frozen=True):
+    """Where the trunk's joints lie and how it is shared out."""
+
+    source: str
+    hip_joint_separation: float
+    clavicle_start: float
+    thoracic_to_lumbar: float
+    shoulder_mass_share: float
+
+
+class Looks(Table, frozen=True):
+    """Figures that are only seen."""
+
+    source: str
+    hand_breadth: float
+    density_kg_per_m3: float
+
+
+class BodySegment(Table, frozen=True):
+    """One row of de Leva's Table 4."""
+
+    mass: float
+    centre: float
+    radii: tuple[float, float, float]
+
+
+class Column(Table, frozen=True):
+    """De Leva's figures for one sex, with the sample's mean stature and lengths of the trunk and head."""
+
+    stature_m: float
+    head_m: float
+    upper_trunk_m: float
+    middle_trunk_m: float
+    lower_trunk_m: float
+    hand_centre_to_metacarpal: float
+    segments: dict[str, BodySegment]
+
+
+class DeLeva(Table, frozen=True):
+    """De Leva's Table 4."""
+
+    source: str
+    end_points: dict[str, str]
+    male: Column
+    female: Column
+
+    def of(self, sex: Sex) -> Column:
+        """The column of a sex."""
+        return {Sex.MALE: self.male, Sex.FEMALE: self.female}[sex]
+
+
+class AxisRange(Table, frozen=True):
+    """One axis of a joint, its limits [degrees] and what the signs mean on the left side."""
+
+    axis: str
+    range_deg: tuple[float, float]
+    negative: str
+    positive: str
+
+
+class Articulation(Table, frozen=True):
+    """A joint of one to three axes from parent to child."""
+
+    name: str
+    parent: str
+    child: str
+    axes: tuple[AxisRange, ...]
+
+
+class Articulations(Table, frozen=True):
+    """All joints of the middle and the left side."""
+
+    source: str
+    joints: tuple[Articulation, ...]
+
+
+class Tables(Table, frozen=True):
+    """The whole data file."""
+
+    accepted: Accepted
+    lengths: Lengths
+    foot: Foot
+    trunk: Trunk
+    looks: Looks
+    de_leva: DeLeva
+    articulation: Articulations
+
+
+@cache
+def tables() -> Tables:
+    """The figures of `data/anthropometry.toml`."""
+    text = resources.files("evodesign.human").joinpath("data/anthropometry.toml").read_text("utf-8")
+    read: dict[str, Any] = tomllib.loads(text)
+    return msgspec.convert(read, Tables)

@@ -1,0 +1,172 @@
+"""The scene: a robot and a person facing each other, holding a level load.
+
+World frame: origin on the ground under the load, x from the robot towards the person, z up. Each agent also
+has a frame of its own, the world turned about z so that the agent looks along +x at the load; in it, robot
+and person obey the same constraints.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Vector
+from evodesign.body.shape import Box
+from evodesign.human.strength import JointStrength
+from evodesign.mechanics.contact import Ground, SoleSize
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
+from evodesign.tree.model import Tree
+
+__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits"]
+
+ROBOT, HUMAN = "robot", "human"
+SIDES = ("left", "right")
+
+
+class Grasp(StrEnum):
+    """What a hand can pass to the load: a force (as in the paper), or a force and a moment."""
+
+    POINT = "point"
+    RIGID = "rigid"
+
+
+@dataclass(frozen=True, slots=True)
+class Payload:
+    """A box held level by four hands. Its frame has the world's axes and its origin at the box's centre.
+
+    Args:
+        size: depth along x (robot to person), width along y, height along z [m].
+        mass: [kg].
+        center_of_mass: from the box's centre, in its frame [m].
+        grasp: what every hand can pass to the load.
+        hand_moment: largest size of each component of the moment that a rigid hand passes [N m].
+        grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
+            it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
+        label: what it is called where a problem has several loads.
+    """
+
+    size: Vector
+    mass: float
+    center_of_mass: Vector = (0.0, 0.0, 0.0)
+    grasp: Grasp = Grasp.POINT
+    hand_moment: float = math.inf
+    grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
+    label: str = ""
+
+    @property
+    def inertia(self) -> Inertia:
+        """Inertia in the load's frame, that of a uniform box moved to the centre of mass."""
+        a, b, c = Box(*self.size).moments(self.mass)
+        return Inertia(self.mass, self.center_of_mass, ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c)))
+
+    def disturbed(self, disturbance: Disturbance) -> Payload:
+        """The load as a disturbance makes it."""
+        moved = [c + shift for c, shift in zip(self.center_of_mass, disturbance.center_of_mass, strict=True)]
+        mass = self.mass * (1.0 + disturbance.mass_share)
+        return replace(self, mass=mass, center_of_mass=(moved[0], moved[1], moved[2]))
+
+    def grasp_point(self, agent: Agent, side: str) -> Vector:
+        """Grasp point of an agent's hand, from the box's centre, in that agent's frame [m]."""
+        given = self.grasp_points.get((agent.name, side))
+        if given is not None:
+            return (agent.sign * given[0], agent.sign * given[1], given[2])
+        depth, width, height = self.size
+        return (-depth / 2.0, 0.4 * width * (1.0 if side == "left" else -1.0), height / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class StanceLimits:
+    """Bounds that keep a posture one that a robot or person would take.
+
+    Args:
+        trunk_clearance: least distance of the trunk's frames from the load's near edge, along x [m].
+        feet_apart: least and largest sideways distance of the soles' origins [m].
+        feet_stagger: largest difference of the soles' origins along x [m].
+        foot_yaw: largest turn of a foot against the agent's x [rad].
+        base_tilt: largest roll, pitch and yaw of the root link [rad].
+        push: largest horizontal force between the agents [N].
+    """
+
+    trunk_clearance: float = 0.15
+    feet_apart: tuple[float, float] = (0.12, 0.50)
+    feet_stagger: float = 0.30
+    foot_yaw: float = 0.35
+    base_tilt: float = 0.60
+    push: float = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Agent:
+    """A robot or person and the parts of it that matter for the task.
+
+    Args:
+        name: `robot` or `human`.
+        tree: links and joints.
+        joints: names of the joints that move; the others are held at zero.
+        hands: frame that meets the load, by side.
+        soles: frame under the foot, by side.
+        sole_size: of each foot.
+        trunk: frames that keep clear of the load.
+        label: who it is where a problem has several people.
+        strengths: of its joints, by name; none for a robot.
+        torque_limits: largest torque [N m] of each joint that moves and has a limit.
+        limits_torques: whether these limits hold in every posture.
+    """
+
+    name: str
+    tree: Tree
+    joints: tuple[str, ...]
+    hands: Mapping[str, str]
+    soles: Mapping[str, str]
+    sole_size: SoleSize
+    trunk: tuple[str, ...]
+    label: str = ""
+    strengths: Mapping[str, JointStrength] = field(default_factory=dict)
+    torque_limits: Mapping[str, float] = field(default_factory=dict)
+    limits_torques: bool = False
+
+    @property
+    def pushed_frame(self) -> str:
+        """The frame that a push on the agent meets: the last of its trunk."""
+        return self.trunk[-1]
+
+    @property
+    def facing(self) -> float:
+        """Rotation about z that takes the agent's frame to the world [rad]."""
+        return math.pi if self.name == HUMAN else 0.0
+
+    @property
+    def sign(self) -> float:
+        """cos(facing): horizontal components change sign between the person's frame and the world."""
+        return -1.0 if self.name == HUMAN else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Robot, person and load, and the limits under which they stand.
+
+    Args:
+        robot, human: the agents.
+        payload: the load.
+        ground: under all feet.
+        stance: limits of postures.
+        disturbances: further load cases.
+        robot_share: part of what the hands carry that the robot carries, disturbed or not; None where statics
+            or the posture problem decides.
+    """
+
+    robot: Agent
+    human: Agent
+    payload: Payload
+    ground: Ground = field(default_factory=Ground)
+    stance: StanceLimits = field(default_factory=StanceLimits)
+    disturbances: Disturbances = field(default_factory=Disturbances)
+    robot_share: float | None = None
+
+    @property
+    def label(self) -> str:
+        """Who holds what, where there are several people or loads."""
+        return ", ".join(label for label in (self.human.label, self.payload.label) if label)

@@ -1,0 +1,1 @@
+"""Nonlinear programs and their solvers, which know no robots."""

@@ -1,0 +1,205 @@
+"""A program's functions as machine code: generated as C, compiled once, found again by later processes.
+
+The C holds the very expression graphs that CasADi's virtual machine would run (objective, constraints, exact
+first derivatives and Hessian of the Lagrangian), and is compiled without rearranging sums, so that both give
+the same bits: a design's value does not depend on whether there is a compiler. (Eliminating common
+subexpressions once more in the derivatives would save 2 % of their operations and cost that equality.)
+
+Threat model: see `cache`: a library is executed with the user's rights, so one that another user could have
+written or put in place is never loaded, but built again. The compiler that $CC or PATH names is trusted.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+
+from evodesign.identity import code_digest, digest
+from evodesign.nlp.disk_cache import Cache, user_cache
+
+__all__ = [
+    "CompiledFunctions",
+    "Compiler",
+    "Library",
+    "NotCompiled",
+    "compiled_functions",
+    "find_compiler",
+    "library",
+]
+
+Expression = Any
+
+COMPILERS = ("cc", "gcc", "clang")
+FLAGS = ("-O1", "-shared", "-fPIC", "-ffp-contract=off")
+"""More optimisation does not pay; fused multiply-adds would round differently from the virtual machine."""
+
+COMPILING_LIMIT = 300.0
+"""Wall time [s] after which a compiler is stopped; the largest program takes about 12."""
+
+VERSION_LIMIT = 10.0
+"""Wall time [s] in which a compiler must say its version."""
+
+
+@dataclass(frozen=True, slots=True)
+class NotCompiled:
+    """Why a program's functions run on CasADi's virtual machine: slower, with the same results."""
+
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Compiler:
+    """A C compiler: the words that start it, and what it says of its version."""
+
+    command: tuple[str, ...]
+    version: str
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """A compiled program on the disk; fresh when this call has compiled it."""
+
+    path: Path
+    fresh: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CompiledFunctions:
+    """A program's functions in memory.
+
+    Args:
+        oracle: what `nlpsol` takes in place of a symbolic problem.
+        library: where they were loaded from.
+    """
+
+    oracle: Any
+    library: Library
+
+
+def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | NotCompiled:
+    """The functions of a nonlinear program, with this process's compiler and the user's cache.
+
+    Args:
+        nlp: symbols x and p, objective f and constraints g, all SX.
+    """
+    compiler = find_compiler(os.environ)
+    if isinstance(compiler, NotCompiled):
+        return compiler
+    try:
+        found = library(nlp, compiler, user_cache("functions", os.environ))
+    except OSError as error:
+        return NotCompiled(str(error))
+    if isinstance(found, NotCompiled):
+        return found
+    try:
+        return CompiledFunctions(ca.external("nlp", str(found.path)), found)
+    except RuntimeError as error:  # such as a directory mounted without the right to execute
+        return NotCompiled(f"the compiled functions could not be loaded: {_gist(str(error))}")
+
+
+def find_compiler(environment: Mapping[str, str]) -> Compiler | NotCompiled:
+    """The C compiler that $CC or PATH names."""
+    named = environment.get("CC", "").strip()
+    wanted = [named.split()] if named else [[name] for name in COMPILERS]
+    for program, *arguments in wanted:
+        path = shutil.which(program, path=environment.get("PATH", ""))
+        if path is None:
+            continue
+        output = _run([path, *arguments, "--version"], VERSION_LIMIT, environment)
+        if isinstance(output, NotCompiled):
+            return output
+        return Compiler((path, *arguments), output)
+    looked = f"$CC names '{named}'" if named else f"looked for {', '.join(COMPILERS)}"
+    return NotCompiled(f"no C compiler found ({looked})")
+
+
+def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> Library | NotCompiled:
+    """The compiled functions of a nonlinear program, from the cache or, when they are not there, compiled.
+
+    The key is made of the program's own expressions, from which derivatives and C follow: finding a library
+    costs milliseconds, and neither is made again. Of several processes one compiles, the others wait for it.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    key = _key(nlp, compiler)
+    path = cache.find(key)
+    if path is not None:
+        return Library(path, fresh=False)
+    with cache.lock(key) as waited:
+        path = cache.find(key)
+        if path is not None:
+            return Library(path, fresh=False)
+        if waited:  # trying again would take as long, and fail as surely, in one process after another
+            return NotCompiled("another process tried to compile the same functions and failed")
+        content = _compiled(_c_text(nlp), compiler, cache.directory)
+        return content if isinstance(content, NotCompiled) else Library(cache.store(key, content), fresh=True)
+
+
+def _key(nlp: Mapping[str, Expression], compiler: Compiler) -> str:
+    expressions = ca.Function("nlp", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]]).serialize()
+    machine = " ".join(os.uname()[::4])  # system and processor
+    return digest((code_digest(__name__), machine, compiler, expressions))
+
+
+def _c_text(nlp: Mapping[str, Expression]) -> str:
+    """C of all functions that `nlpsol` looks for in a library, under the names that it gives them itself."""
+    silent = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes"}}
+    solver = ca.nlpsol("solver", "ipopt", dict(nlp), silent)
+    generator = ca.CodeGenerator("functions", {"verbose": False})
+    for function in (solver.oracle(), *(solver.get_function(name) for name in solver.get_function())):
+        generator.add(function)
+    return str(generator.dump())
+
+
+def _compiled(text: str, compiler: Compiler, directory: Path) -> bytes | NotCompiled:
+    """The library of a C text; every file on the way to it lies in the user's own directory."""
+    with tempfile.TemporaryDirectory(prefix=".", dir=directory) as name:
+        source, target = Path(name) / "functions.c", Path(name) / "functions.so"
+        source.write_text(text, encoding="ascii")
+        command = [*compiler.command, *FLAGS, str(source), "-o", str(target), "-lm"]
+        output = _run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name})
+        return output if isinstance(output, NotCompiled) else target.read_bytes()
+
+
+def _run(command: Sequence[str], limit: float, environment: Mapping[str, str]) -> str | NotCompiled:
+    """What a compiler writes; it is stopped, with the processes that it started, after a limit [s]."""
+    try:
+        process = subprocess.Popen(  # noqa: S603
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            env={**environment, "LC_ALL": "C"},  # a version reads the same in every language
+            process_group=0,
+        )
+    except OSError as error:
+        return NotCompiled(f"the compiler could not be started: {error}")
+    with process:
+        try:
+            output, _ = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            return NotCompiled(f"{command[0]} did not finish within {limit:g} s")
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+    if process.returncode != 0:
+        return NotCompiled(f"{command[0]} failed ({process.returncode}): {_gist(output)}")
+    return output
+
+
+def _gist(text: str) -> str:
+    """The line of a message that says what went wrong: the first about an error, or else the last."""
+    lines = text.strip().splitlines() or ["it said nothing"]
+    return next((line for line in lines if "error:" in line.lower()), lines[-1]).strip()

@@ -1,0 +1,195 @@
+"""The optimality conditions of a program at its active set, as a linear system.
+
+At a solution the active rows A (constraints and bounds that hold with equality) satisfy
+
+    grad f + A^T lambda = 0,      a(x, p) = limits
+
+By the implicit function theorem x and lambda move with p as
+
+    | H  A^T | | dx/dp      |       | d(grad L)/dp |
+    | A  0   | | dlambda/dp |  =  - | da/dp        |        H = Hessian of the Lagrangian L
+
+as long as the rows of A are independent and H is positive definite on their null space, but for directions
+that change nothing. The same system, with the residuals on the right, is Newton's step.
+
+Source: Nocedal and Wright, Numerical Optimization, ch. 16 (null-space method) and 18.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.nlp.program import Program
+
+__all__ = [
+    "COMPLEMENTARY",
+    "Change",
+    "Conditions",
+    "Derivatives",
+    "NotDifferentiable",
+    "PrimalDual",
+    "error",
+    "moved",
+]
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+COMPLEMENTARY = 1e-6
+"""Slack or multiplier of an inequality, in the program's own units, below which both count as zero."""
+
+SINGULAR = 1e-8
+"""Singular value of the held rows, relative to the largest, that counts as zero."""
+
+FLAT = 1e-11
+"""Curvature, in the program's own units, that counts as none."""
+
+SADDLE = 1e-5
+"""Negative curvature that counts: less stems from costs of little weight, and the system stays regular."""
+
+
+@dataclass(frozen=True, slots=True)
+class NotDifferentiable:
+    """Why a solution has no derivative, in a sentence."""
+
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class PrimalDual:
+    """Symbols, then constraints' rows: their values and multipliers, and which of them are held at limits.
+
+    Args:
+        symbols: shape (symbols,).
+        multipliers: of the constraints; zero where they are not held.
+        held_symbols, held_rows: what is an equality.
+        targets: where the rows are held.
+    """
+
+    symbols: Array
+    multipliers: Array
+    held_symbols: Mask
+    held_rows: Mask
+    targets: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Derivatives:
+    """A program at a point, in its own units; L is the cost plus multipliers times constraints."""
+
+    cost: float
+    cost_slope: Array  # dL/dp
+    rows: Array
+    row_slope: Array  # d rows / dp
+    jacobian: Array  # d rows / dx
+    gradient: Array  # dL/dx
+    gradient_slope: Array  # d2L/dx dp
+    hessian: Array  # d2L/dx2
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A step, one per column; `undetermined` symbols can move at no cost."""
+
+    symbols: Array
+    multipliers: Array
+    undetermined: Mask
+
+
+class Conditions:
+    """A program's functions and their derivatives."""
+
+    def __init__(self, program: Program) -> None:
+        self._function = _function(program)
+
+    def rows(self, symbols: Array, parameters: Array) -> Array:
+        """The constraints' rows."""
+        still = np.zeros(self._function.numel_in(1))
+        return np.asarray(self._function(symbols, still, parameters)[2]).ravel()
+
+    def at(self, point: PrimalDual, parameters: Array) -> Derivatives:
+        """Everything at a point."""
+        found = [np.asarray(m) for m in self._function(point.symbols, point.multipliers, parameters)]
+        cost, cost_slope, rows, row_slope, jacobian, gradient, gradient_slope, hessian = found
+        return Derivatives(
+            cost=float(cost[0, 0]),
+            cost_slope=cost_slope.ravel(),
+            rows=rows.ravel(),
+            row_slope=row_slope,
+            jacobian=jacobian,
+            gradient=gradient.ravel(),
+            gradient_slope=gradient_slope,
+            hessian=hessian,
+        )
+
+
+def _function(program: Program) -> Any:
+    """A CasADi function of symbols, multipliers and parameters that gives the parts of `Derivatives`."""
+    x, p, rows = program.symbols, program.given, program.rows
+    multipliers = ca.SX.sym("multipliers", rows.numel())
+    lagrangian = program.cost + ca.dot(multipliers, rows)
+    hessian, gradient = ca.hessian(lagrangian, x)
+    parts = [
+        program.cost,
+        ca.gradient(lagrangian, p),
+        rows,
+        ca.jacobian(rows, p),
+        ca.jacobian(rows, x),
+        gradient,
+        ca.jacobian(gradient, p),
+        hessian,
+    ]
+    return ca.Function(
+        "sensitivity", [x, multipliers, p], [ca.densify(part) for part in parts], {"cse": True}
+    )
+
+
+def error(point: PrimalDual, here: Derivatives) -> float:
+    """Largest residual of the optimality conditions."""
+    stationary = here.gradient[~point.held_symbols]
+    held = (here.rows - point.targets)[point.held_rows]
+    return float(np.abs(np.concatenate([stationary, held])).max(initial=0.0))
+
+
+def moved(point: PrimalDual, here: Derivatives, gradients: Array, rows: Array) -> Change | NotDifferentiable:
+    """Changes that undo residuals of the optimality conditions, one per column.
+
+    A step within the null space Z of the held rows is split into the eigenvectors of Z^T H Z; along those
+    without curvature it is zero, for what they move has no cost.
+
+    Args:
+        point: where.
+        here: derivatives there.
+        gradients: residuals of the Lagrangian's gradient, shape (symbols, columns).
+        rows: residuals of the constraints, shape (rows, columns).
+    """
+    free = ~point.held_symbols
+    hessian = here.hessian[np.ix_(free, free)]
+    jacobian = here.jacobian[np.ix_(point.held_rows, free)]
+    left, sizes, right = np.linalg.svd(jacobian)
+    if len(sizes) < len(jacobian) or sizes.min(initial=1.0) < SINGULAR * sizes.max(initial=1.0):
+        return NotDifferentiable(
+            "what holds the solution holds it twice over, so that it has no unique multipliers"
+        )
+    across, along = right[: len(sizes)].T, right[len(sizes) :].T
+    curvatures, axes = np.linalg.eigh(along.T @ hessian @ along)
+    if len(curvatures) and curvatures[0] < -SADDLE:
+        return NotDifferentiable(f"the solution is no minimum (curvature {curvatures[0]:.1e})")
+    curved = np.abs(curvatures) > FLAT
+    bent, flat = along @ axes[:, curved], along @ axes[:, ~curved]
+    step = -across @ ((left.T @ rows[point.held_rows]) / sizes[:, None])
+    pull = gradients[free] + hessian @ step
+    if flat.size and np.abs(flat.T @ pull).max() > COMPLEMENTARY:
+        return NotDifferentiable("the solution is not determined")
+    step = step - bent @ ((bent.T @ pull) / curvatures[curved][:, None])
+    force = -left @ ((across.T @ (gradients[free] + hessian @ step)) / sizes[:, None])
+    symbols, multipliers = np.zeros(gradients.shape), np.zeros(rows.shape)
+    undetermined = np.zeros(len(free), bool)
+    symbols[free], multipliers[point.held_rows] = step, force
+    undetermined[free] = (np.abs(flat) > COMPLEMENTARY).any(axis=1)
+    return Change(symbols, multipliers, undetermined)

@@ -1,0 +1,146 @@
+"""Nonlinear programs: named variables, constraints and parameters.
+
+A program is assembled from blocks and does not know what they mean. Variables are scaled so that a solver
+sees numbers of order one; everything outside is in SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+__all__ = ["Constraint", "Program", "Start", "Variable"]
+
+Array = Any
+Expression = Any
+
+Start = Mapping[str, Any]
+"""Starting values by variable name; variables left out begin at the program's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A named block of decision variables.
+
+    Args:
+        name: such as `robot.joints`.
+        symbol: SX column that the solver varies; the physical value is scale * symbol.
+        scale: size of one unit of the symbol, in SI units.
+        lower, upper, start: bounds and starting values in SI units, one per row.
+        labels: words for the rows; none: they are counted from zero.
+        drawn: whether a random start draws it from between its bounds.
+        key: by which those who assemble the program find it again.
+    """
+
+    name: str
+    symbol: Expression
+    scale: float
+    lower: Array
+    upper: Array
+    start: Array
+    labels: tuple[str, ...] = ()
+    drawn: bool = False
+    key: Hashable = None
+
+    @property
+    def value(self) -> Expression:
+        """The physical quantity as an expression."""
+        return self.scale * self.symbol
+
+    @classmethod
+    def column(
+        cls, name: str, lower: Sequence[float], upper: Sequence[float], start: Sequence[float], scale: float
+    ) -> Variable:
+        """A block with one row per bound; starts are moved inside the bounds."""
+        low, high = np.asarray(lower, float), np.asarray(upper, float)
+        inside = np.clip(np.asarray(start, float), low, high)
+        return cls(name, ca.SX.sym(name, len(low)), scale, low, high, inside)
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """A named block of constraints lower <= expression <= upper; labels as for a variable."""
+
+    name: str
+    expression: Expression
+    lower: float
+    upper: float
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """Minimise a cost over variables, subject to constraints, with numbers given as parameters, by name."""
+
+    name: str
+    variables: tuple[Variable, ...]
+    constraints: tuple[Constraint, ...]
+    cost: Expression
+    parameters: Mapping[str, Expression]
+
+    @property
+    def symbols(self) -> Expression:
+        """Everything that the solver varies, as one column."""
+        return ca.vertcat(*[variable.symbol for variable in self.variables])
+
+    @property
+    def given(self) -> Expression:
+        """All parameters, as one column."""
+        return ca.vertcat(*self.parameters.values())
+
+    @property
+    def columns(self) -> Mapping[str, slice]:
+        """Where each parameter lies among the rows of `given`."""
+        found, first = {}, 0
+        for name, symbol in self.parameters.items():
+            found[name] = slice(first, first + symbol.numel())
+            first += symbol.numel()
+        return found
+
+    @property
+    def rows(self) -> Expression:
+        """All constraints, as one column."""
+        return ca.vertcat(*[constraint.expression for constraint in self.constraints])
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds of the symbols."""
+        lower = np.concatenate([v.lower / v.scale for v in self.variables])
+        return lower, np.concatenate([v.upper / v.scale for v in self.variables])
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Lower and upper limits of the constraints' rows."""
+        counts = [c.expression.numel() for c in self.constraints]
+        lower = np.repeat([c.lower for c in self.constraints], counts)
+        return lower, np.repeat([c.upper for c in self.constraints], counts)
+
+    def packed(self, values: Mapping[str, Array]) -> Array:
+        """Symbols from values in SI units (variables left out: their own starting values)."""
+        blocks = [(v, values.get(v.name, v.start)) for v in self.variables]
+        return np.concatenate([np.asarray(value) / v.scale for v, value in blocks])
+
+    def unpacked(self, symbols: Array) -> dict[str, Array]:
+        """Values in SI units, by name, from a column of symbols or of their changes, shape (symbols, ...)."""
+        values, first = {}, 0
+        for variable in self.variables:
+            last = first + variable.symbol.numel()
+            values[variable.name] = variable.scale * symbols[first:last]
+            first = last
+        return values
+
+    def packed_parameters(self, values: Mapping[str, Any]) -> Array:
+        """The column of `given` from a number or several for each parameter.
+
+        Raises:
+            ValueError: other parameters than the program's are given.
+        """
+        if set(values) != set(self.parameters):
+            wanted, found = ", ".join(sorted(self.parameters)), ", ".join(sorted(values))
+            raise ValueError(f"program '{self.name}' wants parameters {wanted}; found {found}")
+        blocks = [np.atleast_1d(np.asarray(values[name], float)) for name in self.parameters]
+        return np.concatenate([[], *blocks])

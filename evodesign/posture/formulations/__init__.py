@@ -1,0 +1,1 @@
+"""Programs that are solved: who and what is a variable in each."""

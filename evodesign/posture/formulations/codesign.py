@@ -1,0 +1,241 @@
+"""The paper's problem: postures at all heights and the hardware pi as variables of one nonlinear program.
+
+    minimise    W1 sum_k t1_k + W3 sum_k t3_k + W2 t2 + W4 t4 + regularisation
+    subject to  every term, for both agents and the load, at every height k
+
+The terms are those of the posture problem, over a robot whose lengths and densities are variables; a genome
+(a point of the unit cube) stands for them, so that IPOPT sees numbers of order one. Eq. 14 a to g (load level
+at its height, hands on it, feet on the ground and flat) always hold, other groups of limits as `Enforced`
+says.
+
+The design is a variable here and not a parameter: there is no landscape over designs and no derivative.
+
+Source: Sartore et al. 2022, Eq. 14.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
+from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.posture.allocation import EffortWeights, shared_scene
+from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
+from evodesign.posture.candidate import checked
+from evodesign.posture.check import AgentModel, Checker, sizes
+from evodesign.posture.formulations.codesign_start import drawn_postures, standard_postures
+from evodesign.posture.limit_groups import Enforced
+from evodesign.posture.results import Attempt, HeightSolution, Instant
+from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.terms.base import TORQUE_UNIT, Residual
+from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.terms.torque import effort
+from evodesign.posture.warm_start import instant_of, layout_of, start_from
+from evodesign.records import Genome, Status
+
+__all__ = ["JointProblem", "JointSettings", "JointSolution"]
+
+Array = Any
+Expression = Any
+
+NAME = "codesign"
+"""Of the formulation, in results."""
+
+GENOME = "genome"
+"""Name of the variable that holds the design."""
+
+LEAST_LENGTH = 0.1
+"""Lower bound of a length multiplier without bounds: with none at all solves end at lengths below zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointSettings:
+    """What is minimised, and under which limits.
+
+    Args:
+        efforts: weights of the agents' torques within t1.
+        tasks: t1 to t4 and their weights.
+        enforced: which limits hold.
+        options: of the solver.
+        symmetric: whether postures are mirror-symmetric.
+    """
+
+    efforts: EffortWeights
+    tasks: Tasks
+    enforced: Enforced
+    options: IpoptOptions
+    symmetric: bool
+
+
+@dataclass(frozen=True, slots=True)
+class JointSolution:
+    """How one start ended.
+
+    Args:
+        design: value of each parameter, of the optimum or of the last iterate.
+        heights: a solution per height, all solved or none; residuals are those that the problem enforces.
+        violations: what the check found of limits that the problem does not enforce, per height.
+        attempt: how the solve ended; its cost is that of Eq. 14 [(10 N m)^2].
+    """
+
+    design: tuple[float, ...]
+    heights: tuple[HeightSolution, ...]
+    violations: tuple[tuple[Residual, ...], ...]
+    attempt: Attempt
+
+    @property
+    def solved(self) -> bool:
+        """Whether solver and check agree on it."""
+        return self.attempt.status is Status.SOLVED
+
+
+class JointProblem:
+    """The program of a scene, built once and solved from any number of starts.
+
+    Args:
+        scene: agents, load, ground and stance.
+        space: design parameters.
+        heights: of the load's centre [m].
+        settings: costs and limits.
+        fixed: a genome that the design is held at; None to optimise it.
+    Raises:
+        ModelError: symmetric postures of a scene that is not its own mirror image.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        space: DesignSpace,
+        heights: Sequence[float],
+        settings: JointSettings,
+        fixed: Genome | None = None,
+    ) -> None:
+        self._scene = scene
+        self._space = space
+        self._heights = tuple(heights)
+        self._enforced = settings.enforced
+        both = (whole(scene.robot), whole(scene.human))
+        self._forms = symmetric_forms(scene) if settings.symmetric else both
+        self._human = AgentModel.of(scene.human, scene.human.tree)
+        design = _design_variable(space, settings.enforced, fixed)
+        self.program = _program(self._forms, scene, space, design, self._heights, settings)
+        self._solver = Solver(self.program, settings.options)
+
+    def solve(self, genome: Genome, *, drawn: bool) -> JointSolution:
+        """The local optimum that a start leads to.
+
+        Args:
+            genome: the design that it begins with.
+            drawn: whether its postures are drawn for the genome, or the standard ones.
+        """
+        if drawn:
+            return self._from("drawn postures", genome, drawn_postures(self.program, self._forms, genome))
+        return self._from("standard postures", genome, standard_postures(self.program, self._forms))
+
+    def polish(self, genome: Genome, postures: Sequence[Instant]) -> JointSolution:
+        """The local optimum next to known postures, one instant per height."""
+        return self._from("polish", genome, start_from(self.program, self._forms, postures))
+
+    def _from(self, name: str, genome: Genome, postures: Start) -> JointSolution:
+        raw = self._solver.solve({}, _inside(self.program, {GENOME: np.array(genome), **postures}))
+        design = _values(self._space, raw.values[GENOME].tolist())
+        if raw.status is Status.SOLVED:
+            return self._checked(name, design, raw)
+        return self._failed(design, checked(NAME, name, raw, ()))
+
+    def _failed(self, design: tuple[float, ...], attempt: Attempt) -> JointSolution:
+        reason = f"the joint problem was not solved: {attempt.reason}"
+        heights = tuple(
+            HeightSolution(height, attempt.status, reason, {}, {}, (attempt,)) for height in self._heights
+        )
+        return JointSolution(design, heights, ((),) * len(heights), attempt)
+
+    def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
+        tree = self._space.resized(self._scene.robot.tree, design)
+        checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
+        layout, count = layout_of(self.program), len(self._heights)
+        instants = [instant_of(layout, self._forms, self._scene, raw.values, k) for k in range(count)]
+        found = [checker.residuals(i, h) for i, h in zip(instants, self._heights, strict=True)]
+        kept = [tuple(r for r in of if self._enforced.covers(r.group)) for of in found]
+        everywhere = [
+            replace(residual, name=f"{height:g} m, {residual.name}")
+            for height, of in zip(self._heights, kept, strict=True)
+            for residual in of
+        ]
+        attempt = checked(NAME, name, raw, everywhere)
+        if attempt.status is not Status.SOLVED:
+            return self._failed(design, attempt)
+        heights = tuple(
+            HeightSolution(h, Status.SOLVED, "solved", instant.postures, sizes(of), (attempt,), attempt)
+            for h, instant, of in zip(self._heights, instants, kept, strict=True)
+        )
+        missed = tuple(tuple(r for r in of if not self._enforced.covers(r.group)) for of in found)
+        return JointSolution(design, heights, missed, attempt)
+
+
+def _inside(program: Program, start: Mapping[str, Array]) -> dict[str, Array]:
+    """Starting values moved inside the bounds."""
+    bounds = {v.name: (v.lower, v.upper) for v in program.variables}
+    return {name: np.clip(value, *bounds[name]) for name, value in start.items()}
+
+
+def _values(space: DesignSpace, genome: Sequence[Expression]) -> tuple[Expression, ...]:
+    """Parameter values of a genome of numbers or expressions, also outside the unit cube."""
+    return tuple(
+        parameter.lower * (1.0 - share) + parameter.upper * share
+        for parameter, share in zip(space.parameters, genome, strict=True)
+    )
+
+
+def _design_variable(space: DesignSpace, enforced: Enforced, fixed: Genome | None) -> Variable:
+    if fixed is not None:
+        return Variable.column(GENOME, fixed, fixed, fixed, 1.0)
+    lower, upper = [0.0] * len(space.parameters), [1.0] * len(space.parameters)
+    for index, parameter in enumerate(space.parameters):
+        if parameter.kind is ParameterKind.LENGTH and not enforced.lengths:
+            lower[index] = (LEAST_LENGTH - parameter.lower) / (parameter.upper - parameter.lower)
+            upper[index] = np.inf
+    return Variable.column(GENOME, lower, upper, [0.5] * len(lower), 1.0)
+
+
+def _program(
+    forms: tuple[Form, Form],
+    scene: Scene,
+    space: DesignSpace,
+    design: Variable,
+    heights: Sequence[float],
+    settings: JointSettings,
+) -> Program:
+    values = _values(space, ca.vertsplit(design.value))
+    scene = shared_scene(scene, space, values)
+    tree = space.resized(scene.robot.tree, values)
+    cost = settings.tasks.of_design(space, values, scene.robot, tree)
+    parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
+    case = CaseSymbols(scene, tuple(heights))
+    assembly = assemble(parties, TERMS.values(), case, settings.enforced)
+    for (load_case,) in assembly.instants:
+        for part in _height_costs(load_case, settings):
+            cost += part
+    return Program("joint", (design, *assembly.variables), assembly.constraints, cost, {})
+
+
+def _height_costs(load_case: LoadCase, settings: JointSettings) -> list[Expression]:
+    """Each agent's W1 t1 + W3 t3 + regularisation at one height, then the system's costs."""
+    tasks, weights = settings.tasks.weights, {ROBOT: settings.efforts.robot, HUMAN: settings.efforts.human}
+    costs = []
+    for position, (name, body) in enumerate(load_case.bodies.items()):
+        cost = (
+            tasks.torque * weights[name] * effort(body) / TORQUE_UNIT**2 + load_case.posture_costs[position]
+        )
+        if tasks.center_of_pressure:
+            cost += tasks.center_of_pressure * len(SIDES) / len(body.feet) * pressure_task(body.feet)
+        costs.append(cost + load_case.costs[position])
+    return [*costs, load_case.posture_costs[-1] + load_case.costs[-1]]

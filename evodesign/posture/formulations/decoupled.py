@@ -1,0 +1,260 @@
+"""Robot and person solved one after the other, joined by the internal force between them.
+
+Where `HumanValue` knows the person's least cost V(X) at a height, the robot alone is solved against it,
+
+    minimise  w_r |tau_r|^2 + regularisation_r + V(X)
+
+and then the person at the internal force X that was found. The programs are half as large again, local minima
+are a third as many, and the person's many starts are paid for once. The derivative follows the same chain:
+
+    d person / d pi = d person / dX  dX / d pi
+    d cost / d pi   = d cost_r / d pi + (cost_h'(X) - V'(X)) dX / d pi
+
+with cost_r the robot's optimal cost (which holds V) and cost_h the person's. An X at its limit stays there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Program, Start
+from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.start_portfolio import NEAR, Landscape
+from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
+from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
+from evodesign.posture.check import Checker
+from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.formulations.human_value import (
+    COEFFICIENTS,
+    HumanProblem,
+    HumanValue,
+    chebyshev_sum,
+    human_program,
+)
+from evodesign.posture.results import HeightSolution, Neighbour
+from evodesign.posture.solution_derivative import PostureDerivative, found_again, known_instant
+from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.load import PUSH, any_load, force_along_x
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import instant_of, layout_of, start_from
+from evodesign.records import Status, worst_status
+
+__all__ = ["DecoupledPostures", "robot_program"]
+
+Array = Any
+
+AT_LIMIT = 1e-6
+"""How little below its limit an internal force [N] counts as being there; IPOPT ends a little before it."""
+
+
+class DecoupledPostures:
+    """The robot's program against the person's value function, for the heights that have one.
+
+    Args:
+        name: of the formulation.
+        forms: halves of robot and person.
+        setting: of the problem.
+        values: the person's value functions.
+        solvers: of other scenes.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        forms: tuple[Form, Form],
+        setting: Setting,
+        values: Sequence[HumanValue],
+        solvers: SolverCache,
+    ) -> None:
+        self.name = name
+        self._forms, self._setting, self._solvers = forms, setting, solvers
+        self._values = {value.height: value for value in values}
+
+    @cached_property
+    def _robot(self) -> Solver:
+        key = program_key(self.name, self._setting, self._forms[0])
+        return self._solvers.solver(key, self._robot_program, self._setting.options)
+
+    @cached_property
+    def _human(self) -> HumanProblem:
+        setting = self._setting
+        weight = setting.weights.human
+        return HumanProblem(self._forms[1], setting.scene, weight, setting.options, self._solvers)
+
+    @cached_property
+    def _fixed(self) -> tuple[Start, ...]:
+        return fixed_starts(self._robot.program)
+
+    @cached_property
+    def _sensitivities(self) -> tuple[SolutionSensitivity, SolutionSensitivity]:
+        setting = self._setting
+        human = human_program(self._forms[1], setting.scene, setting.weights.human)
+        return (
+            SolutionSensitivity(self._robot_program(), setting.options),
+            SolutionSensitivity(human, setting.options),
+        )
+
+    def _robot_program(self) -> Program:
+        return robot_program(self._forms[0], self._setting)
+
+    def landscape(self, height: float) -> Landscape:
+        """The robot's cost at a height [m], with V(X)."""
+        return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
+
+    def solve(
+        self, design: Sequence[float], height: float, portfolio: Sequence[Start], checker: Checker
+    ) -> Trial:
+        """What the portfolio (or else the fixed starts) leads the robot to, with the person beside it."""
+        parameters = {"design": design, **self._beside(height)}
+        starts = named_starts(self._robot, portfolio, self._fixed)
+        ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
+        return self._trial(height, ends, checker)
+
+    def solve_beside(
+        self,
+        design: Sequence[float],
+        height: float,
+        portfolio: Sequence[Start],
+        neighbour: Neighbour,
+        checker: Checker,
+    ) -> Trial:
+        """What the robot's posture in a similar scene leads to: it is close; and the first starts.
+
+        With the same load the other person's V(X) is all that differs, and no other start is needed.
+        """
+        parameters = {"design": design, **self._beside(height)}
+        known = start_from(self._robot.program, self._forms, [known_instant(neighbour.solution)])
+        ends = [("neighbour", self._robot.near.solve(parameters, known))]
+        if not neighbour.same_load:
+            starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
+            ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
+        return self._trial(height, ends, checker)
+
+    def _beside(self, height: float) -> Mapping[str, Any]:
+        """The robot's parameters beside the design."""
+        mass, value = self._setting.scene.payload.mass, self._values[height]
+        return {"height": height, "mass": mass, "value": value.coefficients}
+
+    def _trial(self, height: float, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
+        """The robot's postures with the person's at the internal force that was found."""
+        layout = {
+            **layout_of(self._robot.program, ROBOT),
+            **layout_of(self._human.program, HUMAN),
+        }
+
+        def finish(start: str, robot: RawSolution) -> Candidate:
+            value, internal = self._values[height], self._internal_force(robot)
+            human = self._human.best(height, internal, value)
+            both = _joined(robot, human, float(value.cost(internal)))
+            if human.status is not Status.SOLVED:
+                return Candidate(checked(self.name, start, both, ()), (), ())
+            instant = instant_of(layout, self._forms, self._setting.scene, both.values)
+            residuals = checker.residuals(instant, height)
+            return Candidate(checked(self.name, start, both, residuals), (instant,), residuals)
+
+        return cheapest(self.name, ends, finish)
+
+    def _internal_force(self, robot: RawSolution) -> float:
+        hand = robot.values[_left_hand(self._robot.program)]
+        force, limit = float(self._force(hand)), self._setting.scene.stance.push
+        return float(np.copysign(limit, force)) if abs(force) > limit - AT_LIMIT else force
+
+    def _force(self, left_hand: Array) -> Array:
+        """The robot's force on the load along x [N] from its left hand's; the right hand's is the same."""
+        return np.asarray(-len(SIDES) * self._setting.scene.robot.sign * left_hand[0])
+
+    def derivative(
+        self, design: Sequence[float], solution: HeightSolution
+    ) -> PostureDerivative | NotDifferentiable:
+        """How a posture that this pair of programs found moves with the design."""
+        value, (robots, humans) = self._values[solution.height], self._sensitivities
+        start = start_from(robots.program, self._forms, [known_instant(solution)])
+        found = robots.at({"design": design, **self._beside(solution.height)}, start)
+        if isinstance(found, NotDifferentiable):
+            return found
+        robot, hand = found.along("design"), _left_hand(robots.program)
+        internal, change = float(self._force(robot.values[hand])), self._force(robot.slopes[hand])
+        held = any(limit.active and limit.name == PUSH for limit in robot.limits)
+        person = self._person(solution, internal, held=held)
+        if isinstance(person, NotDifferentiable):
+            return person
+        human = person.along("internal_force", change[None, :])
+        expected = Chebyshev(value.coefficients, domain=[-value.push, value.push])
+        surprise = -float(expected.deriv()(internal)) * change
+        derivative = PostureDerivative(
+            layout={**layout_of(robots.program, ROBOT), **layout_of(humans.program, HUMAN)},
+            forms=self._forms,
+            scene=self._setting.scene,
+            values={**robot.values, **human.values},
+            slopes={**robot.slopes, **human.slopes},
+            cost=robot.cost - float(expected(internal)) + human.cost,
+            cost_slope=robot.cost_slope + human.cost_slope + surprise,
+            compared=robot.cost,
+            limits=(*robot.limits, *human.limits),
+        )
+        return found_again(derivative, solution)
+
+    def _person(
+        self, solution: HeightSolution, internal: float, *, held: bool
+    ) -> Optimum | NotDifferentiable:
+        """The person under an internal force [N]; one that is held at its limit does not move the person."""
+        humans = self._sensitivities[1]
+        mass = self._setting.scene.payload.mass
+        parameters = {"height": solution.height, "mass": mass, "internal_force": internal}
+        start = start_from(humans.program, self._forms, [known_instant(solution)])
+        raw = humans.solve(parameters, start)
+        if not held:
+            return humans.of(parameters, raw)
+        still = {name: np.zeros((len(value), len(parameters))) for name, value in raw.values.items()}
+        return Optimum(raw.values, still, raw.cost, np.zeros(len(parameters)), (), humans.program.columns)
+
+
+def _left_hand(program: Program) -> str:
+    """Name of the variable of the robot's left hand."""
+    return layout_of(program, ROBOT)[Slot(0, 0, ROBOT, "left_hand")]
+
+
+def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolution:
+    """Both solves as one: V(X) in the robot's cost gives way to what the person's solve found."""
+    reason = robot.reason if human.status is Status.SOLVED else f"the person: {human.reason}"
+    return replace(
+        robot,
+        values={**robot.values, **human.values},
+        status=worst_status([robot.status, human.status]),
+        reason=reason,
+        iterations=robot.iterations + human.iterations,
+        seconds=robot.seconds + human.seconds,
+        cost=robot.cost - expected + human.cost,
+    )
+
+
+def robot_program(form: Form, setting: Setting) -> Program:
+    """The robot's program, given the design, the load's height and mass, and V's coefficients."""
+    scene, mass = any_load(setting.scene)
+    design = ca.SX.sym("design", len(setting.space.parameters))
+    height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", COEFFICIENTS)
+    robot = Embodied(form, setting.space.resized(scene.robot.tree, ca.vertsplit(design)))
+    parties = (robot, free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    load_case = assembly.undisturbed
+    internal = force_along_x(scene.robot, load_case.hands[ROBOT]) / scene.stance.push
+    value = chebyshev_sum(ca.vertsplit(coefficients), internal)
+    return Program(
+        name="robot",
+        variables=assembly.variables,
+        constraints=assembly.constraints,
+        cost=total([load_case.effort({ROBOT: setting.weights.robot}), *load_case.regularisation, value]),
+        parameters={"design": design, "height": height, "mass": mass, "value": coefficients},
+    )

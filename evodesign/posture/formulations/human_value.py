@@ -1,0 +1,182 @@
+"""The person's part of a posture, which does not depend on the robot.
+
+With point grasps and a symmetric scene the load's balance leaves one number between robot and person, the
+internal force X. So the person's least cost at a height is a function V(X) that is found once, and robots are
+then solved alone:
+
+    min over both  =  min over robot and X of  w_r |tau_r|^2 + regularisation_r + V(X)
+
+V is the lower envelope of many starts at Chebyshev nodes of [-push, push], as a polynomial through them; its
+error is measured half-way between the nodes.
+
+Source: Chebyshev interpolation: Trefethen, Approximation Theory and Approximation Practice, ch. 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.nlp.program import Constraint, Program
+from evodesign.nlp.solver import IpoptOptions, RawSolution
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.formulations.base import program_key
+from evodesign.posture.starts import person_starts
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import TORQUE_UNIT
+from evodesign.posture.terms.load import any_load, force_along_x
+from evodesign.posture.terms.registry import TERMS
+from evodesign.records import Status
+
+__all__ = ["COEFFICIENTS", "COST_UNIT", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
+
+Array = Any
+
+DEGREE = 8
+COEFFICIENTS = DEGREE + 1
+PUSH_UNIT = 10.0  # [N] per unit of the row that fixes the push
+NODES_TRIED = 4
+LARGEST_ERROR = 0.02
+"""Largest error of V between nodes that is accepted, in the cost's unit."""
+
+COST_UNIT = TORQUE_UNIT**2
+"""One unit of V, and of every posture's cost [N^2 m^2]."""
+
+
+@dataclass(frozen=True, slots=True)
+class HumanValue:
+    """The person's least cost V(X) at one height.
+
+    Args:
+        height: of the load's centre [m].
+        push: largest |X| [N].
+        coefficients: of V in Chebyshev polynomials of X / push.
+        starts: the person's optimum at each node, as starting values, with its X [N].
+        error: largest difference from the envelope half-way between nodes, in the cost's unit.
+        scene: which of the problem's scenes it is of, from zero.
+    """
+
+    height: float
+    push: float
+    coefficients: tuple[float, ...]
+    starts: tuple[tuple[float, Mapping[str, Array]], ...]
+    error: float
+    scene: int = 0
+
+    def cost(self, push: Any) -> Any:
+        """V at a push X [N], a number or an expression."""
+        return chebyshev_sum(self.coefficients, push / self.push)
+
+    def nearest(self, push: float) -> list[Mapping[str, Array]]:
+        """Starting values, those from the node nearest to a push [N] first."""
+        return [start for _, start in sorted(self.starts, key=lambda start: abs(start[0] - push))]
+
+
+def chebyshev_sum(coefficients: Sequence[Any], x: Any) -> Any:
+    """The sum of c_k T_k(x) by Clenshaw's recurrence, over numbers or expressions."""
+    later: Any = 0.0
+    latest: Any = 0.0
+    for coefficient in reversed(coefficients[1:]):
+        later, latest = latest, 2.0 * x * latest - later + coefficient
+    return x * latest - later + coefficients[0]
+
+
+class HumanProblem:
+    """The person's posture program, for the scene's load at any height and under any push."""
+
+    def __init__(
+        self,
+        form: Form,
+        scene: Scene,
+        weight: float,
+        options: IpoptOptions,
+        solvers: SolverCache | None = None,
+    ) -> None:
+        self._push = scene.stance.push
+        self._mass = scene.payload.mass
+        key = program_key("person", scene, form, weight)
+        self._solver = (solvers or SolverCache()).solver(
+            key, lambda: human_program(form, scene, weight), options
+        )
+        self._pushed_to_the_end: dict[tuple[float, float], RawSolution] = {}
+
+    @property
+    def program(self) -> Program:
+        """What is solved."""
+        return self._solver.program
+
+    def _parameters(self, height: float, push: float) -> Mapping[str, float]:
+        return {"height": height, "mass": self._mass, "internal_force": push}
+
+    def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
+        """The person's posture at a height [m] under a push [N], from one start."""
+        return self._solver.solve(self._parameters(height, push), start)
+
+    def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
+        """The person's posture at a height [m] under a push [N], about as good as V promises.
+
+        Mostly the agents push as far as they may, and every design asks for the same: that is solved once.
+        """
+        if abs(push) < self._push:
+            return self._best_from_nodes(height, push, value)
+        if (height, push) not in self._pushed_to_the_end:
+            self._pushed_to_the_end[height, push] = self._best_from_nodes(height, push, value)
+        return self._pushed_to_the_end[height, push]
+
+    def _best_from_nodes(self, height: float, push: float, value: HumanValue) -> RawSolution:
+        """From the nearest node, close to the solution; if that fails or is dearer than V, from the next."""
+        nearest = value.nearest(push)[:NODES_TRIED]
+        ends: list[RawSolution] = []
+        for solver, start in [(self._solver.near, nearest[0]), *((self._solver, start) for start in nearest)]:
+            ends.append(solver.solve(self._parameters(height, push), start))
+            if ends[-1].status is Status.SOLVED and ends[-1].cost <= value.cost(push) + LARGEST_ERROR:
+                return ends[-1]
+        return min(ends, key=lambda end: (end.status is not Status.SOLVED, end.cost))
+
+    def value(self, height: float) -> HumanValue | None:
+        """V at a height [m]; None when the person cannot hold the load there or V is too rough to fit."""
+        nodes = self._push * np.cos(np.pi * (np.arange(COEFFICIENTS) + 0.5) / COEFFICIENTS)
+        between = (nodes[1:] + nodes[:-1]) / 2.0
+        best: dict[float, RawSolution] = {}
+        for push in (*nodes.tolist(), *between.tolist()):
+            solution = self._best(height, push)
+            if solution is None:
+                return None
+            best[push] = solution
+        costs = {push: solution.cost for push, solution in best.items()}
+        fit = Chebyshev.fit(nodes, [costs[float(x)] for x in nodes], DEGREE, domain=[-self._push, self._push])
+        error = max(abs(float(fit(x)) - costs[float(x)]) for x in between)
+        if error > LARGEST_ERROR:
+            return None
+        starts = tuple((push, dict(best[push].values)) for push in sorted(best))
+        return HumanValue(height, self._push, tuple(fit.coef.tolist()), starts, error)
+
+    def _best(self, height: float, push: float) -> RawSolution | None:
+        """The best of many starts, the same ones every time."""
+        solutions = [self.solve(height, push, start) for start in person_starts(self.program)]
+        solved = [solution for solution in solutions if solution.status is Status.SOLVED]
+        return min(solved, key=lambda solution: solution.cost, default=None)
+
+
+def human_program(form: Form, scene: Scene, weight: float) -> Program:
+    """The person's program; its parameters are the load's height and mass, and the internal force."""
+    scene, mass = any_load(scene)
+    height, internal = ca.SX.sym("height"), ca.SX.sym("internal_force")
+    parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    load_case = assembly.undisturbed
+    given = (force_along_x(scene.robot, load_case.hands[ROBOT]) - internal) / PUSH_UNIT
+    return Program(
+        name="human",
+        variables=assembly.variables,
+        constraints=(*assembly.constraints, Constraint("load.given_internal_force", given, 0.0, 0.0)),
+        cost=total([load_case.effort({HUMAN: weight}), *load_case.regularisation]),
+        parameters={"height": height, "mass": mass, "internal_force": internal},
+    )

@@ -1,0 +1,255 @@
+"""The reach problem: the highest and lowest load that the robot can hold.
+
+    maximise (minimise) h subject to the robot's constraints and the load's balance,
+
+with the person's hands free to push as they must: the robot's side alone decides. A share of the load that is
+given binds here too; where it is free, a robot with rigid grasps may leave the load to the person. A reach
+problem is cheaper than a posture, so it is solved first and spares the heights that are out of reach. It has
+several optima (arms forward, arms raised sideways over the head), so it begins at a portfolio of starts
+as a posture does.
+
+Source: feasibility constraints of Sartore et al. 2022, Eq. 14.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from evodesign.mechanics.scene import Scene
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.sensitivity import SolutionSensitivity
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.start_portfolio import Landscape
+from evodesign.posture.allocation import shared_scene
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.solution_derivative import ReachDerivative
+from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.terms.load import any_load
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import filled
+from evodesign.records import Status, worst_status
+from evodesign.tree.model import Tree
+
+__all__ = [
+    "HEIGHT",
+    "HIGHEST",
+    "LOWEST",
+    "Reach",
+    "ReachProblem",
+    "common_reach",
+    "reach_program",
+    "robot_reach_program",
+]
+
+WEIGHT_OF_REGULARISATION = 1e-4
+"""Beside the height [m]; it costs less than 0.1 mm of reach."""
+
+HEIGHT = "height"
+"""Name of the variable that is the load's height."""
+
+HIGHEST, LOWEST = -1.0, 1.0
+"""Sense in which the height is extreme: the sign with which it is minimised."""
+
+FIXED: tuple[Start, ...] = ({HEIGHT: [1.0]}, {HEIGHT: [0.6]})
+"""Starts where there is no portfolio; the best result counts."""
+
+NEAR_HEIGHT = 0.005
+"""How far [m] from the best known extreme another one is still good."""
+
+DISTINCT = 1e-6
+"""Difference of heights [m] above which two optima are not the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """The interval of load heights that a robot can hold.
+
+    Args:
+        lowest, highest: of the load's centre [m]; None when not solved.
+        status: solved, or why not.
+        reason: a sentence.
+    """
+
+    lowest: float | None
+    highest: float | None
+    status: Status
+    reason: str
+
+    def distance(self, height: float) -> float | None:
+        """How far a height [m] lies outside the interval [m]; None when the interval is not known."""
+        if self.lowest is None or self.highest is None:
+            return None
+        return max(height - self.highest, self.lowest - height, 0.0)
+
+
+def common_reach(reaches: Sequence[Reach]) -> Reach:
+    """The interval that several loads have in common; the first that failed, if one did."""
+    failed = [reach for reach in reaches if reach.lowest is None or reach.highest is None]
+    if failed or len(reaches) == 1:
+        return (failed or reaches)[0]
+    lowest = max(reach.lowest for reach in reaches if reach.lowest is not None)
+    highest = min(reach.highest for reach in reaches if reach.highest is not None)
+    reason = f"holds every load from {lowest:.3f} to {highest:.3f} m"
+    return Reach(lowest, highest, Status.SOLVED, reason)
+
+
+class ReachProblem:
+    """One reach program for all designs of a scene; built when it is needed.
+
+    Args:
+        setting: of the problem; the weights of efforts do not count.
+        symmetric: whether postures are mirror-symmetric.
+        known: portfolios of starts.
+        solvers: of other scenes.
+    """
+
+    name = "reach"
+
+    def __init__(
+        self,
+        setting: Setting,
+        *,
+        symmetric: bool,
+        known: Precomputed = NOTHING_PRECOMPUTED,
+        solvers: SolverCache | None = None,
+    ) -> None:
+        scene = setting.scene
+        self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
+        self._setting, self._solvers = setting, solvers or SolverCache()
+        self._starts = {HIGHEST: known.highest.starts, LOWEST: known.lowest.starts}
+
+    @cached_property
+    def _solver(self) -> Solver:
+        key = program_key(self.name, self._setting, self.form)
+        return self._solvers.solver(key, self._program, self._setting.options)
+
+    @cached_property
+    def _sensitivity(self) -> SolutionSensitivity:
+        return SolutionSensitivity(self._program(), self._setting.options)
+
+    def _program(self) -> Program:
+        return robot_reach_program(self.form, self._setting)
+
+    @property
+    def program(self) -> Program:
+        """What is solved; its parameters are the design, the load's mass and the sense."""
+        return self._solver.program
+
+    def _beside(self, sense: float) -> Mapping[str, float]:
+        """The parameters beside the design."""
+        return {"mass": self._setting.scene.payload.mass, "sense": sense}
+
+    def landscape(self, sense: float) -> Landscape:
+        """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
+        return Landscape(self._solver, self._beside(sense), FIXED, 0.0, NEAR_HEIGHT)
+
+    def solve(self, design: Sequence[float]) -> Reach:
+        """The interval of a design, given as one number per design parameter."""
+        highest, high = self._extreme(design, HIGHEST)
+        lowest, low = self._extreme(design, LOWEST)
+        status = worst_status([high.status, low.status])
+        if status is not Status.SOLVED:
+            which = "highest" if high.status is not Status.SOLVED else "lowest"
+            reason = high.reason if high.status is not Status.SOLVED else low.reason
+            return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
+        return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
+
+    def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
+        """The result of every start in one sense."""
+        starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
+        parameters = {"design": design, **self._beside(sense)}
+        return [self._solver.solve(parameters, start) for start in starts]
+
+    def _extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
+        """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
+        solves = self.solves(design, sense)
+        solved = [raw for raw in solves if raw.status is Status.SOLVED]
+        if not solved:
+            return None, solves[0]
+        best = min(solved, key=lambda raw: sense * _height(raw))
+        return _height(best), best
+
+    def derivative(self, design: Sequence[float], sense: float) -> ReachDerivative | NotDifferentiable:
+        """How a design's highest or lowest load moves with the design, or why it has no derivative.
+
+        An extreme height is the solution of the reach problem, not its optimal cost (which holds a little
+        regularisation), so its derivative is that of the solution. Every start is solved as for the reach
+        itself; the one that counts is differentiated, and the next best other optimum is where another one
+        may win.
+        """
+        solves = self.solves(design, sense)
+        heights = {start: _height(raw) for start, raw in enumerate(solves) if raw.status is Status.SOLVED}
+        if not heights:
+            return NotDifferentiable("no posture was found")
+        start = min(heights, key=lambda number: sense * heights[number])
+        if self._at_end(heights[start]):
+            return ReachDerivative(heights[start], np.zeros(len(design)), start, len(solves), None, ())
+        found = self._sensitivity.at({"design": design, **self._beside(sense)}, solves[start].values)
+        if isinstance(found, NotDifferentiable):
+            return found
+        own = found.along("design")
+        slope = own.slopes[HEIGHT][0]
+        if np.isnan(slope).any():
+            return NotDifferentiable("the height is not determined")
+        short = [sense * (height - heights[start]) for height in heights.values()]
+        return ReachDerivative(
+            height=float(found.values[HEIGHT][0]),
+            slope=slope,
+            start=start,
+            starts=len(solves),
+            runner_up=min((much for much in short if much > DISTINCT), default=None),
+            limits=own.limits,
+        )
+
+    def _at_end(self, height: float) -> bool:
+        """Whether a height ends the range that is looked at, whatever the design: a load on the ground."""
+        block = next(v for v in self.program.variables if v.name == HEIGHT)
+        return bool(min(height - block.lower[0], block.upper[0] - height) < DISTINCT)
+
+
+def _height(raw: RawSolution) -> float:
+    return float(raw.values[HEIGHT][0])
+
+
+def robot_reach_program(form: Form, setting: Setting) -> Program:
+    """The robot's program; its parameters are the design, the load's mass and the sense."""
+    design = ca.SX.sym("design", len(setting.space.parameters))
+    values = ca.vertsplit(design)
+    tree = setting.space.resized(setting.scene.robot.tree, values)
+    return reach_program(form, tree, shared_scene(setting.scene, setting.space, values), {"design": design})
+
+
+def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]) -> Program:
+    """The program of an agent's extreme heights; the other agent is a pair of free hands.
+
+    Args:
+        form: of the agent.
+        tree: of the agent.
+        scene: load, ground and stance.
+        given: parameters that the tree depends on; the program's are these, the load's mass and the sense.
+    """
+    scene, mass = any_load(scene)
+    sense = ca.SX.sym("sense")
+    floor = scene.payload.size[2] / 2.0
+    height = Variable.column(HEIGHT, [floor], [5.0], [1.0], 1.0)
+    parties = (Embodied(form, tree), free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)))
+    load_case = assembly.undisturbed
+    disliked = total([*load_case.regularisation, load_case.free_moments])
+    return Program(
+        name="reach",
+        variables=(height, *assembly.variables),
+        constraints=assembly.constraints,
+        cost=sense * height.value + WEIGHT_OF_REGULARISATION * disliked,
+        parameters={**given, "mass": mass, "sense": sense},
+    )

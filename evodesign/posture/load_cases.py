@@ -1,0 +1,67 @@
+"""How load cases count together: one posture, and wrenches and torques of its own for each disturbance.
+
+With K_c the cost of what is carried in load case c (both agents' weighted efforts and the regularisation of
+their wrenches; the undisturbed case is one of them), n cases count together as
+
+    mean     sum_c K_c / n
+    worst    (1 - e) s + e sum_c K_c / n    with s >= K_c for every c, and e = 0.01
+
+beside the regularisation of the posture. A posture's wrenches in each case minimise K_c, whatever the weights
+of the cases: the small share e of the mean sees to those cases that are not the worst. So a disturbance of
+size zero leaves the undisturbed problem's optimum as it is, in both ways.
+
+Source: epigraph form of a minimax problem: Boyd and Vandenberghe, Convex Optimization, section 4.1.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from evodesign.mechanics.disturbance import OverCases
+from evodesign.nlp.program import Constraint, Program, Start, Variable
+
+__all__ = ["aggregated", "with_worst"]
+
+Expression = Any
+
+SHARE_OF_MEAN = 0.01
+"""e: what the mean counts beside the worst case."""
+
+WORST = "worst.cost"
+"""Name of s, and of the rows K_c - s."""
+
+
+def aggregated(program: Program, effort: OverCases, costs: Sequence[Expression]) -> Program:
+    """A program that minimises the costs of its load cases beside the cost that it has.
+
+    Args:
+        program: whose cost is that of the posture itself.
+        effort: how the cases count together.
+        costs: K_c of each case, the undisturbed one among them.
+    """
+    mean = sum(costs) / len(costs)
+    if effort is OverCases.MEAN:
+        return replace(program, cost=program.cost + mean)
+    worst = Variable.column(WORST, [0.0], [np.inf], [0.0], 1.0)
+    below = Constraint(WORST, ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
+    return replace(
+        program,
+        variables=(*program.variables, worst),
+        constraints=(*program.constraints, below),
+        cost=program.cost + (1.0 - SHARE_OF_MEAN) * worst.value + SHARE_OF_MEAN * mean,
+    )
+
+
+def with_worst(start: Start, program: Program, parameters: Mapping[str, Any]) -> Start:
+    """A solution of a program as its start, with s as its load cases ask for it."""
+    for row in program.constraints:
+        if row.name == WORST:
+            costs = ca.Function("costs", [program.symbols, program.given], [row.expression])
+            found = costs(program.packed({**start, WORST: [0.0]}), program.packed_parameters(parameters))
+            return {**start, WORST: [float(ca.mmax(found))]}
+    return start

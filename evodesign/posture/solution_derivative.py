@@ -1,0 +1,101 @@
+"""How a design's postures and reach move with the design, to first order.
+
+The solved posture is found again by the formulation that it came from, made exact, and differentiated
+(`nlp.sensitivity`).
+
+Source: implicit function theorem and envelope theorem, see `nlp.sensitivity`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from evodesign.mechanics.scene import Scene
+from evodesign.nlp.optimality import Array, NotDifferentiable
+from evodesign.nlp.sensitivity import Limit
+from evodesign.posture.results import HeightSolution, Instant
+from evodesign.posture.symmetry import Form
+from evodesign.posture.warm_start import Layout, instant_of
+
+__all__ = ["PostureDerivative", "ReachDerivative", "found_again", "known_instant"]
+
+SAME = 1e-2
+"""Difference of torques [N m] below which a posture that is found again is the same one."""
+
+
+@dataclass(frozen=True, slots=True)
+class PostureDerivative:
+    """A posture made exact, and how it moves with the design.
+
+    Args:
+        layout: of the variables of both agents.
+        forms: of robot and person, for which the values are.
+        scene: in which they stand.
+        values: by variable name, SI units.
+        slopes: their derivatives with respect to the design's parameters, shape (rows, parameters).
+        cost: the least cost of the posture problem.
+        cost_slope: its derivative, one per parameter.
+        compared: the cost by which starts are compared: with V(X) where the person is solved after the robot.
+        limits: every inequality, with slopes per parameter.
+    """
+
+    layout: Layout
+    forms: tuple[Form, Form]
+    scene: Scene
+    values: Mapping[str, Array]
+    slopes: Mapping[str, Array]
+    cost: float
+    cost_slope: Array
+    compared: float
+    limits: tuple[Limit, ...]
+
+    def moved(self, step: Array) -> Instant:
+        """To first order, the postures of a design that differs by a step, one number per parameter."""
+        moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
+        return instant_of(self.layout, self.forms, self.scene, moved)
+
+
+def known_instant(solution: HeightSolution) -> Instant:
+    """The postures of a solution."""
+    return Instant(0.0, solution.postures, solution.disturbed)
+
+
+def found_again(
+    derivative: PostureDerivative, solution: HeightSolution
+) -> PostureDerivative | NotDifferentiable:
+    """The derivative, if its posture is the one that was solved and everything of the agents has a slope."""
+    found = derivative.moved(np.zeros_like(derivative.cost_slope)).postures
+    same = all(
+        abs(found[agent].torques[joint] - torque) < SAME
+        for agent, posture in solution.postures.items()
+        for joint, torque in posture.torques.items()
+    )
+    if not same:
+        return NotDifferentiable("the posture was not found again")
+    if any(np.isnan(derivative.slopes[name]).any() for name in derivative.layout.values()):
+        return NotDifferentiable("the posture can move at no cost")
+    return derivative
+
+
+@dataclass(frozen=True, slots=True)
+class ReachDerivative:
+    """An extreme height made exact, and how it moves with the design.
+
+    Args:
+        height: [m].
+        slope: its derivative with respect to each parameter.
+        start: which start won, from zero.
+        starts: how many there were.
+        runner_up: how far the next best other optimum falls short [m]; None when there is no other.
+        limits: every inequality, with slopes per parameter.
+    """
+
+    height: float
+    slope: Array
+    start: int
+    starts: int
+    runner_up: float | None
+    limits: Sequence[Limit]

@@ -1,0 +1,169 @@
+"""Which part of an agent a program describes: all of it, or the left half of a mirror-symmetric one.
+
+In a symmetric posture the right side is the left one's mirror image, the base does not leave the plane
+y = 0, and rolls and yaws of the middle line are zero. The half has half the variables, its effort counts
+every paired torque twice, and it has fewer local minima; `expand` gives the whole posture back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from evodesign.errors import ModelError
+from evodesign.mechanics.disturbance import Disturbance, PushedAt
+from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.posture.results import AgentPosture, Array
+from evodesign.tree.model import Tree
+from evodesign.tree.symmetry import Mirror, left_half, mirror_of
+
+__all__ = ["Form", "half", "symmetric_forms", "whole"]
+
+POLAR = np.array([1.0, -1.0, 1.0])
+WRENCH = np.concatenate([POLAR, -POLAR])
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """The part of an agent that a program describes.
+
+    Args:
+        agent: all of it.
+        joints: the agent's joints that are variables.
+        sides: whose hands and feet are variables.
+        mirror: of the agent's tree; None when everything is described.
+    """
+
+    agent: Agent
+    joints: tuple[str, ...]
+    sides: tuple[str, ...]
+    mirror: Mirror | None
+
+    @property
+    def counts(self) -> tuple[float, ...]:
+        """How many joints of the agent each variable joint stands for: 1, or 2 for a pair."""
+        if self.mirror is None:
+            return (1.0,) * len(self.joints)
+        return tuple(1.0 if self.mirror.joints[name] == name else 2.0 for name in self.joints)
+
+    @property
+    def trunk(self) -> tuple[str, ...]:
+        """The agent's trunk frames that the form holds."""
+        if self.mirror is None:
+            return self.agent.trunk
+        kept = self.part(self.agent.tree)[0].link_by_name
+        return tuple(name for name in self.agent.trunk if name in kept)
+
+    def part(self, tree: Tree) -> tuple[Tree, frozenset[str]]:
+        """The part of the agent's (resized) tree that the form holds, and its joints that count twice."""
+        if self.mirror is None:
+            return tree, frozenset()
+        return left_half(tree, self.mirror)
+
+    def expand(self, values: Mapping[str, Array]) -> AgentPosture:
+        """The whole posture from a solution's values (names without the agent's)."""
+        hands = {side: padded(values[f"{side}_hand"]) for side in self.sides}
+        feet = {side: values[f"{side}_foot"] for side in self.sides}
+        joints = dict(zip(self.joints, values["joints"].tolist(), strict=True))
+        torques = dict(zip(self.joints, values["torques"].tolist(), strict=True))
+        if self.mirror is not None:
+            hands["right"], feet["right"] = hands["left"] * WRENCH, feet["left"] * WRENCH
+            joints, torques = (_both_sides(known, self.agent, self.mirror) for known in (joints, torques))
+        return AgentPosture(
+            base_position=values["base_position"],
+            base_angles=values["base_angles"],
+            joints={name: joints[name] for name in self.agent.joints},
+            torques={name: torques[name] for name in self.agent.joints},
+            hand_wrenches=hands,
+            foot_wrenches=feet,
+        )
+
+    def parts(self, posture: AgentPosture) -> dict[str, Array]:
+        """What `expand` takes, from a posture of the whole agent; hands pass six numbers."""
+        return {
+            "base_position": posture.base_position,
+            "base_angles": posture.base_angles,
+            "joints": np.array([posture.joints[name] for name in self.joints]),
+            "torques": np.array([posture.torques[name] for name in self.joints]),
+            **{f"{side}_hand": posture.hand_wrenches[side] for side in self.sides},
+            **{f"{side}_foot": posture.foot_wrenches[side] for side in self.sides},
+        }
+
+
+def _both_sides(known: Mapping[str, float], agent: Agent, mirror: Mirror) -> dict[str, float]:
+    """Values of all joints of a symmetric agent from those of its half."""
+    found = dict.fromkeys(agent.joints, 0.0)
+    for name, value in known.items():
+        found[name] = value
+        if mirror.joints[name] != name:
+            found[mirror.joints[name]] = mirror.signs[name] * value
+    return found
+
+
+def whole(agent: Agent) -> Form:
+    """All of an agent."""
+    return Form(agent, agent.joints, SIDES, None)
+
+
+def half(agent: Agent) -> Form:
+    """The left half of a mirror-symmetric agent.
+
+    Raises:
+        ModelError: naming the links, joints or frames that differ.
+    """
+    mirror = mirror_of(agent.tree)
+    for noun, frames in (("hands", agent.hands), ("soles", agent.soles)):
+        if mirror.links[frames["left"]] != frames["right"]:
+            found = f"'{frames['left']}' and '{frames['right']}'"
+            raise ModelError(agent.tree.name, f"{agent.name}.{noun}", "mirror images of each other", found)
+    for name in agent.joints:
+        if mirror.joints[name] not in agent.joints:
+            found = f"'{name}' without '{mirror.joints[name]}'"
+            raise ModelError(agent.tree.name, f"{agent.name}.joints", "both joints of a pair", found)
+    kept = left_half(agent.tree, mirror)[0].joint_by_name
+    joints = tuple(
+        name
+        for name in agent.joints
+        if name in kept and not (mirror.joints[name] == name and mirror.signs[name] < 0.0)
+    )
+    return Form(agent, joints, ("left",), mirror)
+
+
+def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
+    """The halves of robot and person in a scene that is its own mirror image.
+
+    Raises:
+        ModelError: naming what differs, or the disturbance that pushes to a side.
+    """
+    payload = scene.payload
+    if payload.center_of_mass[1] != 0.0:
+        found = f"y = {payload.center_of_mass[1]:g} m"
+        raise ModelError("payload", "center_of_mass_m", "y = 0 in a symmetric scene", found)
+    for agent in (scene.robot, scene.human):
+        left, right = (payload.grasp_point(agent, side) for side in SIDES)
+        if tuple(left) != (right[0], -right[1], right[2]):
+            key = f"{agent.name}_grasps_m"
+            raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")
+    forms = half(scene.robot), half(scene.human)
+    for disturbance in scene.disturbances.cases:
+        _refuse_lopsided(disturbance, forms)
+    return forms
+
+
+def _refuse_lopsided(disturbance: Disturbance, forms: tuple[Form, Form]) -> None:
+    """Refuse what symmetric agents do not answer symmetrically."""
+    where = f"disturbance '{disturbance.name}'"
+    if disturbance.sideways:
+        raise ModelError(where, "", "y = 0 everywhere in a symmetric scene", "a part along y")
+    for form in forms:
+        pushed = any(disturbance.push_on(PushedAt(form.agent.name)))
+        if pushed and form.mirror and not form.mirror.is_middle(form.agent.pushed_frame):
+            found = f"'{form.agent.pushed_frame}'"
+            raise ModelError(where, "", "a push on the middle line in a symmetric scene", found)
+
+
+def padded(free: Array) -> Array:
+    """Six rows from the free numbers of a grasp: a point grasp passes no moment."""
+    return np.concatenate([free, np.zeros(6 - len(free))])

@@ -1,0 +1,85 @@
+"""Floating base and joints: where an agent is, within its joint limits and a bounded tilt.
+
+Source: Sartore et al. 2022, Eq. 14, whose variable q_b, s they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import casadi as ca
+import numpy as np
+
+from evodesign.mechanics.scene import Agent, Scene
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import BodyTerm, MeasuredBody, Residual, Unknown
+from evodesign.tree.kinematics import Pose, forward
+
+__all__ = ["FLOATING_BASE", "joint_ranges"]
+
+
+def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
+    """Position [m] and angles [rad] of the base, and the joints [rad]."""
+    tilt = scene.stance.base_tilt
+    sideways, turn = (0.0, 0.0) if form.mirror else (0.5, tilt)  # none in a symmetric posture
+    lower, upper = zip(*joint_ranges(form), strict=True)
+    yield Unknown(
+        "base_position",
+        [-3.0, -sideways, 0.0],
+        [0.0, sideways, 3.0],
+        _standing(form.agent, scene),
+        posture_only=True,
+    )
+    yield Unknown(
+        "base_angles",
+        [-turn, -tilt, -turn],
+        [turn, tilt, turn],
+        [0.0] * 3,
+        group=LimitGroup.STANCE,
+        posture_only=True,
+    )
+    yield Unknown(
+        "joints",
+        lower,
+        upper,
+        [0.0] * len(lower),
+        group=LimitGroup.JOINT_LIMITS,
+        posture_only=True,
+        labels=form.joints,
+        drawn=True,
+    )
+
+
+def joint_ranges(form: Form) -> list[tuple[float, float]]:
+    """Limits of each of the form's joints [rad], within half a turn to either side."""
+    joints = [form.agent.tree.joint_by_name[name] for name in form.joints]
+    return [(max(joint.lower, -math.pi), min(joint.upper, math.pi)) for joint in joints]
+
+
+def _standing(agent: Agent, scene: Scene) -> list[float]:
+    """Base position [m] from which a solve begins: soles on the ground with all joints at zero."""
+    poses = forward(agent.tree, Pose(ca.DM.eye(3), ca.DM.zeros(3)), {})
+    lowest = min(float(poses[frame].position[2]) for frame in agent.soles.values())
+    back = scene.payload.size[0] / 2.0 + scene.stance.trunk_clearance + 0.1
+    return [-back, 0.0, -lowest]
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """Joints beyond their limits, a base that tilts too far, and a posture that a disturbance moved."""
+    posture, tree = body.posture, body.agent.tree
+    joints = [(tree.joint_by_name[name], position) for name, position in posture.joints.items()]
+    beyond = max(0.0, *(max(joint.lower - at, at - joint.upper) for joint, at in joints))
+    yield Residual("joint_limits", beyond, "rad", "joint limits", LimitGroup.JOINT_LIMITS, posture_only=True)
+    tilt = max(0.0, float(np.abs(posture.base_angles).max()) - body.scene.stance.base_tilt)
+    yield Residual("base_tilt", tilt, "rad", "the tilt of the base", LimitGroup.STANCE, posture_only=True)
+    if body.disturbed:
+        other = body.undisturbed
+        base = np.abs(posture.base_position - other.base_position).max()
+        turned = np.abs(posture.base_angles - other.base_angles).max()
+        moved = max(base, turned, *(abs(posture.joints[name] - x) for name, x in other.joints.items()))
+        yield Residual("moved", float(moved), "m or rad", "the posture that a disturbance leaves as it is")
+
+
+FLOATING_BASE = BodyTerm("floating_base", unknowns=unknowns, residuals=residuals)

@@ -1,0 +1,114 @@
+"""Joint torques and equilibrium: what hands, feet, weights and pushes ask of the joints.
+
+    tau = g_joint(q, pi) - J_joint^T f        0 = g_base(q, pi) - J_base^T f
+
+Torques are variables tied to the statics by equalities, which keeps the Hessian sparse. The rows come from
+cutting the tree; the residuals from pinocchio's Jacobians and `nonLinearEffects` at rest.
+
+Source: Sartore et al. 2022, Eq. 14 b and Eq. 5 at rest; docs/model.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import casadi as ca
+import numpy as np
+import pinocchio as pin
+
+from evodesign.mechanics.balance import AppliedWrench, cut
+from evodesign.mechanics.disturbance import PushedAt
+from evodesign.mechanics.floating_base import ROOT
+from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import (
+    FORCE_UNIT,
+    TORQUE_UNIT,
+    Body,
+    BodyTerm,
+    Expression,
+    MeasuredBody,
+    Residual,
+    Row,
+    Unknown,
+)
+from evodesign.posture.terms.load import turned_to_world
+from evodesign.tree.kinematics import vector
+
+__all__ = ["TORQUE", "effort"]
+
+LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit
+
+
+def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
+    """The torques of the form's joints [N m]; a pair exerts what its weaker joint can."""
+    limits = form.agent.torque_limits if form.agent.limits_torques else {}
+    pairs = {name: name for name in form.joints} if form.mirror is None else form.mirror.joints
+    most = [
+        min(LARGEST_TORQUE, *(limits.get(joint, LARGEST_TORQUE) for joint in (name, pairs[name])))
+        for name in form.joints
+    ]
+    least, rest = [-x for x in most], [0.0] * len(most)
+    yield Unknown("torques", least, most, rest, TORQUE_UNIT, labels=form.joints)
+
+
+def effort(body: Body) -> Expression:
+    """Squared norm of all the agent's torques [N^2 m^2], the mirrored ones included (task t1)."""
+    return ca.dot(ca.DM(list(body.form.counts)), body.values["torques"] ** 2)
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """Torques that are those of statics, and a base on which force and moment vanish."""
+    form = body.form
+    balance = cut(body.part, body.poses, [*_contacts(body), *_push(body)], body.doubled)
+    statics = ca.vertcat(*[balance.torques[joint] for joint in form.joints])
+    force, moment = balance.force / FORCE_UNIT, balance.moment / TORQUE_UNIT
+    if form.mirror is not None:  # the other rows vanish by symmetry
+        force, moment = force[[0, 2]], moment[1]
+    lifted = (statics - body.values["torques"]) / TORQUE_UNIT
+    yield Row("torques", lifted, 0.0, 0.0, ("torque",), TORQUE_UNIT, labels=form.joints)
+    yield Row("force", force, 0.0, 0.0, ("force_balance",), FORCE_UNIT)
+    yield Row("moment", moment, 0.0, 0.0, ("moment_balance",), TORQUE_UNIT)
+
+
+def _contacts(body: Body) -> Iterator[AppliedWrench]:
+    """What load and ground do to the agent, in its own frame."""
+    for side in body.form.sides:
+        hand, sole = body.poses[body.agent.hands[side]], body.poses[body.agent.soles[side]]
+        wrench = body.hands[side]
+        yield AppliedWrench(body.agent.hands[side], hand.position, wrench[:3], wrench[3:])
+        force, moment = sole.rotation @ body.feet[side][:3], sole.rotation @ body.feet[side][3:]
+        yield AppliedWrench(body.agent.soles[side], sole.position, force, moment)
+
+
+def _push(body: Body) -> Iterator[AppliedWrench]:
+    """A disturbance's push on the agent's trunk, in its own frame."""
+    push = body.disturbance.push_on(PushedAt(body.agent.name))
+    if any(push):
+        force = turned_to_world(body.agent, vector(push))  # by 0 or 180 degrees, so there as back
+        frame = body.agent.pushed_frame
+        yield AppliedWrench(frame, body.poses[frame].position, force, ca.DM.zeros(3))
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """Rows of h - J^T f: six of the base, then the joints; and torques beyond their limits."""
+    agent, posture, state = body.agent, body.posture, body.state
+    rows = np.array(state.bias)
+    push = np.array(body.disturbance.push_on(PushedAt(agent.name)))
+    if push.any():
+        in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ push
+        rows -= state.twist_in_world(agent.pushed_frame)[0][:3].T @ in_agent
+    for side in SIDES:
+        rows -= state.twist_in_world(agent.hands[side])[0].T @ posture.hand_wrenches[side]
+        rows -= state.twist_in_frame(agent.soles[side])[0].T @ posture.foot_wrenches[side]
+    base, joints = np.abs(rows[:ROOT]), rows[ROOT:]
+    wrong = float(np.abs(joints - [posture.torques[name] for name in agent.joints]).max())
+    yield Residual("torque", wrong, "N m", "joint torques")
+    yield Residual("force_balance", float(base[:3].max()), "N", "the balance of forces")
+    yield Residual("moment_balance", float(base[3:].max()), "N m", "the balance of moments")
+    if agent.limits_torques:
+        beyond = [abs(posture.torques[name]) - limit for name, limit in agent.torque_limits.items()]
+        yield Residual("torque_limits", max(0.0, *beyond, 0.0), "N m", "torque limits")
+
+
+TORQUE = BodyTerm("torque", unknowns=unknowns, rows=rows, residuals=residuals)

@@ -1,0 +1,137 @@
+"""Making a problem ready: pieces that no cache holds are worked out, by workers side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from evodesign.errors import InputError, RunError
+from evodesign.nlp.disk_cache import Cache
+from evodesign.pool.base import Limits, Pool
+from evodesign.posture.precompute.pieces import (
+    Piece,
+    PrecomputeSetting,
+    compute_piece,
+    key_of,
+    stages,
+    with_piece,
+)
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.problem.build import Problem, build_problem
+from evodesign.records import ProblemSource
+
+__all__ = ["PrecomputeProgress", "precompute_setting", "precomputed"]
+
+
+class PrecomputeProgress(Protocol):
+    """Someone who is shown how far the pieces are."""
+
+    def missing(self, pieces: int) -> None:
+        """So many pieces, of one stage, have to be worked out."""
+
+    def done(self, piece: str) -> None:
+        """One of them is."""
+
+
+def precompute_setting(problem: Problem) -> PrecomputeSetting:
+    """What a problem's pieces follow from."""
+    scenes, middle = problem.scenes, problem.middle
+    return PrecomputeSetting(
+        scenes, middle, problem.space, problem.weights, problem.options, problem.symmetry
+    )
+
+
+def precomputed(
+    problem: Problem, cache: Cache | None, pool: Pool, watcher: PrecomputeProgress
+) -> Precomputed:
+    """What is known of a problem before any robot is evaluated.
+
+    Args:
+        problem: to be made ready.
+        cache: of pieces worked out before; None to work out everything.
+        pool: where pieces are worked out.
+        watcher: is shown what is worked out.
+    Raises:
+        RunError: a piece could not be worked out; it says which and why.
+        InputError: a height at which one of the people cannot hold a load.
+    """
+    setting, known = precompute_setting(problem), Precomputed()
+    heights, people = problem.heights, problem.person_reaches
+    for stage in stages(setting, heights, portfolios=problem.seeds, person_reaches=people):
+        missing = []
+        for piece in stage:
+            content = cache.read(key_of(setting, piece)) if cache else None
+            found = with_piece(known, piece, content) if content else None
+            if found is None:
+                missing.append(piece)
+            else:
+                known = found
+        if missing:
+            watcher.missing(len(missing))
+            for piece, content in _worked_out(problem, missing, known, pool, watcher).items():
+                if cache is not None:
+                    cache.store(key_of(setting, piece), content)
+                known = with_piece(known, piece, content) or known
+        refuse_heights(problem, known)
+    return known
+
+
+def refuse_heights(problem: Problem, known: Precomputed) -> None:
+    """Refuse a height at which one of the people cannot hold a load, whatever the robot.
+
+    Raises:
+        InputError: naming the height and the person; or a person who cannot hold a load at any height.
+    """
+    held = {stretch.scene for stretch in known.person_reaches}
+    for number, scene in enumerate(problem.scenes):
+        if problem.person_reaches and number not in held:
+            who = scene.label or "the person"
+            raise InputError(
+                problem.source.path, "human", "people who can hold every load", f"{who}, at no height"
+            )
+    for stretch in known.person_reaches:
+        for position, height in enumerate(problem.heights):
+            if not stretch.lowest <= height <= stretch.highest:
+                who = problem.scenes[stretch.scene].label or "the person"
+                wanted = f"a height that {who} can hold, from {stretch.lowest:.3f} to {stretch.highest:.3f} m"
+                raise InputError(problem.source.path, f"task.heights_m[{position}]", wanted, f"{height:g}")
+
+
+def _worked_out(
+    problem: Problem, missing: list[Piece], known: Precomputed, pool: Pool, watcher: PrecomputeProgress
+) -> dict[Piece, bytes]:
+    """Contents of the pieces, in the order in which they are missing."""
+    contents: dict[Piece, bytes] = {}
+    name = " ".join(key_of(precompute_setting(problem), piece) for piece in missing)
+    factory = _PieceFactory(name, problem.source, known)
+    for finished in pool.run(factory, missing):
+        piece = missing[finished.index]
+        if finished.value is None:
+            raise RunError(f"{problem.name}: {piece} could not be worked out: {finished.failure}")
+        contents[piece] = finished.value
+        watcher.done(str(piece))
+    return {piece: contents[piece] for piece in missing}
+
+
+LIMITS = Limits(seconds=3600.0)
+"""What a piece may cost: a portfolio takes thousands of solves, long ones with rigid grasps or a busy
+machine."""
+
+
+@dataclass(frozen=True, slots=True)
+class _PieceFactory:
+    """Builds, in whichever process it is called, the function from a piece to its content."""
+
+    name: str
+    source: ProblemSource = field(compare=False)
+    known: Precomputed = field(compare=False)
+
+    @property
+    def limits(self) -> Limits:
+        """Those of a piece."""
+        return LIMITS
+
+    def __call__(self) -> Callable[[Piece], bytes]:
+        setting = precompute_setting(build_problem(self.source))
+        return lambda piece: compute_piece(setting, piece, self.known)

@@ -1,0 +1,166 @@
+"""A posture on its stage: every link of robot and person, the load and the contact wrenches, in the world.
+
+World frame: origin on the ground under the load, x from the robot towards the person, z up. A logged posture
+is in its agent's own frame, which looks along +x at the load: the world turned about z by `Agent.facing`.
+
+A foot's wrench is drawn where its moment about x and y vanishes, at the centre of pressure of the sole,
+
+    CoP = (-m_y, m_x) / f_z        m' = (0, 0, m_z + CoP_y f_x - CoP_x f_y)
+
+Source: Sartore et al. 2022, Section III-D (centre of pressure).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from evodesign.body.placement import Placement, Vector, rotate
+from evodesign.body.shape import Box, Shape
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
+from evodesign.records import AgentDetail, HeightDetail
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import Link, Tree
+
+__all__ = ["LOAD", "ContactWrench", "PlacedScene", "SceneModels", "looks_of", "placed_scene"]
+
+LOAD = "load"
+"""Name of the load beside those of the agents."""
+
+LEAST_FORCE = 1e-6
+"""A foot with less normal force [N] has no centre of pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneModels:
+    """Who stands on the stage of a design.
+
+    Args:
+        agents: robot and person as the problem names them.
+        trees: their trees of numbers by agent name, the robot's that of the design.
+        payload: the load.
+    """
+
+    agents: tuple[Agent, ...]
+    trees: Mapping[str, Tree]
+    payload: Payload
+
+    @classmethod
+    def of(cls, scene: Scene, robot_tree: Tree) -> SceneModels:
+        """The models of a scene with the robot of a design."""
+        trees = {ROBOT: robot_tree, HUMAN: scene.human.tree}
+        return cls((scene.robot, scene.human), trees, scene.payload)
+
+    @property
+    def label(self) -> str:
+        """Who holds what, where there are several people or loads."""
+        labels = (self.agent(HUMAN).label, self.payload.label)
+        return ", ".join(label for label in labels if label)
+
+    def agent(self, name: str) -> Agent:
+        """The agent of a name."""
+        return next(agent for agent in self.agents if agent.name == name)
+
+
+@dataclass(frozen=True, slots=True)
+class ContactWrench:
+    """What a contact does to an agent, in the world.
+
+    Args:
+        agent: its name.
+        contact: such as `left_foot`.
+        point: where the force acts [m].
+        force: [N].
+        moment: about the point [N m].
+    """
+
+    agent: str
+    contact: str
+    point: Vector
+    force: Vector
+    moment: Vector
+
+    @property
+    def by_ground(self) -> bool:
+        """Whether the ground acts, and not the load."""
+        return self.contact.endswith("_foot")
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedScene:
+    """One height: where everything is.
+
+    Args:
+        height: of the load's centre [m].
+        models: robot, person and load.
+        frames: world_from_link by agent and link name.
+        world_from_load: of the load's box.
+        wrenches: on robot and person.
+    """
+
+    height: float
+    models: SceneModels
+    frames: Mapping[str, Mapping[str, Placement]]
+    world_from_load: Placement
+    wrenches: tuple[ContactWrench, ...]
+
+    @property
+    def solids(self) -> tuple[tuple[str, Shape, Placement], ...]:
+        """Everything that is seen: whose it is, its shape, and its place in the world."""
+        seen = [
+            (name, shape, self.frames[name][link.name] @ place)
+            for name, tree in self.models.trees.items()
+            for link in tree.links
+            for shape, place in looks_of(link)
+        ]
+        return (*seen, (LOAD, Box(*self.models.payload.size), self.world_from_load))
+
+
+def looks_of(link: Link) -> tuple[tuple[Shape, Placement], ...]:
+    """The shapes of a link, solids and looks, with their places in it."""
+    solids = [(solid.shape, solid.link_from_solid) for solid in link.solids]
+    return (*solids, *((look.shape, look.link_from_look) for look in link.looks))
+
+
+def placed_scene(models: SceneModels, detail: HeightDetail) -> PlacedScene:
+    """The stage of a logged posture."""
+    frames: dict[str, Mapping[str, Placement]] = {}
+    wrenches: list[ContactWrench] = []
+    for agent in models.agents:
+        posture = detail.agents[agent.name]
+        world_from_agent = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, agent.facing))
+        base = Placement.from_xyz_rpy(posture.base_position_m, posture.base_rpy_rad)
+        placed = link_frames(models.trees[agent.name], world_from_agent @ base, posture.joints_rad)
+        frames[agent.name] = placed
+        wrenches += _wrenches(agent, posture, world_from_agent, placed)
+    load = Placement(translation=(0.0, 0.0, detail.height_m))
+    return PlacedScene(detail.height_m, models, frames, load, tuple(wrenches))
+
+
+def _wrenches(
+    agent: Agent, posture: AgentDetail, world_from_agent: Placement, frames: Mapping[str, Placement]
+) -> list[ContactWrench]:
+    found = []
+    for side in SIDES:
+        force, moment = _halves(posture.hand_wrenches[side])
+        hand = frames[agent.hands[side]].translation
+        turned = (rotate(world_from_agent.rotation, force), rotate(world_from_agent.rotation, moment))
+        found.append(ContactWrench(agent.name, f"{side}_hand", hand, *turned))
+    for side in SIDES:
+        sole = frames[agent.soles[side]]
+        point, force, moment = _at_center_of_pressure(*_halves(posture.foot_wrenches[side]))
+        turned = (rotate(sole.rotation, force), rotate(sole.rotation, moment))
+        found.append(ContactWrench(agent.name, f"{side}_foot", sole.apply(point), *turned))
+    return found
+
+
+def _at_center_of_pressure(force: Vector, moment: Vector) -> tuple[Vector, Vector, Vector]:
+    """A sole's wrench about its origin as point, force and moment about that point, in the sole frame."""
+    if force[2] < LEAST_FORCE:
+        return (0.0, 0.0, 0.0), force, moment
+    x, y = -moment[1] / force[2], moment[0] / force[2]
+    return (x, y, 0.0), force, (0.0, 0.0, moment[2] + y * force[0] - x * force[1])
+
+
+def _halves(wrench: Sequence[float]) -> tuple[Vector, Vector]:
+    return (wrench[0], wrench[1], wrench[2]), (wrench[3], wrench[4], wrench[5])

@@ -1,0 +1,100 @@
+"""A run from Python: the log's numbers, and the same choices as on the command line."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import msgspec
+import pandas as pd
+import pytest
+
+import evodesign
+from evodesign.analysis.front import front
+from evodesign.analysis.knees import knees
+from evodesign.api.opened_run import OpenedRun
+from evodesign.errors import InputError, RunError
+from evodesign.runlog.writer import RunWriter
+from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
+
+HEADER = toy_header(budget=30)
+RUN = toy_evaluations(HEADER, 30)
+FRONT = front(HEADER.objectives, RUN)
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> OpenedRun:
+    with RunWriter(tmp_path / "run", HEADER) as writer:
+        for evaluation in RUN:
+            if evaluation in FRONT:
+                writer.detail(toy_detail(evaluation))
+            writer.evaluation(evaluation)
+    return evodesign.open_run(str(tmp_path / "run"))
+
+
+def test_table_is_a_data_frame_of_the_log(run: OpenedRun) -> None:
+    table = pd.DataFrame(run.table())
+    assert len(table) == len(run) == len(RUN)
+    for row, evaluation in zip(table.to_dict("records"), RUN, strict=True):
+        assert row["number"] == evaluation.number
+        assert row["feasible"] == evaluation.feasible
+        for name, value in {**evaluation.assessment.design, **evaluation.assessment.objectives}.items():
+            assert row[name] == value
+        if not evaluation.feasible:
+            assert math.isnan(row["robot_torque"])
+        assert row["robot_torque@1"] == evaluation.assessment.heights[0].robot_torque_norm or math.isnan(
+            row["robot_torque@1"]
+        )
+
+
+def test_table_of_some_designs_keeps_their_order(run: OpenedRun) -> None:
+    designs = run.choose(different=True, limit=3)
+    assert run.table(designs)["number"] == [design.number for design in designs]
+
+
+def test_front_and_choices_are_those_of_the_command_line(run: OpenedRun) -> None:
+    assert sorted(design.number or 0 for design in run.front) == [each.number for each in FRONT]
+    expected = [each.number for each in knees(HEADER.objectives, FRONT)[:2]]
+    assert [design.number for design in run.choose(knee=True, limit=2)] == expected
+    assert run.choose(near={"reach_height": 1.5}, limit=1)[0].feasible
+    assert all(design.parameters["arm.0"] > 1.0 for design in run.choose(where="arm.0 > 1"))
+
+
+def test_designs_carry_what_the_log_holds_of_them(run: OpenedRun) -> None:
+    for design, evaluation in zip(run.designs, RUN, strict=True):
+        assert design.assessment == evaluation.assessment
+        assert design.parameters == evaluation.assessment.design
+        assert design.objectives == evaluation.assessment.objectives
+        assert (design.status, design.reason) == (evaluation.assessment.status, evaluation.assessment.reason)
+        assert (design.violation, design.feasible) == (evaluation.assessment.violation, evaluation.feasible)
+        assert (design.reach, design.heights) == (evaluation.assessment.reach, evaluation.assessment.heights)
+
+
+def test_postures_come_from_the_log(run: OpenedRun) -> None:
+    for each in FRONT:
+        assert run.postures(each.number) == toy_detail(each).heights
+
+
+def test_run_shows_itself_and_its_problem(run: OpenedRun) -> None:
+    assert f"30 evaluations, {len(FRONT)} on the front" in repr(run)
+    assert (run.parameters, run.objectives, run.notes) == (HEADER.parameters, HEADER.objectives, ())
+
+
+def test_wrong_wishes_are_refused_in_one_sentence(run: OpenedRun, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"number: wanted a design of .* which has 30, found 99"):
+        run.design(99)
+    with pytest.raises(InputError, match="one of knee, near and different"):
+        run.choose(knee=True, different=True)
+    with pytest.raises(InputError, match="where: wanted one of"):
+        run.choose(where="reach > 1")
+    with pytest.raises(InputError, match="aspiration: wanted objectives among"):
+        run.choose(near={"reach": 1.0})
+    with pytest.raises(RunError, match="there is no such run directory"):
+        evodesign.open_run(tmp_path / "none")
+
+
+def test_empty_run_has_an_empty_table(tmp_path: Path) -> None:
+    RunWriter(tmp_path, msgspec.structs.replace(HEADER, budget=1)).close()
+    empty = evodesign.open_run(tmp_path)
+    assert empty.front == ()
+    assert pd.DataFrame(empty.table()).empty

@@ -1,0 +1,131 @@
+"""Seeds lead every design to its best optimum, on a landscape whose optima are known in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.solver import IpoptOptions, Solver
+from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spread_designs, start_portfolio
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.problem.build import Problem
+from evodesign.problem.evaluate import Evaluator
+
+FIXED = ({"robot.joints": [0.0]}, {"robot.joints": [0.5]})
+WELLS = (-2.0, -0.5, 1.0, 2.5)
+TRAINING = Training(designs=12, starts=12, candidates=4, portfolio=6, rounds=2)
+
+
+def best(design: float) -> float:
+    """The deepest of the wells; the design decides which."""
+    return min(-1.0 - np.cos(2.0 * np.pi * (well - design) / 6.0) for well in WELLS)
+
+
+def landscape(limit: float = 3.0, least: float = -3.0) -> Landscape:
+    """A product of squares with a zero in each well, beside a depth that depends on the design."""
+    design = ca.SX.sym("design")
+    joints = replace(Variable.column("robot.joints", [-limit], [limit], [0.0], 1.0), drawn=True)
+    x = joints.value[0]
+    cost = -sum(
+        (1.0 + ca.cos(2.0 * np.pi * (well - design) / 6.0)) * ca.exp(-40.0 * (x - well) ** 2)
+        for well in WELLS
+    )
+    bound = Constraint("bound", x, least, 9.0)
+    program = Program("wells", (joints,), (bound,), cost, {"design": design})
+    solver = Solver(program, IpoptOptions())
+    return Landscape(solver, {}, FIXED, 0.01, 1e-6)
+
+
+def designs(count: int = 200) -> Iterator[tuple[float, ...]]:
+    return spread_designs(1, lambda point: (6.0 * point[0] - 3.0,), lambda design: True, count)
+
+
+def test_a_portfolio_finds_every_well_that_is_somebodys_deepest() -> None:
+    found = start_portfolio(landscape(), designs(), TRAINING)
+    wells = {min(WELLS, key=lambda well: abs(well - seed["robot.joints"][0])) for seed in found.starts}
+    assert wells == set(WELLS)
+    assert len(found.starts) == len(WELLS)
+    assert found.coverage.share == 1.0
+    for (design,) in list(designs(40)):
+        ends = [landscape().solve((design,), seed).cost for seed in found.starts]
+        assert min(ends) == pytest.approx(best(design), abs=0.02)
+
+
+def test_a_single_start_may_miss_the_best_optimum() -> None:
+    """What the portfolio is for: from zero most designs end in another well than their deepest."""
+    ends = [(design, landscape().solve((design,), {"robot.joints": [0.0]}).cost) for (design,) in designs(40)]
+    assert np.mean([cost > best(design) + 0.02 for design, cost in ends]) > 0.3
+
+
+def test_a_small_portfolio_tells_what_it_misses() -> None:
+    found = start_portfolio(landscape(), designs(), replace(TRAINING, portfolio=1))
+    assert len(found.starts) == 1
+    assert found.coverage.good < found.coverage.designs
+    assert found.coverage.worst > 0.1
+    assert found.coverage.share == found.coverage.good / found.coverage.designs
+
+
+def test_the_same_landscape_gets_the_same_seeds() -> None:
+    one, other = (start_portfolio(landscape(), designs(), TRAINING) for _ in range(2))
+    assert [seed["robot.joints"].tolist() for seed in one.starts] == [
+        seed["robot.joints"].tolist() for seed in other.starts
+    ]
+
+
+def test_a_landscape_without_optima_has_no_seeds() -> None:
+    found = start_portfolio(
+        landscape(limit=1.0, least=2.5), designs(), replace(TRAINING, designs=2, starts=2)
+    )
+    assert found.starts == ()
+    assert found.coverage.designs == 0
+
+
+def test_random_starts_keep_to_the_joints_ranges() -> None:
+    ground, rng = landscape(limit=2.0), np.random.default_rng(1)
+    drawn = np.array([random_start(ground, rng)["robot.joints"][0] for _ in range(200)])
+    assert drawn.min() < -1.8
+    assert drawn.max() > 1.8
+    assert np.abs(drawn).max() <= 2.0
+
+
+def test_seeds_of_the_default_problem_lead_other_designs_well(known: Precomputed) -> None:
+    for found in (known.highest, known.lowest, *known.postures.values()):
+        assert 1 <= len(found.starts) <= 6
+        assert found.coverage.designs >= 30
+        assert found.coverage.share >= 0.97
+
+
+def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Evaluator) -> None:
+    result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
+    for height in result.heights:
+        assert height.attempt in height.attempts
+        assert {attempt.formulation for attempt in height.attempts} == {"decoupled"}
+        assert all(attempt.start.startswith("start") for attempt in height.attempts)
+        won = height.attempt
+        assert won.cost <= min(attempt.cost for attempt in height.attempts) + 0.03, "the fit's error apart"
+
+
+def test_without_seeds_solves_begin_at_the_fixed_starts(problem: Problem, known: Precomputed) -> None:
+    plain = Evaluator(problem, Precomputed(values=known.values))
+    result = plain.solve(problem.space.unscaled(problem.scene.robot.tree))
+    assert [attempt.name for attempt in result.heights[0].attempts] == [
+        "decoupled: fixed start 1",
+        "decoupled: fixed start 2",
+    ]
+
+
+def test_seeds_reach_higher_than_fixed_starts(
+    problem: Problem, evaluator: Evaluator, known: Precomputed
+) -> None:
+    """Arms raised sideways over the head hold a load higher than arms held forward."""
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    seeded = evaluator.solve(values).reach.highest
+    fixed = Evaluator(problem, Precomputed(values=known.values)).solve(values).reach.highest
+    assert seeded is not None
+    assert fixed is not None
+    assert seeded > fixed + 0.05

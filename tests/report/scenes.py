@@ -1,0 +1,60 @@
+"""Random postures of the default problem's robot and person, without solving anything."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.problem.build import Problem
+from evodesign.records import AgentDetail, Detail, HeightDetail
+from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
+from evodesign.report.scene_set import SceneSet
+
+
+def random_values(problem: Problem, seed: int) -> tuple[float, ...]:
+    rng = np.random.default_rng(seed)
+    return problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters)).tolist()))
+
+
+def random_company(problem: Problem, seed: int) -> SceneSet:
+    return SceneSet.of(
+        problem.scenes, problem.space.resized(problem.scene.robot.tree, random_values(problem, seed))
+    )
+
+
+def random_cast(problem: Problem, seed: int) -> SceneModels:
+    return random_company(problem, seed).models[0]
+
+
+def random_detail(problem: Problem, seed: int, heights: tuple[float, ...] = (0.8, 1.0, 1.2)) -> Detail:
+    rng = np.random.default_rng(seed)
+    shown = tuple(
+        HeightDetail(
+            height_m=height,
+            agents={agent.name: random_posture(agent, rng) for agent in (scene.robot, scene.human)},
+            human_name=scene.human.label,
+            payload_name=scene.payload.label,
+        )
+        for scene in problem.scenes
+        for height in heights
+    )
+    return Detail(evaluation=0, heights=shown)
+
+
+def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
+    def numbers(scale: float, count: int) -> tuple[float, ...]:
+        return tuple((scale * rng.normal(size=count)).tolist())
+
+    return AgentDetail(
+        base_position_m=numbers(1.0, 3),
+        base_rpy_rad=numbers(0.5, 3),
+        joints_rad=dict(zip(agent.joints, numbers(0.8, len(agent.joints)), strict=True)),
+        torques_n_m=dict(zip(agent.joints, numbers(10.0, len(agent.joints)), strict=True)),
+        hand_wrenches={side: numbers(10.0, 6) for side in SIDES},
+        foot_wrenches={side: (*numbers(10.0, 2), 300.0, *numbers(10.0, 3)) for side in SIDES},
+    )
+
+
+def random_stages(problem: Problem, seed: int) -> list[PlacedScene]:
+    models = random_cast(problem, seed)
+    return [placed_scene(models, detail) for detail in random_detail(problem, seed).heights]
