@@ -7,7 +7,9 @@ BIN := $(VENV)/bin
 PROBLEM ?= problems/icub_lifting.toml
 RUN ?=
 JOBS ?= 2
-PYTEST := $(BIN)/python -m pytest -n $(JOBS) --dist loadfile
+PYTEST := $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
+QUICK := tests/analysis tests/body tests/conformance/test_searches.py tests/design tests/golden tests/human tests/runlog \
+	tests/search tests/test_evolve.py tests/tree
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 export OMP_NUM_THREADS = 1
@@ -34,8 +36,8 @@ search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, JOBS=)
 test: $(VENV)/installed-dev  ## the tests, but for the slow ones
 	$(PYTEST) -m 'not slow'
 
-test-quick: $(VENV)/installed-dev  ## the quick tests of what needs no solver, for every save
-	$(PYTEST) -m 'not slow' $(QUICK)
+test-quick: $(VENV)/installed-dev  ## the tests that take no minute, for every save
+	$(PYTEST) -m 'not slow and not prepared' $(QUICK)
 
 test-all: $(VENV)/installed-dev  ## every test
 	$(PYTEST)

@@ -9,6 +9,7 @@ from benchmarks.inner_problem import HEIGHTS, known_at, problem_at, random_desig
 from benchmarks.inner_quality import judge, summary
 
 
+@pytest.mark.usefixtures("known")
 @pytest.mark.parametrize("count", [4, pytest.param(20, marks=pytest.mark.slow)])
 def test_reachable_heights_are_solved_and_about_as_good_as_the_best_of_many_starts(count: int) -> None:
     problem = problem_at(HEIGHTS)

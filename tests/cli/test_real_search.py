@@ -14,6 +14,7 @@ import msgspec
 import pytest
 from mcap.reader import make_reader
 
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.records import Evaluation
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
@@ -44,8 +45,11 @@ def bare(evaluation: Evaluation) -> bytes:
 
 
 @pytest.fixture(scope="module")
-def whole(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
+def whole(
+    repository: Path, known: Precomputed, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, str, str]:
     """An uninterrupted run on two workers, with what it printed."""
+    assert known.values, "worked out before, so that no search has to"
     run = tmp_path_factory.mktemp("runs") / "whole"
     done = finish(arguments(repository, run, "--jobs", "2"))
     return run, done.stdout, done.stderr
@@ -182,6 +186,7 @@ def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path:
     assert "Plotly" in plot.read_text()
 
 
+@pytest.mark.usefixtures("known")
 def test_evaluate_answers_in_full(repository: Path) -> None:
     problem = repository / "problems" / "icub_lifting.toml"
     found = json.loads(finish([*COMMAND, "evaluate", str(problem), "--json"]).stdout)
