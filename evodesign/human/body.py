@@ -18,8 +18,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from evodesign.body.inertia import Inertia, total
-from evodesign.body.mirror import mirrored_point
-from evodesign.body.placement import Matrix, Placement, Vector, add, scale
+from evodesign.body.placement import Matrix, Placement, Vector, add, mirrored_point, scale
 from evodesign.human.anthropometry import Person, Sex, landmarks, segments, sole_size
 from evodesign.human.anthropometry_tables import Articulation, tables
 from evodesign.human.appearance import human_looks

@@ -6,7 +6,6 @@ x and z one by -q, so limits [a, b] become [-b, -a].
 
 from __future__ import annotations
 
-from evodesign.body.mirror import mirrored_inertia, mirrored_placement
 from evodesign.tree.model import Joint, JointKind, Link, Look
 
 __all__ = ["LEFT", "mirrored_joint", "mirrored_link", "right_name"]
@@ -17,8 +16,8 @@ LEFT, RIGHT = "Left", "Right"
 
 def mirrored_link(link: Link) -> Link:
     """The right side's link: a person's, with an inertia of its own and looks but no solids."""
-    looks = tuple(Look(look.shape, mirrored_placement(look.link_from_look)) for look in link.looks)
-    return Link(right_name(link.name), own_inertia=mirrored_inertia(link.own_inertia), looks=looks)
+    looks = tuple(Look(look.shape, look.link_from_look.mirrored()) for look in link.looks)
+    return Link(right_name(link.name), own_inertia=link.own_inertia.mirrored(), looks=looks)
 
 
 def mirrored_joint(joint: Joint) -> Joint:
@@ -33,7 +32,7 @@ def mirrored_joint(joint: Joint) -> Joint:
         joint.kind,
         right_name(joint.parent),
         right_name(joint.child),
-        mirrored_placement(joint.parent_from_child),
+        joint.parent_from_child.mirrored(),
         axis=joint.axis,
         lower=lower,
         upper=upper,

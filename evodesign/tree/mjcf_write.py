@@ -17,8 +17,7 @@ from dataclasses import dataclass
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement
-from evodesign.body.quaternion import quaternion_wxyz
+from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, JointKind, Link, Tree
