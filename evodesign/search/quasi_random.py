@@ -19,7 +19,15 @@ from evodesign.search.base import Outcome
 from evodesign.search.discrete import snapped
 from evodesign.search.ranking import check_outcomes
 
-__all__ = ["QuasiRandom", "SobolPoints", "SobolStream", "first_generation"]
+__all__ = [
+    "AsynchronousRandom",
+    "Beginning",
+    "QuasiRandom",
+    "SobolPoints",
+    "SobolStream",
+    "first_generation",
+    "generator_of",
+]
 
 BLOCK = 64
 """Points computed at a time; a power of two, as the sequence's balance asks for."""
@@ -84,6 +92,30 @@ def first_generation(settings: SearchSettings, stream: SobolStream) -> tuple[Gen
     return start + stream.take(settings.population - len(start))
 
 
+class Beginning:
+    """The genomes with which a search begins: the start genomes, each once, then quasi-random points.
+
+    Args:
+        start: genomes of the settings.
+        population: of the start genomes, no more count.
+        points: the quasi-random sequence.
+    """
+
+    def __init__(self, start: tuple[Genome, ...], population: int, points: SobolPoints) -> None:
+        self._start = tuple(dict.fromkeys(start))[:population]
+        self._points = points
+
+    def genome(self, turn: int) -> Genome:
+        """The genome of a turn."""
+        count = len(self._start)
+        return self._start[turn] if turn < count else self._points.point(turn - count)
+
+
+def generator_of(seed: int, turn: int) -> np.random.Generator:
+    """Random numbers of a turn's own."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(turn,)))
+
+
 class QuasiRandom:
     """Asks for the points of a Sobol sequence, whatever it is told.
 
@@ -109,3 +141,23 @@ class QuasiRandom:
         """
         check_outcomes(self._asked, outcomes, self._settings.objectives)
         self._asked = self._stream.take(self._settings.population)
+
+
+class AsynchronousRandom:
+    """The same, one point at a time: it learns nothing, so asynchronous it is the same.
+
+    Args:
+        settings: dimension, population, seed and start genomes.
+    """
+
+    def __init__(self, settings: SearchSettings) -> None:
+        (seed,) = np.random.SeedSequence(settings.seed).spawn(1)
+        points = SobolPoints(settings.counts, seed)
+        self._beginning = Beginning(settings.start, settings.population, points)
+
+    def ask(self, turn: int) -> Genome:
+        """The point of a turn."""
+        return self._beginning.genome(turn)
+
+    def tell(self, turn: int, outcome: Outcome) -> None:
+        """Nothing is learnt."""
