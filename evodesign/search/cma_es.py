@@ -25,7 +25,7 @@ from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.cma_instances import Array, Instances, check_settings, instance_count
 from evodesign.search.discrete import snapped
-from evodesign.search.quasi_random import Beginning, SobolPoints, SobolStream, first_generation, generator_of
+from evodesign.search.quasi_random import Beginning, SobolStream, first_generation, generator_of
 from evodesign.search.ranking import check_outcomes
 
 __all__ = ["AsynchronousCmaEs", "CmaEs"]
@@ -104,8 +104,7 @@ class AsynchronousCmaEs:
         check_settings(settings)
         begin_seed, restart_seed = np.random.SeedSequence(settings.seed).spawn(2)
         self._settings = settings
-        points = SobolPoints(settings.counts, begin_seed)
-        self._beginning = Beginning(settings.start, settings.population, points)
+        self._beginning = Beginning(settings, begin_seed)
         self._generator = generator_of(settings.seed, 0)
         draws = [self._normal] * instance_count(settings)
         self._instances = Instances(settings, draws, SobolStream(settings.counts, restart_seed))

@@ -10,7 +10,7 @@ population, then the fittest survive: one by one up to 31 designs, a few at a ti
 which sorting costs more (a population divided by 32, and one). The first genomes are the start genomes and
 quasi-random points, until half a population is known.
 
-Coordinates that are discrete have crossover and mutation of their own:
+Coordinates that are discrete are varied in their own way; where there are none, no random number is drawn:
 
     crossover   a child has either parent's choice: two children exchange theirs with a chance of one half
     mutation    another choice, each other one with the same chance; as often as a continuous one is changed
@@ -22,7 +22,6 @@ algorithms, 2009; Deb and Goyal, A combined genetic adaptive search (GeneAS) for
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -40,8 +39,8 @@ from pymoo.operators.mutation.pm import PM
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
 from evodesign.search.discrete import snapped
-from evodesign.search.quasi_random import Beginning, SobolPoints, SobolStream, first_generation, generator_of
-from evodesign.search.ranking import check_outcomes, infeasibility, usable
+from evodesign.search.quasi_random import Beginning, SobolStream, first_generation, generator_of
+from evodesign.search.ranking import check_outcomes, with_outcomes
 
 __all__ = ["AsynchronousNsga2", "MixedCrossover", "MixedMutation", "Nsga2"]
 
@@ -112,8 +111,7 @@ class AsynchronousNsga2:
     def __init__(self, settings: SearchSettings) -> None:
         stream_seed, algorithm_seed = np.random.SeedSequence(settings.seed).spawn(2)
         self._settings = settings
-        points = SobolPoints(settings.counts, stream_seed)
-        self._beginning = Beginning(settings.start, settings.population, points)
+        self._beginning = Beginning(settings, stream_seed)
         nobody = np.empty((0, settings.dimension))
         self._algorithm = nsga2_algorithm(settings, nobody, algorithm_seed, eliminate_duplicates=False)
         self._population = Population.new()
@@ -192,33 +190,14 @@ def nsga2_algorithm(
     algorithm = NSGA2(
         pop_size=settings.population,
         sampling=start,
-        crossover=_crossover(settings),
-        mutation=_mutation(settings),
+        crossover=MixedCrossover(settings.counts, CROSSOVER_SHARE, CROSSOVER_INDEX),
+        mutation=MixedMutation(settings.counts, MUTATION_INDEX),
         seed=seed,
         eliminate_duplicates=eliminate_duplicates,
         output=None,
     )
     algorithm.setup(problem, termination=NoTermination())
     return algorithm
-
-
-def _crossover(settings: SearchSettings) -> SBX:
-    if settings.discrete:
-        return MixedCrossover(settings.counts, CROSSOVER_SHARE, CROSSOVER_INDEX)
-    return SBX(prob=CROSSOVER_SHARE, eta=CROSSOVER_INDEX)
-
-
-def _mutation(settings: SearchSettings) -> PM:
-    if settings.discrete:
-        return MixedMutation(settings.counts, MUTATION_INDEX)
-    return PM(eta=MUTATION_INDEX)
-
-
-def with_outcomes(population: Population, outcomes: Sequence[Outcome], objectives: int) -> None:
-    """Give members their outcomes: infeasibility as the one constraint, NaN where there are no objectives."""
-    absent = (math.nan,) * objectives
-    population.set("F", np.array([usable(outcome) or absent for outcome in outcomes]))
-    population.set("G", np.array([[infeasibility(outcome)] for outcome in outcomes]))
 
 
 class MixedCrossover(SBX):  # type: ignore[misc]
