@@ -15,10 +15,10 @@ Source: Chebyshev interpolation: Trefethen, Approximation Theory and Approximati
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import msgspec
 import numpy as np
 from numpy.polynomial import Chebyshev
 
@@ -50,8 +50,11 @@ COST_UNIT = TORQUE_UNIT**2
 """One unit of V, and of every posture's cost [N^2 m^2]."""
 
 
-@dataclass(frozen=True, slots=True)
-class HumanValue:
+IN_FILES = {"height": "height_m", "push": "push_n"}
+"""Names of fields with their units, as a value function is kept."""
+
+
+class HumanValue(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename=IN_FILES):
     """The person's least cost V(X) at one height.
 
     Args:

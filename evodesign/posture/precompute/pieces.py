@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import msgspec
+import numpy as np
+from msgspec.structs import replace as with_fields
 
 from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
@@ -24,18 +26,7 @@ from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.person_reach import person_reach
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.precompute.stored import (
-    StoredPersonReach,
-    StoredStartPortfolio,
-    StoredValue,
-    human_value_of_stored,
-    person_reach_of_stored,
-    portfolio_of,
-    stored_person_reach,
-    stored_portfolio,
-    stored_value,
-)
+from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 
 __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
@@ -199,27 +190,29 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         piece: which one.
         known: what earlier stages gave.
     """
+    found: HumanValue | PersonReach | StartPortfolio | None
     if piece.subject is Subject.PERSON:
-        return msgspec.json.encode(stored_value(_person(setting, piece)))
-    if piece.subject is Subject.PERSON_REACH:
+        found = _person(setting, piece)
+    elif piece.subject is Subject.PERSON_REACH:
         scene = setting.scenes[piece.scene]
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
-        return msgspec.json.encode(stored_person_reach(found))
-    return msgspec.json.encode(stored_portfolio(_portfolio(setting, piece, known)))
+    else:
+        found = _portfolio(setting, piece, known)
+    return msgspec.json.encode(found, enc_hook=np.ndarray.tolist)
 
 
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
     """What is known with one more piece; None when its content cannot be read."""
     try:
         if piece.subject is Subject.PERSON:
-            value = human_value_of_stored(msgspec.json.decode(content, type=StoredValue))
-            others = (*known.values, *([replace(value, scene=piece.scene)] if value else []))
+            value = msgspec.json.decode(content, type=HumanValue | None)
+            others = (*known.values, *([with_fields(value, scene=piece.scene)] if value else []))
             return replace(known, values=tuple(sorted(others, key=lambda value: (value.scene, value.height))))
         if piece.subject is Subject.PERSON_REACH:
-            stretch = person_reach_of_stored(msgspec.json.decode(content, type=StoredPersonReach))
-            several = (*known.person_reaches, *([replace(stretch, scene=piece.scene)] if stretch else []))
-            return replace(known, person_reaches=tuple(sorted(several, key=lambda stretch: stretch.scene)))
-        found = portfolio_of(msgspec.json.decode(content, type=StoredStartPortfolio))
+            reach = msgspec.json.decode(content, type=PersonReach | None)
+            several = (*known.person_reaches, *([with_fields(reach, scene=piece.scene)] if reach else []))
+            return replace(known, person_reaches=tuple(sorted(several, key=lambda reach: reach.scene)))
+        found = msgspec.json.decode(content, type=StartPortfolio)
     except msgspec.DecodeError:
         return None
     if piece.subject is Subject.HIGHEST:
