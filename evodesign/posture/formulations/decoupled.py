@@ -28,8 +28,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked

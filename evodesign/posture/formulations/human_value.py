@@ -24,8 +24,7 @@ from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import Constraint, Program
-from evodesign.nlp.solver import IpoptOptions, RawSolution
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import IpoptOptions, RawSolution, SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.starts import person_starts

@@ -23,8 +23,7 @@ from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_desig
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
-from evodesign.posture.person_reach import person_reach
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
