@@ -16,12 +16,10 @@ import casadi as ca
 import numpy as np
 
 from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_functions
-from evodesign.nlp.program import Program
+from evodesign.nlp.program import Array, Program
 from evodesign.records import Status
 
 __all__ = ["IpoptOptions", "Multipliers", "RawSolution", "Solver", "SolverCache"]
-
-Array = Any
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,8 @@ import numpy as np
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.cma_instances import Array, Instances, check_settings, instance_count
-from evodesign.search.discrete import snapped
+from evodesign.search.cma_instances import Instances, check_settings, instance_count
+from evodesign.search.discrete import Array, snapped
 from evodesign.search.quasi_random import Beginning, SobolStream, first_generation, generator_of
 from evodesign.search.ranking import check_outcomes
 

@@ -26,7 +26,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.config import Config
 from pymoo.core.individual import Individual
@@ -38,7 +37,7 @@ from pymoo.operators.mutation.pm import PM
 
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.discrete import snapped
+from evodesign.search.discrete import Array, snapped
 from evodesign.search.quasi_random import Beginning, SobolStream, first_generation, generator_of
 from evodesign.search.ranking import check_outcomes, with_outcomes
 
@@ -57,8 +56,6 @@ JOINING = 32
 
 TRIES = 100
 """How often a child that equals a member is replaced, before a random point is."""
-
-Array = NDArray[np.float64]
 
 
 class Nsga2:

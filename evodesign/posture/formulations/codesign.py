@@ -23,14 +23,13 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
-from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.program import Array, Expression, Program, Start, Variable
 from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
@@ -49,8 +48,6 @@ from evodesign.records import Genome, Status
 
 __all__ = ["JointProblem", "JointSettings", "JointSolution", "drawn_postures", "standard_postures"]
 
-Array = Any
-Expression = Any
 
 NAME = "codesign"
 """Of the formulation, in results."""

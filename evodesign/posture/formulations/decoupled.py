@@ -26,7 +26,7 @@ from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.nlp.optimality import NotDifferentiable
-from evodesign.nlp.program import Program, Start
+from evodesign.nlp.program import Array, Program, Start
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
@@ -52,7 +52,6 @@ from evodesign.records import Status, worst_status
 
 __all__ = ["DecoupledPostures", "robot_program"]
 
-Array = Any
 
 AT_LIMIT = 1e-6
 """How little below its limit an internal force [N] counts as being there; IPOPT ends a little before it."""

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import Constraint, Program
+from evodesign.nlp.program import Array, Constraint, Program
 from evodesign.nlp.solver import IpoptOptions, RawSolution, SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import program_key
@@ -36,7 +36,6 @@ from evodesign.records import Status
 
 __all__ = ["COEFFICIENTS", "COST_UNIT", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
 
-Array = Any
 
 DEGREE = 8
 COEFFICIENTS = DEGREE + 1
