@@ -19,7 +19,7 @@ from itertools import pairwise
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases
 from evodesign.mechanics.scene import Scene
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import SolverCache
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting

@@ -21,7 +21,7 @@ from typing import Any
 import msgspec
 
 from evodesign.evolve import Silent, start
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter

@@ -25,7 +25,7 @@ import numpy as np
 from benchmarks.paper_posture import PaperPostures
 from evodesign.cli.ready import known_of
 from evodesign.nlp.solver import IpoptOptions
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem

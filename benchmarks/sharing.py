@@ -16,8 +16,14 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.inner_problem import problem_at
-from evodesign.design.allocation import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.space import (
+    ALLOCATIONS,
+    EFFORT_RATIO,
+    ROBOT_SHARE,
+    DesignParameter,
+    DesignSpace,
+    ParameterKind,
+)
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.nlp.start_portfolio import random_start

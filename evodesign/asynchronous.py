@@ -13,10 +13,10 @@ from contextlib import closing
 
 from evodesign.analysis.run_state import RunState
 from evodesign.analysis.stagnation import stagnant
-from evodesign.pool.stoppable import run_stoppable
+from evodesign.pool.dispatch import run_stoppable
 from evodesign.records import Evaluation, Genome, Turn
 from evodesign.runlog.outcome import evaluation_outcome
-from evodesign.search.asynchronous import AsynchronousSearch
+from evodesign.search.base import AsynchronousSearch
 from evodesign.session import Session, conclude, remember, search_outcome
 
 __all__ = ["evolve_asynchronously"]

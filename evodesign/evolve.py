@@ -29,8 +29,8 @@ from evodesign.analysis.stagnation import stagnant
 from evodesign.asynchronous import evolve_asynchronously
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Pool
-from evodesign.pool.serial import SerialPool
-from evodesign.pool.stoppable import run_stoppable
+from evodesign.pool.dispatch import run_stoppable
+from evodesign.pool.worker import SerialPool
 from evodesign.records import (
     Evaluation,
     Genome,

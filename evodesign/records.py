@@ -35,6 +35,7 @@ __all__ = [
     "Parameter",
     "ProblemSource",
     "ReachOutcome",
+    "Record",
     "RunHeader",
     "SearchSettings",
     "SearchStage",

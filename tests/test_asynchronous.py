@@ -15,7 +15,7 @@ from evodesign.errors import Interrupted, ResumeMismatch, RunError
 from evodesign.evolve import Silent, resume, start
 from evodesign.pool.base import Finished, Pool
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Turn
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter

@@ -8,8 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from evodesign.api.design import Design
-from evodesign.design.allocation import ALLOCATIONS
-from evodesign.design.space import ParameterKind
+from evodesign.design.space import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.registry import make_pool

@@ -1,4 +1,4 @@
-"""Mass, centre of mass and rotational inertia of rigid bodies: moved, rotated, added.
+"""Mass, centre of mass and rotational inertia of rigid bodies: moved, rotated, mirrored, added.
 
     moved:    c' = R c + p,  I' = R I R^T            (I is taken about the centre of mass)
     added:    m = sum m_i,  m c = sum m_i c_i,
@@ -19,6 +19,8 @@ from evodesign.body.placement import (
     Vector,
     add,
     dot,
+    mirrored_matrix,
+    mirrored_point,
     multiply,
     scale,
     transpose,
@@ -48,6 +50,10 @@ class Inertia:
         rotation = outer_from_inner.rotation
         turned = multiply(multiply(rotation, self.about_center), transpose(rotation))
         return Inertia(self.mass, outer_from_inner.apply(self.center), turned)
+
+    def mirrored(self) -> Inertia:
+        """The mirror image of the body in the plane y = 0 (`placement`)."""
+        return Inertia(self.mass, mirrored_point(self.center), mirrored_matrix(self.about_center))
 
 
 def offset_inertia(mass: Scalar, d: Vector) -> Matrix:

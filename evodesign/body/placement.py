@@ -1,8 +1,15 @@
-"""Position and orientation of one frame in another.
+"""Position and orientation of one frame in another, as rotation matrix, angles or quaternion; mirror images.
 
 A placement named `link_from_solid` takes coordinates in the solid's frame to coordinates in the link's.
 Translations may be numbers or symbolic expressions (a resized link moves its children); rotations are
 always numbers. Everything is plain arithmetic on tuples, so that no numerical library is needed here.
+
+Mirror images are those in the plane y = 0, with M = diag(1, -1, 1):
+
+    point M p        rotation or inertia M A M
+
+M on both sides keeps right-handed frames right-handed. A rotation about an axis a by q becomes one about the
+pseudovector -M a by q.
 """
 
 from __future__ import annotations
@@ -12,7 +19,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Matrix", "Placement", "Scalar", "Vector", "matrix_from_rpy", "rpy_from_matrix"]
+__all__ = [
+    "Matrix",
+    "Placement",
+    "Scalar",
+    "Vector",
+    "matrix_from_rpy",
+    "mirrored_matrix",
+    "mirrored_point",
+    "quaternion_wxyz",
+    "rpy_from_matrix",
+]
 
 Scalar = Any
 """A float or a CasADi expression."""
@@ -44,6 +61,10 @@ class Placement:
     def __matmul__(self, inner: Placement) -> Placement:
         """Chain: `a_from_b @ b_from_c` is `a_from_c`."""
         return Placement(multiply(self.rotation, inner.rotation), self.apply(inner.translation))
+
+    def mirrored(self) -> Placement:
+        """The placement on the other side, of a frame that is itself mirrored."""
+        return Placement(mirrored_matrix(self.rotation), mirrored_point(self.translation))
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Placement:
@@ -106,3 +127,39 @@ def rpy_from_matrix(matrix: Matrix) -> tuple[float, float, float]:
     s, c = math.sin(yaw), math.cos(yaw)
     roll = math.atan2(s * matrix[0][2] - c * matrix[1][2], c * matrix[1][1] - s * matrix[0][1])
     return roll, pitch, yaw
+
+
+def quaternion_wxyz(rotation: Matrix) -> tuple[float, float, float, float]:
+    """The unit quaternion (w, x, y, z) of a rotation matrix of numbers.
+
+        R = (w^2 - v.v) 1 + 2 w [v]x + 2 v v^T        with v = (x, y, z)
+
+    The largest of w, x, y, z comes from the diagonal, the others from sums and differences divided by it, so
+    that no rotation loses digits. Of the two quaternions of a rotation, it is the one whose first part other
+    than zero is positive.
+
+    Source: Shepperd 1978, Quaternion from rotation matrix.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    squares = (1.0 + a + e + i, 1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i)
+    products = (
+        (squares[0], h - f, c - g, d - b),
+        (h - f, squares[1], b + d, c + g),
+        (c - g, b + d, squares[2], f + h),
+        (d - b, c + g, f + h, squares[3]),
+    )
+    row = products[max(range(4), key=squares.__getitem__)]
+    size = math.copysign(math.hypot(*row), next(part for part in row if part != 0.0))
+    w, x, y, z = (part / size + 0.0 for part in row)
+    return w, x, y, z
+
+
+def mirrored_point(point: Vector) -> Vector:
+    """The point on the other side; subtracted from zero, so that no negative zero reaches a file."""
+    return (point[0], 0.0 - point[1], point[2])
+
+
+def mirrored_matrix(matrix: Matrix) -> Matrix:
+    """The rotation or inertia on the other side, M A M."""
+    x, y, z = matrix
+    return (mirrored_point(x), (0.0 - y[0], y[1], 0.0 - y[2]), mirrored_point(z))

@@ -3,6 +3,12 @@
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
 
+An allocation parameter belongs to no link: it says how robot and person share the load, so that a front can
+span from "the robot carries" to "the person carries".
+
+    robot_share     part of the load's weight that the robot carries, 0 to 1
+    effort_ratio    log10(w_r / w_h), where w_r + w_h = 2 weigh the agents' squared torques
+
 Source: Sartore et al. 2022, Section III-A: pi = (l_m1, ..., rho_1, ...).
 """
 
@@ -14,14 +20,52 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.design.allocation import ALLOCATIONS
 from evodesign.errors import ModelError
 from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import growth_of, resize
 from evodesign.tree.symmetry import mirror_of
 
-__all__ = ["DesignParameter", "DesignSpace", "ParameterKind"]
+__all__ = [
+    "ALLOCATIONS",
+    "EFFORT_RATIO",
+    "ROBOT_SHARE",
+    "Allocation",
+    "DesignParameter",
+    "DesignSpace",
+    "ParameterKind",
+]
+
+ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
+
+
+@dataclass(frozen=True, slots=True)
+class Allocation:
+    """The range of an allocation parameter.
+
+    Args:
+        usual: its value in the unscaled robot.
+        lowest, highest: between which it means something.
+    """
+
+    usual: float
+    lowest: float
+    highest: float
+
+    @property
+    def wanted(self) -> str:
+        """Its range in words."""
+        return f"a number from {self.lowest:g} to {self.highest:g}"
+
+    def means(self, value: float) -> bool:
+        """Whether a value means something."""
+        return self.lowest <= value <= self.highest
+
+
+ALLOCATIONS: Mapping[str, Allocation] = {
+    ROBOT_SHARE: Allocation(usual=0.5, lowest=0.0, highest=1.0),
+    EFFORT_RATIO: Allocation(usual=0.0, lowest=-6.0, highest=6.0),
+}
 
 
 class ParameterKind(StrEnum):

@@ -9,11 +9,15 @@ import tomllib
 from enum import StrEnum
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import TypeVar
 
 import msgspec
 
-__all__ = ["Articulation", "AxisRange", "BodySegment", "Column", "Sex", "Tables", "tables"]
+from evodesign.records import Record
+
+__all__ = ["Articulation", "AxisRange", "BodySegment", "Column", "Sex", "Tables", "figures", "tables"]
+
+R = TypeVar("R", bound=Record)
 
 
 class Sex(StrEnum):
@@ -23,11 +27,7 @@ class Sex(StrEnum):
     FEMALE = "female"
 
 
-class AnthropometryTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Base of the tables in `data/anthropometry.toml`; what each key means is said there."""
-
-
-class Accepted(AnthropometryTable, frozen=True):
+class Accepted(Record, frozen=True):
     """Persons for whom the tables are believed."""
 
     source: str
@@ -35,7 +35,7 @@ class Accepted(AnthropometryTable, frozen=True):
     mass_kg: tuple[float, float]
 
 
-class Lengths(AnthropometryTable, frozen=True):
+class Lengths(Record, frozen=True):
     """Lengths, fractions of stature."""
 
     source: str
@@ -54,7 +54,7 @@ class Lengths(AnthropometryTable, frozen=True):
     foot_breadth: float
 
 
-class Foot(AnthropometryTable, frozen=True):
+class Foot(Record, frozen=True):
     """Where ankle, ball and centre of mass lie in the foot."""
 
     source: str
@@ -64,7 +64,7 @@ class Foot(AnthropometryTable, frozen=True):
     toe_thickness: float
 
 
-class Trunk(AnthropometryTable, frozen=True):
+class Trunk(Record, frozen=True):
     """Where the trunk's joints lie and how it is shared out."""
 
     source: str
@@ -74,7 +74,7 @@ class Trunk(AnthropometryTable, frozen=True):
     shoulder_mass_share: float
 
 
-class Looks(AnthropometryTable, frozen=True):
+class Looks(Record, frozen=True):
     """Figures that are only seen."""
 
     source: str
@@ -82,7 +82,7 @@ class Looks(AnthropometryTable, frozen=True):
     density_kg_per_m3: float
 
 
-class BodySegment(AnthropometryTable, frozen=True):
+class BodySegment(Record, frozen=True):
     """One row of de Leva's Table 4."""
 
     mass: float
@@ -90,7 +90,7 @@ class BodySegment(AnthropometryTable, frozen=True):
     radii: tuple[float, float, float]
 
 
-class Column(AnthropometryTable, frozen=True):
+class Column(Record, frozen=True):
     """De Leva's figures for one sex, with the sample's mean stature and lengths of the trunk and head."""
 
     stature_m: float
@@ -102,7 +102,7 @@ class Column(AnthropometryTable, frozen=True):
     segments: dict[str, BodySegment]
 
 
-class DeLeva(AnthropometryTable, frozen=True):
+class DeLeva(Record, frozen=True):
     """De Leva's Table 4."""
 
     source: str
@@ -115,7 +115,7 @@ class DeLeva(AnthropometryTable, frozen=True):
         return {Sex.MALE: self.male, Sex.FEMALE: self.female}[sex]
 
 
-class AxisRange(AnthropometryTable, frozen=True):
+class AxisRange(Record, frozen=True):
     """One axis of a joint, its limits [degrees] and what the signs mean on the left side."""
 
     axis: str
@@ -124,7 +124,7 @@ class AxisRange(AnthropometryTable, frozen=True):
     positive: str
 
 
-class Articulation(AnthropometryTable, frozen=True):
+class Articulation(Record, frozen=True):
     """A joint of one to three axes from parent to child."""
 
     name: str
@@ -133,14 +133,14 @@ class Articulation(AnthropometryTable, frozen=True):
     axes: tuple[AxisRange, ...]
 
 
-class Articulations(AnthropometryTable, frozen=True):
+class Articulations(Record, frozen=True):
     """All joints of the middle and the left side."""
 
     source: str
     joints: tuple[Articulation, ...]
 
 
-class Tables(AnthropometryTable, frozen=True):
+class Tables(Record, frozen=True):
     """The whole data file."""
 
     accepted: Accepted
@@ -152,9 +152,13 @@ class Tables(AnthropometryTable, frozen=True):
     articulation: Articulations
 
 
+def figures(file: str, form: type[R]) -> R:
+    """The figures of a file of `data/`, read strictly."""
+    text = resources.files("evodesign.human").joinpath("data", file).read_text("utf-8")
+    return msgspec.convert(tomllib.loads(text), form)
+
+
 @cache
 def tables() -> Tables:
     """The figures of `data/anthropometry.toml`."""
-    text = resources.files("evodesign.human").joinpath("data/anthropometry.toml").read_text("utf-8")
-    read: dict[str, Any] = tomllib.loads(text)
-    return msgspec.convert(read, Tables)
+    return figures("anthropometry.toml", Tables)

@@ -9,7 +9,8 @@ in `data/anthropometry.toml`.
 A segment of de Leva's that several links share is split so that, at joint position zero, the links together
 have exactly the segment's mass, centre and inertia (`split`).
 
-`human_looks` gives the links their shapes, `mirror` the right side. Sources: see `anthropometry`.
+`human_looks` gives the links their shapes. The right side is the left one mirrored about the plane y = 0: the
+mirror image of a turn by q about y is a turn by q, about x and z one by -q. Sources: see `anthropometry`.
 """
 
 from __future__ import annotations
@@ -18,15 +19,23 @@ import math
 from collections.abc import Mapping, Sequence
 
 from evodesign.body.inertia import Inertia, total
-from evodesign.body.mirror import mirrored_point
-from evodesign.body.placement import Matrix, Placement, Vector, add, scale
+from evodesign.body.placement import Matrix, Placement, Vector, add, mirrored_point, scale
 from evodesign.human.anthropometry import Person, Sex, landmarks, segments, sole_size
 from evodesign.human.anthropometry_tables import Articulation, tables
 from evodesign.human.appearance import human_looks
-from evodesign.tree.mirror import LEFT, mirrored_joint, mirrored_link, right_name
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
-__all__ = ["DEFAULT_JOINTS", "HANDS", "SOLES", "TRUNK", "Person", "Sex", "human_tree", "sole_size"]
+__all__ = [
+    "DEFAULT_JOINTS",
+    "HANDS",
+    "SOLES",
+    "TRUNK",
+    "Person",
+    "Sex",
+    "human_tree",
+    "right_name",
+    "sole_size",
+]
 
 HANDS: Mapping[str, str] = {"left": "LeftPalm", "right": "RightPalm"}
 """Frames that grasp: at the third metacarpal, axes as the hand's."""
@@ -38,6 +47,9 @@ TRUNK = ("Pelvis", "T8")
 """Lowest and highest link of the trunk."""
 
 _STILL = ("T1C7", "C1Head", "C7Shoulder", "Wrist", "Knee_rotz", "BallFoot")
+
+LEFT, RIGHT = "Left", "Right"
+"""What names of the two sides hold."""
 
 AXES: Mapping[str, Vector] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -61,8 +73,8 @@ def human_tree(person: Person) -> Tree:
         links.append(Link(frame))
         place = Placement(translation=_difference(points[frame], points[parent]))
         joints.append(Joint(f"j{frame}_fixed", JointKind.FIXED, parent, frame, place))
-    links += [mirrored_link(link) for link in links if link.name.startswith(LEFT)]
-    joints += [mirrored_joint(joint) for joint in joints if joint.child.startswith(LEFT)]
+    links += [_mirrored_link(link) for link in links if link.name.startswith(LEFT)]
+    joints += [_mirrored_joint(joint) for joint in joints if joint.child.startswith(LEFT)]
     return Tree("human", tuple(links), tuple(joints))
 
 
@@ -180,6 +192,36 @@ def _chain(
         )
     links = [Link(name) for name in between]
     return [*links, Link(child, own_inertia=bodies[child], looks=looks[child])], joints
+
+
+def _mirrored_link(link: Link) -> Link:
+    """The right side's link: a person's, with an inertia of its own and looks but no solids."""
+    looks = tuple(Look(look.shape, look.link_from_look.mirrored()) for look in link.looks)
+    return Link(right_name(link.name), own_inertia=link.own_inertia.mirrored(), looks=looks)
+
+
+def _mirrored_joint(joint: Joint) -> Joint:
+    """The right side's joint: same axis, limits about x and z mirrored.
+
+    A person's joint: fixed or revolute about one axis of its frame, without effort or velocity limits.
+    """
+    turns_alike = joint.axis[1] == 1.0 or joint.kind is JointKind.FIXED
+    lower, upper = (joint.lower, joint.upper) if turns_alike else (-joint.upper, -joint.lower)
+    return Joint(
+        right_name(joint.name),
+        joint.kind,
+        right_name(joint.parent),
+        right_name(joint.child),
+        joint.parent_from_child.mirrored(),
+        axis=joint.axis,
+        lower=lower,
+        upper=upper,
+    )
+
+
+def right_name(name: str) -> str:
+    """The right side's name; that of the middle is its own."""
+    return name.replace(LEFT, RIGHT)
 
 
 def _default_joints() -> tuple[str, ...]:

@@ -11,20 +11,16 @@ Source: the `source` key of `data/population.toml` (Fryar et al. 2025, Tables 3 
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from functools import cache
-from importlib import resources
 from itertools import pairwise
 from statistics import NormalDist
-from typing import Any
-
-import msgspec
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person
-from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.anthropometry_tables import Sex, figures
+from evodesign.records import Record
 
 __all__ = ["Distribution", "PopulationSex", "PopulationTable", "population", "population_table"]
 
@@ -44,14 +40,14 @@ SEXES: Mapping[PopulationSex, tuple[Sex, ...]] = {
 }
 
 
-class Distribution(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class Distribution(Record, frozen=True):
     """Stature [m] and mass [kg] of one sex at the table's percentiles."""
 
     stature_m: tuple[float, ...]
     mass_kg: tuple[float, ...]
 
 
-class PopulationTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class PopulationTable(Record, frozen=True):
     """The whole data file; the percentiles rise."""
 
     source: str
@@ -67,9 +63,7 @@ class PopulationTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True, k
 @cache
 def population_table() -> PopulationTable:
     """The figures of `data/population.toml`."""
-    text = resources.files("evodesign.human").joinpath("data/population.toml").read_text("utf-8")
-    read: dict[str, Any] = tomllib.loads(text)
-    return msgspec.convert(read, PopulationTable)
+    return figures("population.toml", PopulationTable)
 
 
 def population(sex: str, percentiles: Sequence[float]) -> Mapping[str, Person]:

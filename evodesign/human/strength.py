@@ -7,30 +7,86 @@
 A joint's torque is the moment of the muscles on what lies beyond it, about the joint's axis: it has the sign
 of the movement that it would make. On the right side the signs about x and z change, as the limits do.
 
-Source: the `sources` of `data/strength.toml`; docs/people.md says what is rated by which rule.
+Source: the `sources` of `data/strength.toml`, where each key is explained; docs/people.md says what is rated
+by which rule.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
 
 from evodesign.human.anthropometry import Person
-from evodesign.human.strength_tables import Direction, Scale, strength_tables
-from evodesign.tree.mirror import right_name
+from evodesign.human.anthropometry_tables import Sex, figures
+from evodesign.human.body import right_name
+from evodesign.records import Record
 
 __all__ = [
     "JointStrength",
     "RelativeTorque",
+    "Scale",
     "Strength",
     "joint_strengths",
     "largest_relative_torque",
     "relative_torques",
+    "strength_tables",
     "with_given",
 ]
 
 NEWTONS_PER_KILOGRAM = 9.81
 """Body weight over body mass, where a source divides a moment by body weight."""
+
+
+class Scale(StrEnum):
+    """What a figure of `data/strength.toml` is multiplied by to give a moment [N m]."""
+
+    N_M = "n_m"
+    PER_MASS = "per_mass"
+    PER_WEIGHT_AND_STATURE = "per_weight_and_stature"
+
+
+class Source(Record, frozen=True):
+    """Where figures come from, what they are multiplied by, and how far they could be checked."""
+
+    citation: str
+    scale: Scale
+    checked: str
+
+
+class Direction(Record, frozen=True):
+    """The muscles' moment of one sign about a joint: what it does, and its figure for each sex."""
+
+    movement: str
+    source: str
+    male: float
+    female: float
+
+    def of(self, sex: Sex) -> float:
+        """The figure of a sex."""
+        return {Sex.MALE: self.male, Sex.FEMALE: self.female}[sex]
+
+
+class StrengthRow(Record, frozen=True):
+    """Strengths of joints that share them; a direction for which nothing is published is left out."""
+
+    joints: tuple[str, ...]
+    negative: Direction | None = None
+    positive: Direction | None = None
+
+
+class StrengthTables(Record, frozen=True):
+    """The whole data file."""
+
+    sources: dict[str, Source]
+    rows: tuple[StrengthRow, ...]
+
+
+@cache
+def strength_tables() -> StrengthTables:
+    """The figures of `data/strength.toml`."""
+    return figures("strength.toml", StrengthTables)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,19 +17,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
-from evodesign.tree.kinematics import Pose, forward, vector
+from evodesign.tree.kinematics import Expression, Pose, forward, vector
 from evodesign.tree.model import JointKind, Tree
 
 __all__ = ["GRAVITY", "AppliedWrench", "Balance", "center_of_mass", "cut", "standing_height_of_mass"]
 
 GRAVITY = 9.81
 """Gravitational acceleration [m/s^2], along -z of the world."""
-
-Expression = Any
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,16 +22,14 @@ from enum import StrEnum
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
+from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.model import Tree
 
 __all__ = ["AT_REST", "PAYLOAD", "Contact", "ContactKind", "CoupledModel", "CoupledSystem", "level_load"]
 
-Array = NDArray[np.float64]
 
 PAYLOAD = "payload"
 """Name of the load among the parts of the system, beside the agents' names."""
@@ -83,11 +81,6 @@ class CoupledSystem:
     drift: Array
     joints: tuple[tuple[str, str], ...]
     contacts: tuple[Contact, ...]
-
-    def torques_of(self, agent: str, torques: Array) -> dict[str, float]:
-        """An agent's part of tau [N m], by joint name."""
-        pairs = zip(self.joints, torques.tolist(), strict=True)
-        return {joint: torque for (owner, joint), torque in pairs if owner == agent}
 
     def wrenches_of(self, agent: str, kind: ContactKind, wrenches: Array) -> dict[str, Array]:
         """An agent's part of f at its feet or hands [N, N m], by side."""

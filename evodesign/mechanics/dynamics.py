@@ -24,19 +24,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Matrix
-from evodesign.tree.kinematics import Pose, forward, vector
+from evodesign.tree.kinematics import Expression, Pose, forward, vector
 from evodesign.tree.model import Joint, JointKind, Tree
 
 __all__ = ["ROOT_ROWS", "bias", "inverse_dynamics", "mass_matrix"]
 
-Expression = Any
-"""A casadi.SX or casadi.DM."""
 
 ROOT_ROWS = 6
 """Rows of nu that belong to the root link; the joints follow."""

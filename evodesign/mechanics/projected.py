@@ -25,9 +25,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from evodesign.mechanics.coupled import CoupledSystem
+from evodesign.mechanics.floating_base import Array
 
 __all__ = [
     "MASS_FLOOR",
@@ -39,7 +39,6 @@ __all__ = [
     "projected_torques",
 ]
 
-Array = NDArray[np.float64]
 
 RANK_CUTOFF = 1e-8
 """Singular values of A and N B below this share of the largest count as zero.

@@ -6,7 +6,7 @@ Source: Waechter and Biegler, Mathematical Programming 106 (2006), 25-57.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,12 +16,10 @@ import casadi as ca
 import numpy as np
 
 from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_functions
-from evodesign.nlp.program import Program
+from evodesign.nlp.program import Array, Program
 from evodesign.records import Status
 
-__all__ = ["IpoptOptions", "Multipliers", "RawSolution", "Solver"]
-
-Array = Any
+__all__ = ["IpoptOptions", "Multipliers", "RawSolution", "Solver", "SolverCache"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +149,30 @@ class Solver:
             cost_slope=-np.asarray(result["lam_p"]).ravel(),
             multipliers=Multipliers(np.asarray(result["lam_x"]).ravel(), np.asarray(result["lam_g"]).ravel()),
         )
+
+
+class SolverCache:
+    """Solvers that are built once, however many scenes need them, by what their programs follow from.
+
+    The load's mass is a number that every program is given, and a robot's program knows of the person only
+    what the load passes on. So scenes that differ in the mass of their load alone share all programs, and
+    scenes that differ in the person share the robot's.
+    """
+
+    def __init__(self) -> None:
+        self._solvers: dict[tuple[str, IpoptOptions], Solver] = {}
+
+    def solver(self, key: str, program: Callable[[], Program], options: IpoptOptions) -> Solver:
+        """The solver of a program, built when it is first asked for.
+
+        Args:
+            key: of everything that the program follows from.
+            program: builds it.
+            options: of the solver.
+        """
+        if (key, options) not in self._solvers:
+            self._solvers[key, options] = Solver(program(), options)
+        return self._solvers[key, options]
 
 
 def _casadi_options(options: IpoptOptions) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -89,8 +90,7 @@ class Landscape:
         return costs <= best + self.relative * np.abs(best) + self.absolute
 
 
-@dataclass(frozen=True, slots=True)
-class Coverage:
+class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How well a portfolio serves designs that it was not made from.
 
     Args:
@@ -109,8 +109,7 @@ class Coverage:
         return self.good / self.designs if self.designs else 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class StartPortfolio:
+class StartPortfolio(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Starts, the one that serves most first, and how good they are; none where nothing could be trained."""
 
     starts: tuple[Start, ...]

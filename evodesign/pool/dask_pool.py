@@ -4,31 +4,36 @@ Twice as many arguments as the workers have threads are handed out, so that no w
 Workers may come and go: Dask gives the work of a lost one to another. When the scheduler goes, all that it
 held is forgotten; the pool waits until one answers again at the same address and hands out anew what had not
 come back.
+
+Every thread of a Dask worker keeps a worker process of its own for the evaluations. So whatever an evaluation
+does, the Dask worker lives on and reports the reason. Its processes end with it.
 """
 
 from __future__ import annotations
 
 import itertools
+import multiprocessing
+import socket
+import threading
 import time
 import weakref
 from collections.abc import Generator, Iterable, Iterator
 from contextlib import suppress
 from queue import Empty, SimpleQueue
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
 from distributed import Client, Future
 from distributed.scheduler import KilledWorker
 
 from evodesign.errors import InputError, Interrupted
-from evodesign.pool.base import Factory, Finished, Pool
+from evodesign.pool.base import A, Factory, Finished, Pool, R
 from evodesign.pool.dispatch import ends_of
-from evodesign.pool.remote import deliver, finish_there
 from evodesign.pool.worker import explain
+from evodesign.pool.worker_group import WorkerGroup
+from evodesign.pool.worker_process import WorkerProcess
 
 __all__ = ["DaskPool"]
 
-A = TypeVar("A")
-R = TypeVar("R")
 
 HANDED_OUT_PER_THREAD = 2
 """One argument that runs and one that is prefetched."""
@@ -225,3 +230,29 @@ def _gathered(futures: list[Future]) -> list[Finished[Any]]:
         return list(futures[0].client.gather(futures, errors="skip"))
     except Exception:  # noqa: BLE001 - whatever broke: without their results they are handed out anew
         return []
+
+
+class _Thread(threading.local):
+    """The worker process of each thread of this Dask worker."""
+
+    process: WorkerProcess[Any, Any] | None = None
+
+
+_thread = _Thread()
+
+
+def deliver(factory: Factory[A, R]) -> Factory[A, R]:
+    """A factory, as a result that Dask keeps, copies to each worker once, and makes again when it is lost."""
+    return factory
+
+
+def finish_there(factory: Factory[A, R], index: int, argument: A) -> Finished[R]:
+    """Run a factory's task on an argument, in the process of this thread."""
+    if _thread.process is None or _thread.process.factory != factory:
+        if _thread.process is not None:
+            _thread.process.close()
+        multiprocessing.current_process().daemon = False  # Dask's mark, with which no process may be started
+        _thread.process = WorkerProcess(factory, socket.gethostname())
+    group = WorkerGroup([_thread.process])
+    group.begin(index, argument)
+    return group.next_end()

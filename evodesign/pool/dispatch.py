@@ -3,21 +3,21 @@
 An argument that lost its worker, or found no memory, may have suffered from what ran beside it. It is set
 aside and tried once more when all others have ended, with nothing beside it: that second end holds. What a
 retry cannot help (an exception, a time limit) ends at once.
+
+A run that is to stop early is given no further argument from some moment on, and finishes what it has.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from typing import Protocol, TypeVar
 
-from evodesign.pool.base import Finished
+from evodesign.pool.base import A, Factory, Finished, Pool, R
 
-__all__ = ["WorkerSet", "ends_of"]
+__all__ = ["WorkerSet", "ends_of", "run_stoppable"]
 
-A = TypeVar("A")
-R = TypeVar("R")
 A_in = TypeVar("A_in", contravariant=True)
 
 
@@ -66,3 +66,29 @@ def _second(end: Finished[R]) -> Finished[R]:
     if end.failure is None:
         return end
     return dataclasses.replace(end, failure=f"{end.failure}, also when retried alone")
+
+
+def run_stoppable(
+    pool: Pool, factory: Factory[A, R], arguments: Iterable[A], stop: Callable[[], bool]
+) -> Generator[Finished[R], None, None]:
+    """The ends of all arguments that a pool took before the stop, as they come.
+
+    Args:
+        pool: where the task runs.
+        factory: as in `Pool.run`.
+        arguments: as in `Pool.run`.
+        stop: called whenever an argument is about to be taken; True from some moment on.
+    """
+    results = pool.run(factory, _until(stop, arguments))
+    try:
+        yield from results
+    finally:
+        if isinstance(results, Generator):
+            results.close()
+
+
+def _until(stop: Callable[[], bool], arguments: Iterable[A]) -> Iterator[A]:
+    for argument in arguments:
+        if stop():
+            return
+        yield argument

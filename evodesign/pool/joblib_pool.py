@@ -8,17 +8,14 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Generator, Iterable, Iterator
-from typing import Any, TypeVar
+from typing import Any
 
-from evodesign.pool.base import Factory, Finished, Pool
+from evodesign.pool.base import A, Factory, Finished, Pool, R
 from evodesign.pool.dispatch import ends_of
 from evodesign.pool.worker_group import WorkerGroup
 from evodesign.pool.worker_process import WorkerProcess
 
 __all__ = ["JoblibPool"]
-
-A = TypeVar("A")
-R = TypeVar("R")
 
 
 class JoblibPool(Pool):

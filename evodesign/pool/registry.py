@@ -8,7 +8,7 @@ from typing import Final
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Pool
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 
 __all__ = ["POOLS", "make_pool"]
 

@@ -12,19 +12,17 @@ import signal
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
-from evodesign.pool.base import Factory, Finished
+from evodesign.pool.base import A, Factory, Finished, Pool, R
 
-__all__ = ["Workbench", "build_here", "explain", "finish_here", "start_worker"]
+__all__ = ["SerialPool", "Workbench", "build_here", "explain", "finish_here", "start_worker"]
 
-A = TypeVar("A")
-R = TypeVar("R")
 
 ORPHAN_CHECK = 1.0
 """Interval [s] at which a worker looks whether its parent still lives."""
@@ -101,6 +99,25 @@ class Workbench(Generic[A, R]):
         return Finished(
             index, done.value, done.failure, False, seconds, self.name, out_of_memory=done.out_of_memory
         )
+
+
+class SerialPool(Pool):
+    """Runs in this process: no start-up time, no protection against a task that kills or hangs it."""
+
+    def __init__(self) -> None:
+        self._bench: Workbench[Any, Any] | None = None
+
+    def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
+        """Every argument's end, in order; the task is kept for the next run with an equal factory."""
+        if self._bench is None or self._bench.factory != factory:
+            self._bench = Workbench(factory, "local")
+        bench = self._bench
+        for index, argument in enumerate(arguments):
+            yield bench.finish(index, argument)
+
+    def close(self) -> None:
+        """Forget the task."""
+        self._bench = None
 
 
 class _Process:

@@ -11,15 +11,13 @@ import time
 from collections import deque
 from collections.abc import Iterable
 from concurrent.futures import Future
-from typing import Generic, TypeVar
+from typing import Generic
 
-from evodesign.pool.base import Finished
+from evodesign.pool.base import A, Finished, R
 from evodesign.pool.worker_process import WorkerProcess
 
 __all__ = ["WorkerGroup"]
 
-A = TypeVar("A")
-R = TypeVar("R")
 
 LOOK_EVERY = 0.2
 """Interval [s] at which limits are looked at: a new worker's begins when its task is built."""

@@ -11,7 +11,7 @@ import os
 import re
 import time
 from concurrent.futures import Future
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
 from joblib.externals.loky.process_executor import (
     BrokenProcessPool,
@@ -19,13 +19,11 @@ from joblib.externals.loky.process_executor import (
     TerminatedWorkerError,
 )
 
-from evodesign.pool.base import Factory, Finished, limits_of
+from evodesign.pool.base import A, Factory, Finished, R, limits_of
 from evodesign.pool.worker import build_here, explain, finish_here, start_worker
 
 __all__ = ["WorkerProcess"]
 
-A = TypeVar("A")
-R = TypeVar("R")
 
 ONE_THREAD = dict.fromkeys(
     (

@@ -10,15 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
-from evodesign.design.allocation import EFFORT_RATIO, ROBOT_SHARE
-from evodesign.design.space import DesignSpace
+from evodesign.body.placement import Scalar
+from evodesign.design.space import EFFORT_RATIO, ROBOT_SHARE, DesignSpace
 from evodesign.mechanics.scene import Scene
 
 __all__ = ["EffortWeights", "shared_scene", "shared_weights"]
-
-Scalar = Any
 
 
 @dataclass(frozen=True, slots=True)

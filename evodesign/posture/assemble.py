@@ -16,7 +16,7 @@ import numpy as np
 
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import Constraint, Variable
+from evodesign.nlp.program import Constraint, Expression, Variable
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
@@ -46,8 +46,6 @@ __all__ = [
     "free_hands_beside",
 ]
 
-Array = Any
-Expression = Any
 
 EVERYTHING = Enforced()
 

@@ -23,11 +23,10 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.disturbance import OverCases
-from evodesign.nlp.program import Constraint, Program, Start, Variable
+from evodesign.nlp.program import Constraint, Expression, Program, Start, Variable
 
 __all__ = ["aggregated", "with_worst"]
 
-Expression = Any
 
 SHARE_OF_MEAN = 0.01
 """e: what the mean counts beside the worst case."""

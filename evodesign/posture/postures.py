@@ -15,7 +15,7 @@ from enum import StrEnum
 
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import SolverCache
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.candidate import Trial, case_solution
 from evodesign.posture.check import Checker

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
+from evodesign.posture.results import Array
 
 __all__ = ["STARTS_BESIDE", "fixed_starts", "named_starts", "person_starts"]
 
-Array = NDArray[np.float64]
 
 STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""

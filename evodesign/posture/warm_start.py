@@ -7,14 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from evodesign.mechanics.scene import Scene
-from evodesign.nlp.program import Program, Start
+from evodesign.nlp.program import Array, Program, Start
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.symmetry import Form
 
 __all__ = ["Layout", "filled", "instants_of", "layout_of", "start_from"]
 
-Array = Any
 
 Layout = Mapping[Slot, str]
 """Names of variables by where they belong."""

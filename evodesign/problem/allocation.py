@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from evodesign.design.allocation import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE
+from evodesign.design.space import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.load_share import share_interval
 from evodesign.mechanics.scene import Scene

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from evodesign.design.allocation import EFFORT_RATIO
+from evodesign.design.space import EFFORT_RATIO
 from evodesign.errors import InputError
 from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from evodesign.design.allocation import ALLOCATIONS
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.space import ALLOCATIONS, DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.design_file import DesignEntry, PopulationFile

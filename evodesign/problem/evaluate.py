@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker

@@ -22,7 +22,7 @@ from functools import partial
 import numpy as np
 
 from evodesign.nlp.optimality import Array, NotDifferentiable
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry

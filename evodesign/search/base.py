@@ -2,6 +2,12 @@
 
 A search knows no robots. Its random state is its own, derived from the seed alone, so that asking and
 telling again what a log remembers rebuilds it exactly (resume by replay).
+
+An asynchronous search is asked for one genome at a time, and told outcomes as they come. Turns number the
+genomes in the order of asking. The genome of a turn follows from the settings, the turn and the outcomes told
+before it was asked, and from nothing else: asking leaves no trace. So a genome that was asked and never
+evaluated, because a session ended, needs no record, and a log that says which outcomes were known at each
+turn rebuilds everything. It does not matter how many workers there were.
 """
 
 from __future__ import annotations
@@ -12,7 +18,7 @@ from typing import Protocol
 
 from evodesign.records import Genome
 
-__all__ = ["JOINT_STARTS", "Outcome", "Search"]
+__all__ = ["JOINT_STARTS", "AsynchronousSearch", "Outcome", "Search"]
 
 JOINT_STARTS = "joint-starts"
 """Name of the search whose genomes are starts of another solver, and not designs to assess."""
@@ -44,3 +50,13 @@ class Search(Protocol):
 
     def tell(self, outcomes: Sequence[Outcome]) -> None:
         """Outcomes of the genomes last asked for, in the same order."""
+
+
+class AsynchronousSearch(Protocol):
+    """An asynchronous search, ready when constructed."""
+
+    def ask(self, turn: int) -> Genome:
+        """The genome of a turn, in the unit cube."""
+
+    def tell(self, turn: int, outcome: Outcome) -> None:
+        """The outcome of a turn's genome; every turn that was asked may be told, once, in any order."""

@@ -29,12 +29,11 @@ from collections.abc import Callable, Sequence
 import cma
 import numpy as np
 from cma.recombination_weights import RecombinationWeights
-from numpy.typing import NDArray
 
 from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome
-from evodesign.search.discrete import least_deviations
+from evodesign.search.discrete import Array, least_deviations
 from evodesign.search.hypervolume_improvement import HypervolumeImprovement
 from evodesign.search.quasi_random import SobolStream
 from evodesign.search.ranking import ranks, usable
@@ -53,7 +52,6 @@ SMALLEST_POPULATION = 3
 STEP = 0.15
 """First standard deviation per coordinate of the unit cube: half that of uniform points."""
 
-Array = NDArray[np.float64]
 Cost = Callable[[tuple[float, ...]], float]
 Draw = Callable[..., Array]
 """Gives standard normal numbers of a shape."""

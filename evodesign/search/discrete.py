@@ -1,7 +1,7 @@
 """Discrete coordinates: n equal parts of [0, 1], one for each choice, of which a genome holds the middle.
 
 Whatever a search proposes is moved to the middles of the parts that it lies in. NSGA-II varies choices as
-choices (`mixed_operators`). CMA-ES samples and learns as if they were continuous, but not too narrowly: its
+choices (`nsga2`). CMA-ES samples and learns as if they were continuous, but not too narrowly: its
 standard deviation is at least min(0.2, mu_eff / dimension) of a part, so that it goes on to leave the part
 that its mean is in, however far the other coordinates have converged.
 

@@ -19,7 +19,15 @@ from evodesign.search.base import Outcome
 from evodesign.search.discrete import snapped
 from evodesign.search.ranking import check_outcomes
 
-__all__ = ["QuasiRandom", "SobolPoints", "SobolStream", "first_generation"]
+__all__ = [
+    "AsynchronousRandom",
+    "Beginning",
+    "QuasiRandom",
+    "SobolPoints",
+    "SobolStream",
+    "first_generation",
+    "generator_of",
+]
 
 BLOCK = 64
 """Points computed at a time; a power of two, as the sequence's balance asks for."""
@@ -28,29 +36,8 @@ KEPT_BLOCKS = 64
 """Blocks that are at hand without computing them again."""
 
 
-class SobolStream:
-    """An endless scrambled Sobol sequence.
-
-    Args:
-        counts: of choices by coordinate, 0 for a continuous one.
-        seed: everything that determines the scrambling.
-    """
-
-    def __init__(self, counts: Sequence[int], seed: np.random.SeedSequence) -> None:
-        self._counts = counts
-        self._engine = qmc.Sobol(len(counts), scramble=True, rng=np.random.default_rng(seed))
-        self._waiting: list[Genome] = []
-
-    def take(self, count: int) -> tuple[Genome, ...]:
-        """The next points of the sequence."""
-        while len(self._waiting) < count:
-            self._waiting.extend(_next_block(self._engine, self._counts))
-        taken, self._waiting = self._waiting[:count], self._waiting[count:]
-        return tuple(taken)
-
-
 class SobolPoints:
-    """The points of the same sequence by number.
+    """The points of a scrambled Sobol sequence by number.
 
     Args:
         counts: of choices by coordinate, 0 for a continuous one.
@@ -71,17 +58,49 @@ def _block(counts: Sequence[int], seed: np.random.SeedSequence, number: int) -> 
     engine = qmc.Sobol(len(counts), scramble=True, rng=np.random.default_rng(fresh))
     if number > 0:  # SciPy cannot go forward by nothing
         engine.fast_forward(number * BLOCK)
-    return _next_block(engine, counts)
-
-
-def _next_block(engine: qmc.Sobol, counts: Sequence[int]) -> tuple[Genome, ...]:
     return tuple(tuple(row) for row in snapped(engine.random(BLOCK), counts).tolist())
+
+
+class SobolStream:
+    """The same points one after another, without an end; arguments as for `SobolPoints`."""
+
+    def __init__(self, counts: Sequence[int], seed: np.random.SeedSequence) -> None:
+        self._points = SobolPoints(counts, seed)
+        self._taken = 0
+
+    def take(self, count: int) -> tuple[Genome, ...]:
+        """The next points of the sequence."""
+        first, self._taken = self._taken, self._taken + count
+        return tuple(self._points.point(number) for number in range(first, self._taken))
 
 
 def first_generation(settings: SearchSettings, stream: SobolStream) -> tuple[Genome, ...]:
     """The start genomes, each once and at most a population of them, filled up from the stream."""
     start = tuple(dict.fromkeys(settings.start))[: settings.population]
     return start + stream.take(settings.population - len(start))
+
+
+class Beginning:
+    """The genomes with which a search begins: the start genomes, each once, then quasi-random points.
+
+    Args:
+        settings: start genomes, of which no more than the population count.
+        seed: of the quasi-random sequence.
+    """
+
+    def __init__(self, settings: SearchSettings, seed: np.random.SeedSequence) -> None:
+        self._start = tuple(dict.fromkeys(settings.start))[: settings.population]
+        self._points = SobolPoints(settings.counts, seed)
+
+    def genome(self, turn: int) -> Genome:
+        """The genome of a turn."""
+        count = len(self._start)
+        return self._start[turn] if turn < count else self._points.point(turn - count)
+
+
+def generator_of(seed: int, turn: int) -> np.random.Generator:
+    """Random numbers of a turn's own."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(turn,)))
 
 
 class QuasiRandom:
@@ -109,3 +128,22 @@ class QuasiRandom:
         """
         check_outcomes(self._asked, outcomes, self._settings.objectives)
         self._asked = self._stream.take(self._settings.population)
+
+
+class AsynchronousRandom:
+    """The same, one point at a time: it learns nothing, so asynchronous it is the same.
+
+    Args:
+        settings: dimension, population, seed and start genomes.
+    """
+
+    def __init__(self, settings: SearchSettings) -> None:
+        (seed,) = np.random.SeedSequence(settings.seed).spawn(1)
+        self._beginning = Beginning(settings, seed)
+
+    def ask(self, turn: int) -> Genome:
+        """The point of a turn."""
+        return self._beginning.genome(turn)
+
+    def tell(self, turn: int, outcome: Outcome) -> None:
+        """Nothing is learnt."""

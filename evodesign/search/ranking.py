@@ -13,11 +13,14 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
 
 from evodesign.records import Genome
 from evodesign.search.base import Outcome
 
-__all__ = ["check_outcomes", "infeasibility", "ranks", "usable"]
+__all__ = ["check_outcomes", "infeasibility", "ranks", "usable", "with_outcomes"]
 
 Objectives = tuple[float, ...]
 
@@ -68,6 +71,16 @@ def check_outcomes(asked: Sequence[Genome], outcomes: Sequence[Outcome], objecti
         if outcome.objectives is not None and len(outcome.objectives) != objectives:
             found = len(outcome.objectives)
             raise ValueError(f"wanted {objectives} objectives, found {found} in outcome {index}")
+
+
+def with_outcomes(population: Any, outcomes: Sequence[Outcome], objectives: int) -> None:
+    """Give members of a pymoo population their outcomes.
+
+    Infeasibility is the one constraint; objectives are NaN where there are none.
+    """
+    absent = (math.nan,) * objectives
+    population.set("F", np.array([usable(outcome) or absent for outcome in outcomes]))
+    population.set("G", np.array([[infeasibility(outcome)] for outcome in outcomes]))
 
 
 def _key(outcome: Outcome, cost: Callable[[Objectives], float]) -> tuple[float, float]:

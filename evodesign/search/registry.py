@@ -12,8 +12,7 @@ from typing import Any, Final
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings, choice_at, middle_of
-from evodesign.search.asynchronous import AsynchronousSearch
-from evodesign.search.base import JOINT_STARTS, Search
+from evodesign.search.base import JOINT_STARTS, AsynchronousSearch, Search
 from evodesign.search.restarted import Restarted
 
 __all__ = ["ASYNCHRONOUS_SEARCHES", "SEARCHES", "make_asynchronous_search", "make_search"]
@@ -26,9 +25,9 @@ SEARCHES: Final[Mapping[str, str]] = {
 }
 
 ASYNCHRONOUS_SEARCHES: Final[Mapping[str, str]] = {
-    "cma-es": "evodesign.search.asynchronous_cma_es:AsynchronousCmaEs",
-    "nsga2": "evodesign.search.asynchronous_nsga2:AsynchronousNsga2",
-    "random": "evodesign.search.asynchronous_random:AsynchronousRandom",
+    "cma-es": "evodesign.search.cma_es:AsynchronousCmaEs",
+    "nsga2": "evodesign.search.nsga2:AsynchronousNsga2",
+    "random": "evodesign.search.quasi_random:AsynchronousRandom",
 }
 """The same without generations."""
 

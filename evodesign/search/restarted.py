@@ -8,7 +8,6 @@ NSGA-II would let survive: feasible ones first, then by rank of domination, then
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
 import msgspec
@@ -20,7 +19,7 @@ from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome, Search
-from evodesign.search.ranking import infeasibility, usable
+from evodesign.search.ranking import with_outcomes
 
 __all__ = ["Restarted", "fittest"]
 
@@ -73,10 +72,8 @@ class Restarted:
 def fittest(known: dict[Genome, Outcome], count: int, objectives: int) -> tuple[Genome, ...]:
     """So many of the known genomes, the fittest first."""
     genomes, outcomes = list(known), list(known.values())
-    absent = (math.nan,) * objectives
     population = Population.new(X=np.array(genomes))
-    population.set("F", np.array([usable(outcome) or absent for outcome in outcomes]))
-    population.set("G", np.array([[infeasibility(outcome)] for outcome in outcomes]))
+    with_outcomes(population, outcomes, objectives)
     population.set("number", np.arange(len(genomes)))
     problem = Problem(n_var=len(genomes[0]), n_obj=objectives, n_ieq_constr=1, xl=0.0, xu=1.0)
     kept = RankAndCrowding().do(problem, population, n_survive=count, random_state=np.random.default_rng(0))

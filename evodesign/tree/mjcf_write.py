@@ -17,12 +17,11 @@ from dataclasses import dataclass
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement
-from evodesign.body.quaternion import quaternion_wxyz
+from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, JointKind, Link, Tree
-from evodesign.tree.xml_numbers import numbers_text
+from evodesign.tree.urdf_write import numbers_text
 
 __all__ = ["KeyPosture", "mjcf_text"]
 

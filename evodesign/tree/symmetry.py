@@ -17,8 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from evodesign.body.mirror import mirrored_inertia, mirrored_matrix, mirrored_point
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, mirrored_matrix, mirrored_point
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
@@ -136,7 +135,7 @@ def _refuse_unequal(tree: Tree, link: Link, image: Link) -> None:
 
 def _same_body(link: Link, image: Link) -> bool:
     mine, its = link.inertia, image.inertia
-    expected = mirrored_inertia(mine)
+    expected = mine.mirrored()
     pairs = [(expected.mass, its.mass), *zip(expected.center, its.center, strict=True)]
     for r, s in zip(expected.about_center, its.about_center, strict=True):
         pairs += zip(r, s, strict=True)

@@ -15,16 +15,16 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Iterable
 
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, rpy_from_matrix
+from evodesign.body.placement import Placement, Scalar, rpy_from_matrix
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.model import Joint, JointKind, Link, Tree
-from evodesign.tree.xml_numbers import numbers_text
 
-__all__ = ["UNLIMITED", "urdf_text"]
+__all__ = ["UNLIMITED", "numbers_text", "urdf_text"]
 
 UNLIMITED = sys.float_info.max
 """An infinite limit as URDF text. Effort and velocity must be given, and urdfdom (pinocchio's parser) refuses
@@ -107,3 +107,24 @@ def _add_origin(element: etree._Element, placement: Placement) -> None:
 
 def _bounded(limit: float) -> float:
     return math.copysign(UNLIMITED, limit) if math.isinf(limit) else limit
+
+
+def numbers_text(numbers: Iterable[Scalar]) -> str:
+    """Finite numbers separated by spaces, each as the shortest text that reads back to the same double.
+
+    Raises:
+        TypeError: one is an expression.
+        ValueError: one is not finite.
+    """
+    return " ".join(_number(number) for number in numbers)
+
+
+def _number(number: Scalar) -> str:
+    if not isinstance(number, int | float):
+        raise TypeError(
+            f"a robot file holds numbers, not {type(number).__name__}: give the tree numbers first"
+        )
+    if not math.isfinite(number):
+        raise ValueError(f"a robot file holds finite numbers, not {number}")
+    without_negative_zero = float(number) + 0.0
+    return repr(without_negative_zero)

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from evodesign.human.population import population, population_table
-from evodesign.human.strength import joint_strengths
-from evodesign.human.strength_tables import strength_tables
+from evodesign.human.strength import joint_strengths, strength_tables
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics

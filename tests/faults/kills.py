@@ -17,7 +17,7 @@ from pathlib import Path
 
 from evodesign.errors import RunError
 from evodesign.evolve import Silent, start
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 from evodesign.records import Status
 from evodesign.runlog.run import Run, read_run
 from tests.faults.synthetic import Synthetic, synthetic_header

@@ -11,8 +11,12 @@ from hypothesis import strategies as st
 from evodesign.body.placement import Placement
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import DEFAULT_JOINTS, human_tree
-from evodesign.human.strength import joint_strengths, largest_relative_torque, relative_torques
-from evodesign.human.strength_tables import strength_tables
+from evodesign.human.strength import (
+    joint_strengths,
+    largest_relative_torque,
+    relative_torques,
+    strength_tables,
+)
 from evodesign.mechanics.balance import cut
 from evodesign.tree.frames import link_frames
 from evodesign.tree.kinematics import Pose, forward

@@ -12,7 +12,7 @@ import pytest
 from evodesign.evolve import Silent, start
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, RunHeader, Status
 from tests.pool.cluster import Cluster
 from tests.pool.faulty import HANGS, KILLS, NOT_A_NUMBER, Faulty, Slow, fault, results

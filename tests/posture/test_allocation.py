@@ -10,8 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from evodesign.design.allocation import EFFORT_RATIO, ROBOT_SHARE
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.space import EFFORT_RATIO, ROBOT_SHARE, DesignParameter, DesignSpace, ParameterKind
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene

@@ -15,8 +15,13 @@ from evodesign.nlp.solver import IpoptOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.codesign import JointProblem, JointSettings, JointSolution
-from evodesign.posture.formulations.codesign_start import drawn_postures, standard_postures
+from evodesign.posture.formulations.codesign import (
+    JointProblem,
+    JointSettings,
+    JointSolution,
+    drawn_postures,
+    standard_postures,
+)
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms

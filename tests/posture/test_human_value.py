@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given
@@ -69,7 +70,7 @@ def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     (nearest, start), *others = sorted(value.starts, key=lambda node: abs(node[0]))
     broken = {**start, "human.joints": np.full_like(start["human.joints"], np.nan)}
-    misleading = replace(value, starts=((nearest, broken), *others))
+    misleading = msgspec.structs.replace(value, starts=((nearest, broken), *others))
     assert person.solve(1.0, 0.0, broken).status is not Status.SOLVED
     found = person.best(1.0, 0.0, misleading)
     assert found.status is Status.SOLVED

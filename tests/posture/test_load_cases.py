@@ -12,7 +12,7 @@ from evodesign.errors import ModelError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import SolverCache
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.base import Setting

@@ -10,7 +10,7 @@ from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.posture.formulations.human_value import HumanProblem
-from evodesign.posture.person_reach import person_reach
+from evodesign.posture.formulations.reach import person_reach
 from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, key_of, stages, with_piece
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach
 from evodesign.posture.symmetry import symmetric_forms

@@ -11,7 +11,7 @@ import pytest
 from evodesign import evolve
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
-from evodesign.pool.serial import SerialPool
+from evodesign.pool.worker import SerialPool
 from evodesign.posture.terms.paper_tasks import density_task, mass_height_task
 from evodesign.problem.baseline import Baseline, BaselineFactory
 from evodesign.problem.build import build_problem

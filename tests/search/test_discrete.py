@@ -12,7 +12,7 @@ from evodesign.errors import InputError
 from evodesign.records import SearchSettings, choice_at, middle_of
 from evodesign.search.base import Outcome
 from evodesign.search.discrete import least_deviations, snapped
-from evodesign.search.mixed_operators import MixedCrossover, MixedMutation
+from evodesign.search.nsga2 import MixedCrossover, MixedMutation
 from evodesign.search.quasi_random import SobolStream
 from evodesign.search.registry import make_asynchronous_search, make_search
 

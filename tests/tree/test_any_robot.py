@@ -17,8 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.mirror import mirrored_inertia, mirrored_placement, mirrored_point
-from evodesign.body.placement import Placement, Vector, scale
+from evodesign.body.placement import Placement, Vector, mirrored_point, scale
 from evodesign.body.shape import Box, Cylinder, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.kinematics import Pose, forward
@@ -267,11 +266,11 @@ def mirrored(tree: Tree) -> Tree:
     """
     return Tree(
         tree.name,
-        tuple(Link(link.name, own_inertia=mirrored_inertia(link.inertia)) for link in tree.links),
+        tuple(Link(link.name, own_inertia=link.inertia.mirrored()) for link in tree.links),
         tuple(
             replace(
                 joint,
-                parent_from_child=mirrored_placement(joint.parent_from_child),
+                parent_from_child=joint.parent_from_child.mirrored(),
                 axis=scale(1.0 if joint.kind is JointKind.PRISMATIC else -1.0, mirrored_point(joint.axis)),
             )
             for joint in tree.joints

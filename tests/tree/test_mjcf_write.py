@@ -15,8 +15,7 @@ import pinocchio
 import pytest
 import yourdfpy
 
-from evodesign.body.placement import Placement
-from evodesign.body.quaternion import quaternion_wxyz
+from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.mechanics.balance import GRAVITY

@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evodesign.body.inertia import Inertia, total
-from evodesign.body.mirror import mirrored_inertia, mirrored_placement, mirrored_point
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, mirrored_point
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
@@ -277,18 +276,15 @@ def test_every_design_of_a_composite_is_a_body(tree: Tree, factor: float, densit
 
 @given(trees(), st.floats(0.4, 2.5))
 def test_a_composite_in_the_mirror_grows_in_the_mirror(tree: Tree, factor: float) -> None:
-    def image(place: Placement) -> Placement:
-        return mirrored_placement(place)
-
     solids = tuple(
-        replace(solid, link_from_solid=image(solid.link_from_solid))
+        replace(solid, link_from_solid=solid.link_from_solid.mirrored())
         for solid in tree.link_by_name["middle"].solids
     )
-    joints = tuple(replace(j, parent_from_child=image(j.parent_from_child)) for j in tree.joints)
+    joints = tuple(replace(j, parent_from_child=j.parent_from_child.mirrored()) for j in tree.joints)
     other = replace(tree, links=(tree.links[0], Link("middle", solids), tree.links[2]), joints=joints)
     mine, its = (resize(t, {"middle": factor}, {}) for t in (tree, other))
     assert np.allclose(mirrored_point(tip(mine)), tip(its), atol=1e-12)
-    expected = mirrored_inertia(mine.link_by_name["middle"].inertia)
+    expected = mine.link_by_name["middle"].inertia.mirrored()
     found = its.link_by_name["middle"].inertia
     assert found.mass == pytest.approx(expected.mass, rel=1e-12)
     assert np.allclose(found.center, expected.center, atol=1e-12)

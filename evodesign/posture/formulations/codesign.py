@@ -10,41 +10,44 @@ says.
 
 The design is a variable here and not a parameter: there is no landscape over designs and no derivative.
 
+A start is a genome and nothing else: its postures are drawn with a generator seeded by the genome's digits,
+so that how a start ends is a property of problem and start alone. Joints begin a random share of the way to
+the middle of their ranges, with some spread about it, anew at every height. The named designs of a problem
+begin half-way to the middle.
+
 Source: Sartore et al. 2022, Eq. 14.
 """
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
-from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.program import Array, Expression, Program, Start, Variable
 from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
 from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker, sizes
-from evodesign.posture.formulations.codesign_start import drawn_postures, standard_postures
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
+from evodesign.posture.terms.floating_base import joint_ranges
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.terms.torque import effort
 from evodesign.posture.warm_start import instants_of, layout_of, start_from
 from evodesign.records import Genome, Status, Task
 
-__all__ = ["JointProblem", "JointSettings", "JointSolution"]
+__all__ = ["JointProblem", "JointSettings", "JointSolution", "drawn_postures", "standard_postures"]
 
-Array = Any
-Expression = Any
 
 NAME = "codesign"
 """Of the formulation, in results."""
@@ -54,6 +57,12 @@ GENOME = "genome"
 
 LEAST_LENGTH = 0.1
 """Lower bound of a length multiplier without bounds: with none at all solves end at lengths below zero."""
+
+SHARE = 0.5
+"""Of the way from zero to the middle of each joint's range, at which standard postures begin."""
+
+SPREAD = 0.3
+"""Standard deviation of a joint about the common share [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +191,27 @@ class JointProblem:
         )
         missed = tuple(tuple(r for r in of if not self._enforced.covers(r.group)) for of in found)
         return JointSolution(design, cases, missed, attempt)
+
+
+def standard_postures(program: Program, forms: Sequence[Form]) -> Start:
+    """Joints of every agent at every height half-way to the middle of their ranges, by variable name."""
+    return {name: SHARE * middle for name, middle in _middles(program, forms).items()}
+
+
+def drawn_postures(program: Program, forms: Sequence[Form], genome: Genome) -> Start:
+    """Joints of every agent at every height, drawn for a genome, by variable name."""
+    digest = hashlib.sha256(np.array(genome).tobytes()).digest()
+    rng = np.random.default_rng(int.from_bytes(digest))
+    return {
+        name: rng.uniform() * middle + SPREAD * rng.standard_normal(len(middle))
+        for name, middle in _middles(program, forms).items()
+    }
+
+
+def _middles(program: Program, forms: Sequence[Form]) -> dict[str, np.ndarray]:
+    """The middle of every joint's range, by variable name, in the program's order."""
+    middles = {form.agent.name: np.mean(joint_ranges(form), axis=1) for form in forms}
+    return {name: middles[slot.party] for slot, name in layout_of(program).items() if slot.part == "joints"}
 
 
 def _inside(program: Program, start: Mapping[str, Array]) -> dict[str, Array]:

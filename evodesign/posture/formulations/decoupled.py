@@ -26,10 +26,9 @@ from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.nlp.optimality import NotDifferentiable
-from evodesign.nlp.program import Program, Start
+from evodesign.nlp.program import Array, Program, Start
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
@@ -53,7 +52,6 @@ from evodesign.records import Status, Task, worst_status
 
 __all__ = ["DecoupledPostures", "robot_program"]
 
-Array = Any
 
 AT_LIMIT = 1e-6
 """How little below its limit an internal force [N] counts as being there; IPOPT ends a little before it."""

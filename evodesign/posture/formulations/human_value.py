@@ -15,17 +15,16 @@ Source: Chebyshev interpolation: Trefethen, Approximation Theory and Approximati
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import msgspec
 import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import Constraint, Program
-from evodesign.nlp.solver import IpoptOptions, RawSolution
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.program import Array, Constraint, Program
+from evodesign.nlp.solver import IpoptOptions, RawSolution, SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.starts import person_starts
@@ -37,7 +36,6 @@ from evodesign.records import Status
 
 __all__ = ["COEFFICIENTS", "COST_UNIT", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
 
-Array = Any
 
 DEGREE = 8
 COEFFICIENTS = DEGREE + 1
@@ -50,8 +48,11 @@ COST_UNIT = TORQUE_UNIT**2
 """One unit of V, and of every posture's cost [N^2 m^2]."""
 
 
-@dataclass(frozen=True, slots=True)
-class HumanValue:
+IN_FILES = {"push": "push_n"}
+"""Names of fields with their units, as a value function is kept."""
+
+
+class HumanValue(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename=IN_FILES):
     """The person's least cost V(X) at one height of the load.
 
     Args:

@@ -21,8 +21,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total

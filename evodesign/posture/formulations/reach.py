@@ -25,14 +25,14 @@ from evodesign.mechanics.scene import Scene
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import Setting, program_key
-from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
 from evodesign.posture.solution_derivative import ReachDerivative
+from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -47,6 +47,7 @@ __all__ = [
     "Reach",
     "ReachProblem",
     "common_reach",
+    "person_reach",
     "reach_program",
     "robot_reach_program",
 ]
@@ -60,7 +61,10 @@ HEIGHT = "height"
 HIGHEST, LOWEST = -1.0, 1.0
 """Sense in which the height is extreme: the sign with which it is minimised."""
 
-FIXED: tuple[Start, ...] = ({HEIGHT: [1.0]}, {HEIGHT: [0.6]})
+FIXED_HEIGHTS = (1.0, 0.6)
+"""Where the load is in the starts that know nothing better [m]."""
+
+FIXED: tuple[Start, ...] = tuple({HEIGHT: [height]} for height in FIXED_HEIGHTS)
 """Starts where there is no portfolio; the best result counts."""
 
 NEAR_HEIGHT = 0.005
@@ -258,3 +262,25 @@ def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]
         cost=sense * height.value + WEIGHT_OF_REGULARISATION * disliked,
         parameters={**given, "mass": mass, "sense": sense},
     )
+
+
+def person_reach(scene: Scene, options: IpoptOptions, *, symmetric: bool) -> PersonReach | None:
+    """How low and how high a scene's person can hold the load; None when no posture was found.
+
+    A person does not depend on the robot, so this is found once per person and load, as the best of many
+    starts. Together with a robot's reach it gives the heights at which robot and everyone can hold the load.
+    """
+    form = symmetric_forms(scene)[1] if symmetric else whole(scene.human)
+    solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
+    ends: dict[float, float] = {}
+    for sense in (LOWEST, HIGHEST):
+        solves = [
+            solver.solve({"mass": scene.payload.mass, "sense": sense}, {**start, HEIGHT: [height]})
+            for height in FIXED_HEIGHTS
+            for start in person_starts(solver.program)
+        ]
+        heights = [float(raw.values[HEIGHT][0]) for raw in solves if raw.status is Status.SOLVED]
+        if not heights:
+            return None
+        ends[sense] = min(heights) if sense == LOWEST else max(heights)
+    return PersonReach(ends[LOWEST], ends[HIGHEST])

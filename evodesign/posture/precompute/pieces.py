@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import msgspec
+import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
@@ -21,21 +22,9 @@ from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_desig
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
-from evodesign.posture.person_reach import person_reach
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.precompute.stored import (
-    StoredPersonReach,
-    StoredStartPortfolio,
-    StoredValue,
-    human_value_of_stored,
-    person_reach_of_stored,
-    portfolio_of,
-    stored_person_reach,
-    stored_portfolio,
-    stored_value,
-)
+from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Hold, Task
 
@@ -199,28 +188,29 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         piece: which one.
         known: what earlier stages gave.
     """
+    found: HumanValue | PersonReach | StartPortfolio | None
     if piece.subject is Subject.PERSON and piece.task is not None:
-        return msgspec.json.encode(stored_value(_person(setting, _scene_of(setting, piece), piece.task)))
-    if piece.subject is Subject.PERSON_REACH:
+        found = _person(setting, _scene_of(setting, piece), piece.task)
+    elif piece.subject is Subject.PERSON_REACH:
         found = person_reach(_scene_of(setting, piece), setting.options, symmetric=setting.symmetric)
-        return msgspec.json.encode(stored_person_reach(found))
-    return msgspec.json.encode(stored_portfolio(_portfolio(setting, piece, known)))
+    else:
+        found = _portfolio(setting, piece, known)
+    return msgspec.json.encode(found, enc_hook=np.ndarray.tolist)
 
 
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
     """What is known with one more piece; None when its content cannot be read."""
     try:
         if piece.subject is Subject.PERSON and piece.task is not None:
-            value = human_value_of_stored(msgspec.json.decode(content, type=StoredValue))
+            value = msgspec.json.decode(content, type=HumanValue | None)
             person, payload = piece.pair
             case = Case(person=person, payload=payload, task=piece.task)
             return replace(known, values={**known.values, case: value}) if value else known
         if piece.subject is Subject.PERSON_REACH:
-            reach = person_reach_of_stored(msgspec.json.decode(content, type=StoredPersonReach))
-            return (
-                replace(known, person_reaches={**known.person_reaches, piece.pair: reach}) if reach else known
-            )
-        found = portfolio_of(msgspec.json.decode(content, type=StoredStartPortfolio))
+            reach = msgspec.json.decode(content, type=PersonReach | None)
+            reaches = {**known.person_reaches, **({piece.pair: reach} if reach else {})}
+            return replace(known, person_reaches=reaches)
+        found = msgspec.json.decode(content, type=StartPortfolio)
     except msgspec.DecodeError:
         return None
     if piece.task is not None:

@@ -1,12 +1,15 @@
 """What is known of a problem before any robot is evaluated: the person's part, and starts.
 
-It follows from the problem alone and consists of plain numbers, so it travels to workers as it is.
+It follows from the problem alone and consists of plain numbers: so it travels to workers, and its parts are
+kept as JSON, as they are.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+import msgspec
 
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Start
@@ -20,8 +23,11 @@ NO_STARTS = StartPortfolio((), Coverage(0, 0, 0.0))
 """A portfolio of none: solves begin at the fixed starts."""
 
 
-@dataclass(frozen=True, slots=True)
-class PersonReach:
+IN_FILES = {"lowest": "lowest_m", "highest": "highest_m"}
+"""Names of fields with their units, as a person's reach is kept."""
+
+
+class PersonReach(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename=IN_FILES):
     """The interval of heights at which a person can hold a load.
 
     Args:

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -30,11 +29,9 @@ from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import UNDISTURBED, Coupled, MeasuredSystem, Residual, Row, SystemTerm
-from evodesign.tree.kinematics import vector
+from evodesign.tree.kinematics import Expression, vector
 
 __all__ = ["LOAD", "LOAD_UNIT", "PUSH", "any_load", "force_along_x", "turned_to_world"]
-
-Expression = Any
 
 PUSH = "load.push"
 """Name of the row that bounds the internal force."""

@@ -15,18 +15,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.mechanics.balance import standing_height_of_mass
 from evodesign.mechanics.scene import Agent
+from evodesign.tree.kinematics import Expression
 from evodesign.tree.model import Tree
 
 __all__ = ["TaskWeights", "Tasks", "density_task", "mass_height_task", "pressure_task"]
 
-Expression = Any
 
 DENSITY_UNIT = 1000.0  # [kg/m^3]
 SMOOTHING = 0.01

@@ -17,8 +17,7 @@ from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 
-from evodesign.body.placement import Matrix, Placement, Vector, dot, scale
-from evodesign.body.quaternion import quaternion_wxyz
+from evodesign.body.placement import Matrix, Placement, Vector, dot, quaternion_wxyz, scale
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 
 __all__ = ["COLORS", "add_arrow", "add_shape", "add_text", "orientation", "vector"]

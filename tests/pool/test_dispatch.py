@@ -3,9 +3,9 @@ from __future__ import annotations
 import pytest
 
 from evodesign.pool.base import Finished
+from evodesign.pool.dispatch import run_stoppable
 from evodesign.pool.registry import POOLS, make_pool
-from evodesign.pool.serial import SerialPool
-from evodesign.pool.stoppable import run_stoppable
+from evodesign.pool.worker import SerialPool
 from tests.pool.tasks import squares
 
 

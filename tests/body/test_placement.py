@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.body.placement import matrix_from_rpy
-from evodesign.body.quaternion import quaternion_wxyz
+from evodesign.body.placement import matrix_from_rpy, quaternion_wxyz
 
 angle = st.floats(-math.pi, math.pi)
 right_angles = [0.0, math.pi / 2.0, math.pi, -math.pi / 2.0]
