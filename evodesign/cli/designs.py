@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.cli.design_tables import asked_table, assessment_tables, sensitivity_table
-from evodesign.cli.model_table import model_json, model_tables
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.ready import evaluator_of
+from evodesign.cli.tables.design import asked_table, assessment_tables, sensitivity_table
+from evodesign.cli.tables.problem import model_json, model_tables
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs

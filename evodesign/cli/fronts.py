@@ -13,7 +13,7 @@ from evodesign.analysis.conditions import conditions
 from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.quantities import quantities
 from evodesign.cli.output import console, print_json, show_notes, visible
-from evodesign.cli.tables import front_csv, front_json, front_table
+from evodesign.cli.tables.front import front_csv, front_json, front_table
 from evodesign.errors import InputError
 from evodesign.records import Evaluation
 from evodesign.runlog.run import Run, read_run

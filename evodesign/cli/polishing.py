@@ -10,7 +10,7 @@ from rich.table import Table
 
 from evodesign.cli.output import console, figure, print_json, show_notes
 from evodesign.cli.ready import evaluator_of
-from evodesign.cli.tables import heading
+from evodesign.cli.tables.front import heading
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import designs_text

@@ -24,7 +24,7 @@ from rich.table import Table
 
 from evodesign.analysis.failures import causes, failures
 from evodesign.cli.output import console, figure
-from evodesign.cli.tables import heading
+from evodesign.cli.tables.front import heading
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.observer import Observer
 from evodesign.runlog.run import Run

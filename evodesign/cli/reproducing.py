@@ -8,7 +8,7 @@ from pathlib import Path
 
 from evodesign.cli.output import console, counted, figure, print_json
 from evodesign.cli.reproduction import Effort, Reproduction, reproduction
-from evodesign.cli.reproduction_tables import claims_table, reasons, reproduction_json, torque_table
+from evodesign.cli.tables.reproduction import claims_table, reasons, reproduction_json, torque_table
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.source import read_source

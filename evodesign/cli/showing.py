@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from evodesign.analysis.cases import named_people_or_loads
-from evodesign.cli.card import card
 from evodesign.cli.opening import OpenedDesign, asked_of_people, open_design, scene_set_of
 from evodesign.cli.output import console, print_json, show_notes
+from evodesign.cli.tables.card import card
 from evodesign.errors import InputError
 from evodesign.report.export.design import design_json
 

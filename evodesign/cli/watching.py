@@ -13,7 +13,7 @@ from rich.live import Live
 
 from evodesign.analysis.live_state import LiveRun, LiveState
 from evodesign.cli.output import console, print_json, show_notes
-from evodesign.cli.watch_screen import generation_line, screen
+from evodesign.cli.tables.live import generation_line, screen
 from evodesign.errors import RunError
 from evodesign.report.live.server import LiveServer
 from evodesign.report.live.state import state_of

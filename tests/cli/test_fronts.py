@@ -14,9 +14,9 @@ from rich.console import Console
 
 from evodesign.analysis.front import front
 from evodesign.analysis.knees import knees
-from evodesign.cli.card import card
 from evodesign.cli.fronts import Picking, Printing, show
 from evodesign.cli.opening import OpenedDesign, RebuiltProblem
+from evodesign.cli.tables.card import card
 from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, Parameter, RunHeader, Sense, materials_of
 from evodesign.report.export.design import design_json

@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from evodesign.analysis.front import front
-from evodesign.cli.watch_screen import sparkline
+from evodesign.cli.tables.live import sparkline
 from evodesign.cli.watching import watch
 from evodesign.errors import RunError
 from evodesign.runlog.writer import RunWriter

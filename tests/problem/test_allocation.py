@@ -12,7 +12,7 @@ import pytest
 
 from evodesign.api.opened_problem import OpenedProblem
 from evodesign.cli.baseline import start_baseline
-from evodesign.cli.model_table import model_json
+from evodesign.cli.tables.problem import model_json
 from evodesign.errors import InputError
 from evodesign.posture.allocation import EffortWeights
 from evodesign.problem.build import Problem, build_problem

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from evodesign.body.material import CATALOGUE
-from evodesign.cli.model_table import model_json
+from evodesign.cli.tables.problem import model_json
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem

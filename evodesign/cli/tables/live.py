@@ -15,7 +15,7 @@ from evodesign.analysis.hypervolume import best
 from evodesign.analysis.knees import knees
 from evodesign.analysis.live_state import LiveState
 from evodesign.cli.output import figure, shown, visible
-from evodesign.cli.tables import heading
+from evodesign.cli.tables.front import heading
 from evodesign.records import Generation
 from evodesign.report.live.state import MOST_KNEES, word
 

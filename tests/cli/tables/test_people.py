@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from evodesign.analysis.cases import case_name
-from evodesign.cli.person_table import hardest_cases, people_table, person_table
+from evodesign.cli.tables.people import hardest_cases, people_table, person_table
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.records import HeightDetail
 from tests.problem.test_ergonomics import PERSON, posture

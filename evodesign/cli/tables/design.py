@@ -8,10 +8,10 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.cases import named_people_or_loads
-from evodesign.cli.height_table import cases_table, heights_table, summary_table
 from evodesign.cli.output import figure
-from evodesign.cli.person_table import people_table
-from evodesign.cli.tables import heading
+from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
+from evodesign.cli.tables.front import heading
+from evodesign.cli.tables.people import people_table
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics

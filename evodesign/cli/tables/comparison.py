@@ -12,7 +12,7 @@ from evodesign.analysis.attainment import AttainmentSurface
 from evodesign.analysis.best_designs import best_designs
 from evodesign.analysis.comparison import Compared, Comparison
 from evodesign.cli.output import figure, shown
-from evodesign.cli.tables import heading
+from evodesign.cli.tables.front import heading
 
 __all__ = ["comparison_json", "comparison_tables", "untested"]
 

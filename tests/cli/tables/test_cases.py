@@ -9,7 +9,7 @@ from msgspec import structs
 from rich.console import Console
 from rich.table import Table
 
-from evodesign.cli.height_table import cases_table, heights_table, summary_table
+from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
 from evodesign.records import Assessment, HeightOutcome, Status
 
 
