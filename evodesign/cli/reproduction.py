@@ -20,7 +20,6 @@ from evodesign.analysis.paper_claims import (
     table_claim,
 )
 from evodesign.cli.baseline import GENERATION
-from evodesign.cli.header import header_of
 from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
 from evodesign.cli.ready import evaluator_of, problem_factory
@@ -34,6 +33,7 @@ from evodesign.problem.paper_setting import broken_limits, held_at, torque_diffe
 from evodesign.records import Evaluation, SearchSettings, Status
 from evodesign.report.reproduction import ReproducedRobot
 from evodesign.report.scene_models import SceneModels
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run, read_run
 from evodesign.search.base import JOINT_STARTS
 from evodesign.search.registry import make_search

@@ -13,7 +13,6 @@ import msgspec
 
 from evodesign import evolve
 from evodesign.cli.fronts import show_run
-from evodesign.cli.header import header_of, renewed, versions
 from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
 from evodesign.cli.ready import problem_factory
@@ -30,6 +29,7 @@ from evodesign.records import ProblemSource, RunHeader, SearchSettings
 from evodesign.runlog.branch import begin_branch
 from evodesign.runlog.difference import source_differences, version_differences
 from evodesign.runlog.directory import name_in_path, refuse_run, segments
+from evodesign.runlog.header import header_of, renewed, versions
 from evodesign.runlog.run import Run, read_run
 from evodesign.search.registry import make_asynchronous_search, make_search
 from evodesign.session import Evaluate
@@ -145,7 +145,9 @@ def go_on(run: Path, budgets: Budgets, workers: Workers, accept_versions: bool, 
     stop = Stop(budgets.applied(header).hours)
 
     def renew(header: RunHeader) -> RunHeader:
-        return budgets.applied(renewed(header, run, accept_versions))
+        new, remarks = renewed(header, run, accept_versions)
+        show_notes(remarks)
+        return budgets.applied(new)
 
     with (
         _resumable(run, stop),

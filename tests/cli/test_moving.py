@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.cli.header import header_of
 from evodesign.cli.moving import gradients_of
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Evaluation
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run
 
 STEP = 1e-3

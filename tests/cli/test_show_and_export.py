@@ -13,7 +13,6 @@ import pytest
 from mcap.reader import make_reader
 
 from evodesign.cli.exporting import export_run_design
-from evodesign.cli.header import header_of
 from evodesign.cli.output import figure
 from evodesign.cli.showing import show_design
 from evodesign.errors import EvodesignError, InputError, RunError
@@ -29,6 +28,7 @@ from evodesign.records import (
     Sense,
     Status,
 )
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail

@@ -1,4 +1,4 @@
-"""The header of a run."""
+"""The header of a run: its problem and search, and the software and time of each session."""
 
 from __future__ import annotations
 
@@ -7,13 +7,19 @@ import subprocess
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
+from typing import Protocol
 
 import msgspec
 
-from evodesign.cli.output import show_notes
 from evodesign.errors import RunError
-from evodesign.problem.build import Problem
-from evodesign.records import FORMAT_VERSION, RunHeader, SearchSettings
+from evodesign.records import (
+    FORMAT_VERSION,
+    Objective,
+    Parameter,
+    ProblemSource,
+    RunHeader,
+    SearchSettings,
+)
 from evodesign.runlog.difference import version_differences
 
 __all__ = ["header_of", "renewed", "versions"]
@@ -21,7 +27,35 @@ __all__ = ["header_of", "renewed", "versions"]
 PACKAGES = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
 
-def header_of(problem: Problem, settings: SearchSettings, budget: int) -> RunHeader:
+class Parameters(Protocol):
+    """A design space, as far as a log knows it."""
+
+    @property
+    def records(self) -> tuple[Parameter, ...]:
+        """The parameters, as they are logged."""
+
+
+class LoggedProblem(Protocol):
+    """A problem, as far as a log knows it: a run is read without robots."""
+
+    @property
+    def source(self) -> ProblemSource:
+        """What it was built from."""
+
+    @property
+    def name(self) -> str:
+        """As its file says."""
+
+    @property
+    def space(self) -> Parameters:
+        """Its parameters."""
+
+    @property
+    def objectives(self) -> tuple[Objective, ...]:
+        """With senses and units."""
+
+
+def header_of(problem: LoggedProblem, settings: SearchSettings, budget: int) -> RunHeader:
     """The header of a new run."""
     return RunHeader(
         format_version=FORMAT_VERSION,
@@ -37,8 +71,8 @@ def header_of(problem: Problem, settings: SearchSettings, budget: int) -> RunHea
     )
 
 
-def renewed(header: RunHeader, directory: Path, accept_versions: bool) -> RunHeader:
-    """The header of a later session of the same run.
+def renewed(header: RunHeader, directory: Path, accept_versions: bool) -> tuple[RunHeader, tuple[str, ...]]:
+    """The header of a later session of the same run, and notes on what is strange about it.
 
     Raises:
         RunError: packages that decide results have other versions, and that was not accepted.
@@ -50,11 +84,8 @@ def renewed(header: RunHeader, directory: Path, accept_versions: bool) -> RunHea
             f"{directory}: was written with {', '.join(differing)}, so that the resumed run might not equal "
             "an uninterrupted one; install those versions, or go on all the same with --accept-versions"
         )
-    if new.started < header.started:
-        show_notes(
-            [f"the clock stands before {header.started}, when the last session began: times will overlap"]
-        )
-    return new
+    late = f"the clock stands before {header.started}, when the last session began: times will overlap"
+    return new, (late,) if new.started < header.started else ()
 
 
 def versions() -> dict[str, str]:
