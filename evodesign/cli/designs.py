@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evodesign.cli.making import making
 from evodesign.cli.output import console, print_json, show_notes
-from evodesign.cli.ready import evaluator_of
 from evodesign.cli.tables.design import asked_table, assessment_tables, sensitivity_table
 from evodesign.cli.tables.problem import model_json, model_tables
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluation_json import evaluation_json
+from evodesign.problem.factory import evaluator_of
 from evodesign.problem.notes import notes
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source, read_text
@@ -27,7 +28,8 @@ def evaluate_design(
     """Solve one design and print everything about it."""
     built = build_problem(read_source(problem, symmetry))
     chosen, values = _chosen(built, design, name)
-    evaluator = evaluator_of(built, jobs)
+    with making() as progress:
+        evaluator = evaluator_of(built, jobs, progress)
     result = evaluator.solve(values)
     assessment = evaluator.assessment(values, result)
     moves = Sensitivities(built, evaluator.known).at(values, result).sensitivities()

@@ -6,18 +6,22 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Protocol, TextIO
+from typing import TextIO
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from evodesign.cli.output import console
+from evodesign.cli.output import console, show_notes
 from evodesign.problem.precompute import PrecomputeProgress
 
 __all__ = ["making"]
 
 
-class Making(PrecomputeProgress, Protocol):
-    """A watcher of pieces that stops drawing when it is closed."""
+class Making(PrecomputeProgress):
+    """Progress that is shown on standard error until it is closed."""
+
+    def note(self, sentence: str) -> None:
+        """Say it."""
+        show_notes([sentence])
 
     def close(self) -> None:
         """Give the terminal back."""
@@ -33,7 +37,7 @@ def making() -> Iterator[PrecomputeProgress]:
         watcher.close()
 
 
-class Lines:
+class Lines(Making):
     """One line for each piece."""
 
     def __init__(self, stream: TextIO) -> None:
@@ -53,15 +57,12 @@ class Lines:
         seconds = time.monotonic() - self._began
         self._write(f"ready {self._done}/{self._pieces}: {piece} ({seconds:.0f} s)")
 
-    def close(self) -> None:
-        """Nothing is left open."""
-
     def _write(self, line: str) -> None:
         self._stream.write(line + "\n")
         self._stream.flush()
 
 
-class Bar:
+class Bar(Making):
     """A bar over all pieces, with the one that was done last."""
 
     def __init__(self) -> None:

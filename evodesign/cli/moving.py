@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from evodesign.cli.ready import evaluator_of
+from evodesign.cli.making import making
 from evodesign.problem.build import build_problem
+from evodesign.problem.factory import evaluator_of
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.runlog.run import Run
 
@@ -24,7 +25,8 @@ def gradients_of(run: Run, numbers: Iterable[int], jobs: int) -> dict[int, Gradi
         jobs: that work out what the problem needs once.
     """
     problem = build_problem(run.header.problem)
-    evaluator = evaluator_of(problem, jobs)
+    with making() as progress:
+        evaluator = evaluator_of(problem, jobs, progress)
     derivatives = Sensitivities(problem, evaluator.known)
     genomes = {evaluation.number: evaluation.genome for evaluation in run.evaluations}
     found = {}

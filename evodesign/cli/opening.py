@@ -101,13 +101,16 @@ def _heights(
     logged = {detail.evaluation: detail for detail in run.details}
     if evaluation.number in logged:
         return logged[evaluation.number].heights
-    from evodesign.cli.ready import evaluator_of  # CasADi takes its time to load
+    from evodesign.cli.making import making
     from evodesign.problem.baseline import Baseline
+    from evodesign.problem.factory import evaluator_of  # CasADi takes its time to load
 
     show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
     if run.header.search.algorithm == JOINT_STARTS:
         return Baseline(rebuilt.problem).assess(evaluation.genome).heights
-    return evaluator_of(rebuilt.problem, jobs).assess(evaluation.genome).heights
+    with making() as progress:
+        evaluator = evaluator_of(rebuilt.problem, jobs, progress)
+    return evaluator.assess(evaluation.genome).heights
 
 
 def scene_set_of(opened: OpenedDesign) -> SceneSet:

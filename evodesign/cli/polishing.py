@@ -8,12 +8,13 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.cli.making import making
 from evodesign.cli.output import console, figure, print_json, show_notes
-from evodesign.cli.ready import evaluator_of
 from evodesign.cli.tables.front import heading
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import designs_text
+from evodesign.problem.factory import evaluator_of
 from evodesign.problem.polish import Aim, Polished, Step, aim_of, polish
 from evodesign.records import Genome
 from evodesign.runlog.run import Run, read_run
@@ -39,7 +40,8 @@ def polish_design(
     aim = _aim(problem, objective, weights)
     file = run.directory / f"polished-{number}.toml" if to is None else to
     _refuse_existing(file)
-    evaluator = evaluator_of(problem, jobs)
+    with making() as progress:
+        evaluator = evaluator_of(problem, jobs, progress)
     done = polish(evaluator, genome, aim, evaluations, lambda step: _show(step, evaluations))
     name = f"polished_{number}"
     remark = f"Design {number} of {problem.name}, polished for {', '.join(aim.weights)}."

@@ -20,15 +20,16 @@ from evodesign.analysis.paper_claims import (
     table_claim,
 )
 from evodesign.cli.baseline import GENERATION
+from evodesign.cli.making import making
 from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
-from evodesign.cli.ready import evaluator_of, problem_factory
 from evodesign.errors import Interrupted
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import detail_of
+from evodesign.problem.factory import evaluation_factory, evaluator_of
 from evodesign.problem.paper_setting import broken_limits, held_at, torque_difference
 from evodesign.records import Evaluation, SearchSettings, Status
 from evodesign.report.reproduction import ReproducedRobot
@@ -209,7 +210,9 @@ def _robot(problem: Problem, name: str, title: str, solution: JointSolution) -> 
 
 def _original(problem: Problem, jobs: int) -> tuple[ReproducedRobot, float | None]:
     """The unscaled robot at its own best postures, and its reach [m]."""
-    result = evaluator_of(problem, jobs).solve(problem.space.unscaled(problem.scene.robot.tree))
+    with making() as progress:
+        evaluator = evaluator_of(problem, jobs, progress)
+    result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     heights = tuple(detail_of(height, problem.scene) for height in result.heights if height.solved)
     robot = ReproducedRobot(
         ORIGINAL, "the robot as it is", SceneModels.of(problem.scene, result.tree), heights
@@ -227,7 +230,8 @@ def _logged(
         return time.monotonic() > end
 
     with make_pool(effort.pool, effort.jobs) as workers:
-        factory = problem_factory(header, workers)
+        with making() as progress:
+            factory = evaluation_factory(header, workers, progress)
         try:
             with observer() as watching:
                 return evolve.start(directory, header, factory, workers, watching, stop=late)

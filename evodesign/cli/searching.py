@@ -13,9 +13,9 @@ import msgspec
 
 from evodesign import evolve
 from evodesign.cli.fronts import show_run
+from evodesign.cli.making import making
 from evodesign.cli.output import show_notes
 from evodesign.cli.progress import observer
-from evodesign.cli.ready import problem_factory
 from evodesign.cli.stopping import Stop
 from evodesign.errors import InputError, Interrupted, ResumeMismatch
 from evodesign.pool.base import Pool
@@ -23,6 +23,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.evaluation_cache import Remembering
+from evodesign.problem.factory import evaluation_factory
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
@@ -92,7 +93,8 @@ class Workers:
 
     def factory(self, header: RunHeader, pool: Pool) -> Evaluate:
         """The evaluation of a header's problem; the pool works out what is missing for it."""
-        factory = problem_factory(header, pool)
+        with making() as progress:
+            factory = evaluation_factory(header, pool, progress)
         if self.cache and isinstance(factory, AssessmentFactory):  # a start is no design to know again
             return Remembering(factory)
         return factory

@@ -9,13 +9,14 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.cli.making import making
 from evodesign.cli.output import console, figure, print_json
-from evodesign.cli.ready import known_of
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 
 __all__ = ["show_seeds"]
@@ -24,8 +25,8 @@ __all__ = ["show_seeds"]
 def show_seeds(path: Path, jobs: int, json: bool) -> None:
     """Make a problem ready and print its seeds' coverage and its person's value functions."""
     problem = build_problem(read_source(path))
-    with make_pool("joblib", jobs) as pool:
-        known = known_of(problem, pool)
+    with make_pool("joblib", jobs) as pool, making() as progress:
+        known = cached_precomputed(problem, pool, progress)
     if json:
         print_json(_json(problem, known))
         return

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from evodesign.errors import InputError, RunError
 from evodesign.nlp.disk_cache import Cache
@@ -24,14 +23,17 @@ from evodesign.records import ProblemSource
 __all__ = ["PrecomputeProgress", "precompute_setting", "precomputed"]
 
 
-class PrecomputeProgress(Protocol):
-    """Someone who is shown how far the pieces are."""
+class PrecomputeProgress:
+    """Is shown how far the pieces are; this one does nothing with it."""
 
     def missing(self, pieces: int) -> None:
         """So many pieces, of one stage, have to be worked out."""
 
     def done(self, piece: str) -> None:
         """One of them is."""
+
+    def note(self, sentence: str) -> None:
+        """Something that makes it take longer."""
 
 
 def precompute_setting(problem: Problem) -> PrecomputeSetting:

@@ -1,7 +1,7 @@
-"""Getting a problem ready: what is worked out or compiled once, while the user is told.
+"""The evaluation of a problem, with everything that its workers share precomputed and compiled.
 
-It is kept in the user's cache, so that only the first command on a problem pays for it, and it never changes
-a result.
+That is kept in the user's cache, so that only the first evaluation of a problem pays for it, and it never
+changes a result.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ from importlib.metadata import version
 
 import msgspec
 
-from evodesign.cli.making import making
-from evodesign.cli.output import show_notes
 from evodesign.nlp.codegen import RECIPE, Compiler, NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, digest_of, user_cache
 from evodesign.pool.base import Pool
@@ -25,63 +23,64 @@ from evodesign.problem.precompute import PrecomputeProgress, precomputed
 from evodesign.records import ProblemSource, RunHeader
 from evodesign.search.base import JOINT_STARTS
 
-__all__ = ["evaluator_of", "known_of", "problem_factory"]
+__all__ = ["cached_precomputed", "evaluation_factory", "evaluator_of"]
 
+SILENT = PrecomputeProgress()
 
 Evaluations = AssessmentFactory | BaselineFactory
 
 
-def problem_factory(header: RunHeader, pool: Pool) -> Evaluations:
-    """The evaluation of a header's problem as workers build it, with everything they share made ready.
+def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgress = SILENT) -> Evaluations:
+    """The evaluation of a header's problem as workers build it.
 
     Args:
         header: of a run.
-        pool: where what is missing is worked out.
+        pool: where what no cache holds is worked out.
+        progress: is shown what is worked out.
     """
     problem, digest = build_problem(header.problem), _digest(header.problem)
     factory: Evaluations
-    with making() as watcher:
-        if header.search.algorithm == JOINT_STARTS:
-            factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem, problem.limits)
-            compiled = problem.joint.options.compiled
-        else:
-            known = precomputed(problem, _cache("precomputed"), pool, watcher)
-            factory = AssessmentFactory(digest, problem, known)
-            compiled = problem.options.compiled
-        if compiled:
-            _compile(factory, watcher)
+    if header.search.algorithm == JOINT_STARTS:
+        factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem, problem.limits)
+        compiled = problem.joint.options.compiled
+    else:
+        factory = AssessmentFactory(digest, problem, cached_precomputed(problem, pool, progress))
+        compiled = problem.options.compiled
+    if compiled:
+        _compile(factory, progress)
     return factory
 
 
-def evaluator_of(problem: Problem, jobs: int) -> Evaluator:
+def evaluator_of(problem: Problem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
     """The inner problems of a problem in this process; so many jobs work out what is missing."""
     with make_pool("joblib", jobs) as pool:
-        known = known_of(problem, pool)
+        known = cached_precomputed(problem, pool, progress)
     return Evaluator(problem, known)
 
 
-def known_of(problem: Problem, pool: Pool) -> Precomputed:
+def cached_precomputed(problem: Problem, pool: Pool, progress: PrecomputeProgress = SILENT) -> Precomputed:
     """What is known of a problem before any robot is evaluated, worked out where it is missing."""
-    with making() as watcher:
-        return precomputed(problem, _cache("precomputed"), pool, watcher)
+    return precomputed(problem, _cache("precomputed", progress), pool, progress)
 
 
 def _digest(source: ProblemSource) -> str:
     return digest_of(msgspec.json.encode(source, order="deterministic"))
 
 
-def _compile(factory: Evaluations, watcher: PrecomputeProgress) -> None:
+def _compile(factory: Evaluations, progress: PrecomputeProgress) -> None:
     """Compile a problem's functions unless that was done before, so that no worker waits for another."""
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
-        show_notes([f"{compiler.reason}: solving on CasADi's virtual machine, slower and with equal results"])
+        progress.note(
+            f"{compiler.reason}: solving on CasADi's virtual machine, slower and with equal results"
+        )
         return
-    cache, key = _cache("ready"), _mark(factory, compiler)
+    cache, key = _cache("ready", progress), _mark(factory, compiler)
     if cache is not None and cache.read(key):
         return
-    watcher.missing(1)
+    progress.missing(1)
     factory()
-    watcher.done("compiled inner problems")
+    progress.done("compiled inner problems")
     if cache is not None:
         cache.store(key, b"ready")
 
@@ -92,9 +91,10 @@ def _mark(factory: Evaluations, compiler: Compiler) -> str:
     return digest_of(*(part.encode() for part in parts))
 
 
-def _cache(subject: str) -> Cache | None:
+def _cache(subject: str, progress: PrecomputeProgress) -> Cache | None:
+    """The user's cache of a subject; None where nothing can be kept."""
     try:
         return user_cache(subject, os.environ)
     except OSError as error:
-        show_notes([f"nothing can be kept for the next time: {error}"])
+        progress.note(f"nothing can be kept for the next time: {error}")
         return None
