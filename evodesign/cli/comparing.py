@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from evodesign.analysis.comparison import Comparison, compare
+from evodesign.analysis.comparison_json import comparison_json
 from evodesign.cli.output import console, print_json, show_notes, visible
-from evodesign.cli.tables.comparison import comparison_json, comparison_tables, untested
+from evodesign.cli.tables.comparison import comparison_tables, untested
 from evodesign.errors import InputError
 from evodesign.runlog.run import read_run
 

@@ -7,12 +7,13 @@ from pathlib import Path
 from evodesign.cli.making import making
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.tables.design import asked_table, assessment_tables, sensitivity_table
-from evodesign.cli.tables.problem import model_json, model_tables
+from evodesign.cli.tables.problem import model_tables
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.factory import evaluator_of
+from evodesign.problem.model_json import model_json
 from evodesign.problem.notes import notes
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source, read_text

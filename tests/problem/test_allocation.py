@@ -12,12 +12,12 @@ import pytest
 
 from evodesign.api.opened_problem import OpenedProblem
 from evodesign.cli.baseline import start_baseline
-from evodesign.cli.tables.problem import model_json
 from evodesign.errors import InputError
 from evodesign.posture.allocation import EffortWeights
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.model_json import model_json
 from evodesign.problem.polish import aim_of, polish
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Parameter

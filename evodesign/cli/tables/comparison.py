@@ -1,20 +1,18 @@
-"""A comparison of runs as tables for people and as JSON for programs."""
+"""A comparison of runs as tables."""
 
 from __future__ import annotations
 
 import statistics
-from collections.abc import Sequence
-from typing import Any
 
 from rich.table import Table
 
-from evodesign.analysis.attainment import AttainmentSurface
 from evodesign.analysis.best_designs import best_designs
-from evodesign.analysis.comparison import Compared, Comparison
+from evodesign.analysis.comparison import Comparison
+from evodesign.analysis.comparison_json import hypervolume_summary
 from evodesign.cli.output import figure, shown
 from evodesign.cli.tables.front import heading
 
-__all__ = ["comparison_json", "comparison_tables", "untested"]
+__all__ = ["comparison_tables", "untested"]
 
 
 def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
@@ -36,94 +34,13 @@ def untested(comparison: Comparison) -> list[str]:
     return [f"not tested: {', '.join(samples)}: {reason}" for reason, samples in reasons.items()]
 
 
-def comparison_json(comparison: Comparison) -> dict[str, Any]:
-    """A comparison as a JSON object; its shape is a promise."""
-    return {
-        "objectives": [
-            {"name": each.name, "unit": each.unit, "sense": each.sense} for each in comparison.objectives
-        ],
-        "reference": comparison.reference,
-        "evaluations": comparison.evaluations,
-        "notes": list(comparison.notes),
-        "searches": [
-            {"name": name, "runs": len(members), "hypervolume": _summary(members)}
-            for name, members in comparison.searches.items()
-        ],
-        "runs": [_run(each) for each in comparison.runs],
-        "tests": [
-            {
-                "samples": list(test.samples),
-                "test": test.name,
-                "p": test.p,
-                "effect": test.effect,
-                "finding": test.finding,
-                "reason": test.reason,
-            }
-            for test in comparison.tests
-        ],
-        "attainment": [
-            {
-                "search": each.search,
-                "objectives": [objective.name for objective in each.objectives],
-                "surfaces": [_surface(surface) for surface in each.surfaces],
-            }
-            for each in comparison.attainments
-        ],
-        "best_designs": [
-            {
-                "reason": each.reason,
-                "run": str(each.run.run.directory),
-                "id": each.evaluation.number,
-                "objectives": each.evaluation.assessment.objectives,
-                "parameters": each.evaluation.assessment.design,
-            }
-            for each in best_designs(comparison)
-        ],
-    }
-
-
-def _run(each: Compared) -> dict[str, Any]:
-    header = each.run.header
-    curve = each.curve
-    return {
-        "run": str(each.run.directory),
-        "problem": header.problem_name,
-        "search": each.search,
-        "seed": header.search.seed,
-        "evaluations": len(each.run.evaluations),
-        "front": len(each.front),
-        "hypervolume": each.hypervolume,
-        "share": each.share,
-        "best": each.best,
-        "curve": None
-        if curve is None
-        else {
-            "evaluations": list(curve.evaluations),
-            "hypervolume": list(curve.hypervolume),
-            "best": {name: list(values) for name, values in curve.best.items()},
-        },
-    }
-
-
-def _surface(surface: AttainmentSurface) -> dict[str, Any]:
-    return {"share": surface.share, "corners": [list(corner) for corner in surface.corners]}
-
-
-def _summary(members: Sequence[Compared]) -> dict[str, float] | None:
-    """Median, least and greatest hypervolume of a search; None without any."""
-    volumes = [each.hypervolume for each in members if each.hypervolume is not None]
-    if not volumes:
-        return None
-    return {"median": statistics.median(volumes), "least": min(volumes), "greatest": max(volumes)}
-
-
 def _searches(comparison: Comparison) -> Table:
     table = Table(title="Searches", title_justify="left")
     table.add_column("search", overflow="fold")
     for name in ("runs", "hypervolume, median", "least", "greatest", "median share of all"):
         table.add_column(name, justify="right", overflow="fold")
     for name, members in comparison.searches.items():
-        summary = _summary(members) or {}
+        summary = hypervolume_summary(members) or {}
         shares = [each.share for each in members if each.share is not None]
         table.add_row(
             shown(name),

@@ -9,8 +9,9 @@ from rich.console import Console
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Sphere
-from evodesign.cli.tables.problem import model_json, model_tables
+from evodesign.cli.tables.problem import model_tables
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.model_json import model_json
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
