@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from msgspec.structs import replace
-
+from evodesign.cli.making import making
 from evodesign.cli.output import console, show_notes
 from evodesign.errors import InputError
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.content import Content
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import read_run
 
 __all__ = ["write_report"]
 
@@ -25,7 +23,10 @@ def write_report(
     run = read_run(directory)
     content = page_content(run, asked)
     if sensitivities:
-        content = _with_gradients(content, run, jobs)
+        from evodesign.report.page.gradients import with_gradients  # CasADi takes its time to load
+
+        with making() as progress:
+            content = with_gradients(content, run, jobs, progress)
     show_notes(content.notes)
     path = directory / DEFAULT if output is None else output
     page = page_html(content)
@@ -36,18 +37,6 @@ def write_report(
         raise InputError("--output", "", wanted, f"'{path}' ({error.strerror})") from error
     size = len(page.encode()) / 1e6
     console().print(f"{path} ({size:.1f} MB)", highlight=False, markup=False, soft_wrap=True)
-
-
-def _with_gradients(content: Content, run: Run, jobs: int) -> Content:
-    """The page with the sensitivities of its marked designs."""
-    from evodesign.cli.moving import gradients_of  # CasADi takes its time to load
-
-    numbers = dict.fromkeys(mark.number for mark in content.marks if mark.number in content.designs)
-    found = gradients_of(run, numbers, jobs)
-    designs = {
-        number: replace(design, gradients=found.get(number, {})) for number, design in content.designs.items()
-    }
-    return replace(content, designs=designs)
 
 
 def _numbers(text: str) -> tuple[int, ...]:

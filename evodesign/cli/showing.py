@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from evodesign.analysis.cases import named_people_or_loads
-from evodesign.cli.opening import OpenedDesign, asked_of_people, open_design, scene_set_of
+from evodesign.cli.making import making
 from evodesign.cli.output import console, print_json, show_notes
 from evodesign.cli.tables.card import card
 from evodesign.errors import InputError
 from evodesign.report.export.design import design_json
+from evodesign.report.opened_design import OpenedDesign, open_design
+from evodesign.runlog.run import read_run
+
+if TYPE_CHECKING:
+    from evodesign.problem.ergonomics import Ergonomics
 
 __all__ = ["show_design"]
 
@@ -19,17 +25,29 @@ def show_design(directory: Path, number: int, jobs: int, json: bool, plot: Path 
     """Print one design; write its figures if asked."""
     if plot is not None:
         _make(plot)
-    opened = open_design(directory, number, jobs)
+    run = read_run(directory)
+    show_notes(run.notes)
+    with making() as progress:
+        opened = open_design(run, number, jobs, progress)
     if plot is not None:
         _write_figures(opened, plot)
     if json:
         from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
 
         told = design_json(opened.run.header, opened.evaluation, opened.heights, on_front=opened.on_front)
-        asked = [ergonomics_json(one) for one in asked_of_people(opened)]
+        asked = [ergonomics_json(one) for one in _ergonomics(opened)]
         print_json({"run": str(directory), **told, "ergonomics": asked})
         return
-    console().print(card(opened, asked_of_people(opened)))
+    console().print(card(opened, _ergonomics(opened)))
+
+
+def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
+    """What the postures ask of the people; none, and a note, if the people cannot be told."""
+    try:
+        return opened.ergonomics()
+    except InputError as error:
+        show_notes([f"what the postures ask of the person is left out ({error})"])
+        return ()
 
 
 def _make(directory: Path) -> None:
@@ -47,7 +65,7 @@ def _write_figures(opened: OpenedDesign, directory: Path) -> None:
     from evodesign.report.figures.torque_boxes import torque_boxes
 
     name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
-    scene_set = scene_set_of(opened)
+    scene_set = opened.scene_set()
     torques = {
         agent: [(detail.height_m, detail.agents[agent].torques_n_m) for detail in opened.heights]
         for agent in scene_set.models[0].trees

@@ -23,9 +23,10 @@ from evodesign.problem.precompute import PrecomputeProgress, precomputed
 from evodesign.records import ProblemSource, RunHeader
 from evodesign.search.base import JOINT_STARTS
 
-__all__ = ["cached_precomputed", "evaluation_factory", "evaluator_of"]
+__all__ = ["SILENT", "cached_precomputed", "evaluation_factory", "evaluator_of"]
 
 SILENT = PrecomputeProgress()
+"""For those who want to see nothing."""
 
 Evaluations = AssessmentFactory | BaselineFactory
 

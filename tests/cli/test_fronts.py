@@ -15,11 +15,11 @@ from rich.console import Console
 from evodesign.analysis.front import front
 from evodesign.analysis.knees import knees
 from evodesign.cli.fronts import Picking, Printing, show
-from evodesign.cli.opening import OpenedDesign, RebuiltProblem
 from evodesign.cli.tables.card import card
 from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, Parameter, RunHeader, Sense, materials_of
 from evodesign.report.export.design import design_json
+from evodesign.report.opened_design import OpenedDesign, RebuiltProblem
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_evaluations, toy_header

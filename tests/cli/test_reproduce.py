@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from evodesign.cli.baseline import start_baseline
-from evodesign.cli.opening import open_design, scene_set_of
 from evodesign.cli.reproducing import reproduce_paper
 from evodesign.cli.reproduction import Effort
 from evodesign.errors import InputError
+from evodesign.problem.precompute import PrecomputeProgress
+from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 
 QUICK = "\n[solver]\nsymmetry = 'off'\nseeds = false\ncompile = false\n"
@@ -88,14 +89,20 @@ def test_a_design_of_a_baseline_is_where_its_start_ended(
     run = read_run(tmp_path / "run")
     logged = {detail.evaluation for detail in run.details}
     number = next(e.number for e in run.evaluations if e.number not in logged)
-    opened = open_design(tmp_path / "run", number, 1)
+    told: list[str] = []
+
+    class Notes(PrecomputeProgress):
+        def note(self, sentence: str) -> None:
+            told.append(sentence)
+
+    opened = open_design(run, number, 1, Notes())
     norms = {h.height_m: h.robot_torque_norm for h in opened.evaluation.assessment.heights}
     for height in opened.heights:
         norm = math.hypot(*height.agents["robot"].torques_n_m.values())
         assert norm == pytest.approx(norms[height.height_m], rel=1e-9)
     problem = opened.rebuilt.problem
-    arm = scene_set_of(opened).robot.link_by_name["l_upper_arm"].inertia.mass
+    arm = opened.scene_set().robot.link_by_name["l_upper_arm"].inertia.mass
     values = list(opened.evaluation.assessment.design.values())
     tree = problem.space.resized(problem.scene.robot.tree, values)
     assert arm == tree.link_by_name["l_upper_arm"].inertia.mass
-    assert "solved anew" in capsys.readouterr().err
+    assert "solved anew" in told[0]

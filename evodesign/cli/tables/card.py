@@ -12,7 +12,6 @@ from rich.table import Table
 from rich.text import Text
 
 from evodesign.analysis.cases import named_people_or_loads
-from evodesign.cli.opening import OpenedDesign
 from evodesign.cli.output import figure
 from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
 from evodesign.cli.tables.front import heading
@@ -20,6 +19,7 @@ from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, HeightDetail, Parameter, materials_of
+from evodesign.report.opened_design import OpenedDesign
 from evodesign.report.ranked_joints import ranked_joints
 
 if TYPE_CHECKING:

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.cli.moving import gradients_of
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.factory import SILENT
 from evodesign.records import Evaluation
+from evodesign.report.page.gradients import gradients_of
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run
 
@@ -33,7 +34,7 @@ def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
         worker="here",
     )
     run = Run(tmp_path, header, (logged,), (), (), (), complete=True, notes=())
-    gradients = gradients_of(run, [7], 1)
+    gradients = gradients_of(run, [7], 1, SILENT)
     assert set(gradients) == {7}
     place = [parameter.name for parameter in space.parameters].index("length.forearm")
     for objective in ("robot_torque", "reach_height"):

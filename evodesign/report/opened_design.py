@@ -1,27 +1,27 @@
-"""Opening one design of a run: its evaluation and postures, and its robot where that is needed."""
+"""One design of a run: its evaluation and postures, and its robot where that is needed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from evodesign.analysis.front import front
-from evodesign.cli.output import show_notes
 from evodesign.errors import InputError, RunError
+from evodesign.mechanics.scene import HUMAN
 from evodesign.records import Evaluation, HeightDetail, RunHeader
 from evodesign.report.scene_set import SceneSet
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import Run
 from evodesign.search.base import JOINT_STARTS
 
 if TYPE_CHECKING:
     from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import Problem
     from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.problem.precompute import PrecomputeProgress
 
-__all__ = ["OpenedDesign", "RebuiltProblem", "asked_of_people", "open_design", "scene_set_of"]
+__all__ = ["OpenedDesign", "RebuiltProblem", "open_design"]
 
 
 class RebuiltProblem:
@@ -67,70 +67,62 @@ class OpenedDesign:
     on_front: bool
     rebuilt: RebuiltProblem
 
+    def scene_set(self) -> SceneSet:
+        """Robot of the design, people and loads, built from the problem in the run's header."""
+        problem = self.rebuilt.problem
+        design = self.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
+        values = [design[parameter.name] for parameter in problem.space.parameters]
+        return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
 
-def open_design(directory: Path, number: int, jobs: int) -> OpenedDesign:
+    def ergonomics(self) -> tuple[Ergonomics, ...]:
+        """What the design's postures ask of the people, one for each.
+
+        Raises:
+            InputError: the people cannot be told from the header's problem.
+        """
+        if not self.heights:
+            return ()
+        from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
+
+        people = self.rebuilt.people
+        return tuple(ergonomics(people[detail.human_name], detail.agents[HUMAN]) for detail in self.heights)
+
+
+def open_design(run: Run, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:
     """A design of a run by the number of its evaluation; one without logged postures is solved anew.
 
     Args:
-        directory: of the run.
+        run: that holds it.
         number: of the evaluation.
         jobs: that may work out what a solve needs first.
+        progress: is shown what is worked out, and that it has to be.
     Raises:
-        RunError: the run cannot be read, or holds no evaluation yet.
+        RunError: the run holds no evaluation yet.
         InputError: it holds no evaluation of that number.
     """
-    run = read_run(directory)
-    show_notes(run.notes)
     if not run.evaluations:
-        raise RunError(f"{directory}: holds no evaluation yet, so there is no design to open")
+        raise RunError(f"{run.directory}: holds no evaluation yet, so there is no design to open")
     by_number = {evaluation.number: evaluation for evaluation in run.evaluations}
     if number not in by_number:
         wanted = f"the number of an evaluation, {min(by_number)} to {max(by_number)}"
         raise InputError("DESIGN", "", wanted, f"{number}")
     evaluation = by_number[number]
-    best = front(run.header.objectives, run.evaluations)
     rebuilt = RebuiltProblem(run.header)
+    logged = {detail.evaluation: detail.heights for detail in run.details}
+    heights = logged[number] if number in logged else _solved(run, evaluation, rebuilt, jobs, progress)
     return OpenedDesign(
-        run, evaluation, _heights(run, evaluation, rebuilt, jobs), evaluation in best, rebuilt
+        run, evaluation, heights, evaluation in front(run.header.objectives, run.evaluations), rebuilt
     )
 
 
-def _heights(
-    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int
+def _solved(
+    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int, progress: PrecomputeProgress
 ) -> tuple[HeightDetail, ...]:
-    logged = {detail.evaluation: detail for detail in run.details}
-    if evaluation.number in logged:
-        return logged[evaluation.number].heights
-    from evodesign.cli.making import making
+    """The postures of a design of which the log holds none."""
     from evodesign.problem.baseline import Baseline
     from evodesign.problem.factory import evaluator_of  # CasADi takes its time to load
 
-    show_notes([f"the log holds no postures of design {evaluation.number}, so it is solved anew"])
+    progress.note(f"the log holds no postures of design {evaluation.number}, so it is solved anew")
     if run.header.search.algorithm == JOINT_STARTS:
         return Baseline(rebuilt.problem).assess(evaluation.genome).heights
-    with making() as progress:
-        evaluator = evaluator_of(rebuilt.problem, jobs, progress)
-    return evaluator.assess(evaluation.genome).heights
-
-
-def scene_set_of(opened: OpenedDesign) -> SceneSet:
-    """Robot of the design, people and loads, built from the problem in the run's header."""
-    problem = opened.rebuilt.problem
-    design = opened.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
-    values = [design[parameter.name] for parameter in problem.space.parameters]
-    return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
-
-
-def asked_of_people(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
-    """What the design's postures ask of the people, one for each; none if the people cannot be told."""
-    if not opened.heights:
-        return ()
-    from evodesign.mechanics.scene import HUMAN
-    from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
-
-    try:
-        people = opened.rebuilt.people
-    except InputError as error:
-        show_notes([f"what the postures ask of the person is left out ({error})"])
-        return ()
-    return tuple(ergonomics(people[detail.human_name], detail.agents[HUMAN]) for detail in opened.heights)
+    return evaluator_of(rebuilt.problem, jobs, progress).assess(evaluation.genome).heights
