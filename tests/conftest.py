@@ -15,7 +15,8 @@ from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.precompute import PrecomputeProgress, precomputed
+from evodesign.problem.precompute import precomputed
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
 from tests.pool.cluster import Cluster
 

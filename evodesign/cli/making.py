@@ -11,7 +11,7 @@ from typing import TextIO
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from evodesign.cli.output import console, show_notes
-from evodesign.problem.precompute import PrecomputeProgress
+from evodesign.problem.progress import PrecomputeProgress
 
 __all__ = ["making"]
 

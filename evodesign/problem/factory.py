@@ -19,14 +19,12 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.problem.precompute import PrecomputeProgress, precomputed
+from evodesign.problem.precompute import precomputed
+from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.records import ProblemSource, RunHeader
 from evodesign.search.base import JOINT_STARTS
 
-__all__ = ["SILENT", "cached_precomputed", "evaluation_factory", "evaluator_of"]
-
-SILENT = PrecomputeProgress()
-"""For those who want to see nothing."""
+__all__ = ["cached_precomputed", "evaluation_factory", "evaluator_of"]
 
 Evaluations = AssessmentFactory | BaselineFactory
 

@@ -18,22 +18,10 @@ from evodesign.posture.precompute.pieces import (
 )
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import ProblemSource
 
-__all__ = ["PrecomputeProgress", "precompute_setting", "precomputed"]
-
-
-class PrecomputeProgress:
-    """Is shown how far the pieces are; this one does nothing with it."""
-
-    def missing(self, pieces: int) -> None:
-        """So many pieces, of one stage, have to be worked out."""
-
-    def done(self, piece: str) -> None:
-        """One of them is."""
-
-    def note(self, sentence: str) -> None:
-        """Something that makes it take longer."""
+__all__ = ["precompute_setting", "precomputed"]
 
 
 def precompute_setting(problem: Problem) -> PrecomputeSetting:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import Problem
     from evodesign.problem.ergonomics import Ergonomics
-    from evodesign.problem.precompute import PrecomputeProgress
+    from evodesign.problem.progress import PrecomputeProgress
 
 __all__ = ["OpenedDesign", "RebuiltProblem", "open_design"]
 

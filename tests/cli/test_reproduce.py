@@ -13,7 +13,7 @@ from evodesign.cli.baseline import start_baseline
 from evodesign.cli.reproducing import reproduce_paper
 from evodesign.cli.reproduction import Effort
 from evodesign.errors import InputError
-from evodesign.problem.precompute import PrecomputeProgress
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import evaluator_of
-from evodesign.problem.precompute import PrecomputeProgress
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.report.page.content import Content
 from evodesign.runlog.run import Run

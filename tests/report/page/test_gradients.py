@@ -8,7 +8,7 @@ import pytest
 
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import SILENT
+from evodesign.problem.progress import SILENT
 from evodesign.records import Evaluation
 from evodesign.report.page.gradients import gradients_of
 from evodesign.runlog.header import header_of
