@@ -8,17 +8,14 @@ from pathlib import Path
 
 from evodesign.cli.output import console, counted
 from evodesign.cli.searching import Budgets, Wishes, Workers, start
-from evodesign.problem.baseline import refuse_unsuited
+from evodesign.problem.baseline import GENERATION, refuse_unsuited
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 from evodesign.runlog.directory import name_in_path
 from evodesign.runlog.run import read_run
 from evodesign.search.base import JOINT_STARTS
 
-__all__ = ["GENERATION", "start_baseline"]
-
-GENERATION = 10
-"""Starts after which the log says how things stand."""
+__all__ = ["start_baseline"]
 
 
 def start_baseline(

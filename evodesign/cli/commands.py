@@ -345,7 +345,7 @@ def reproduce(
 ) -> None:
     """Sartore et al. 2022 again: its table, claims and figures, with verdicts, then by evolution."""
     from evodesign.cli.reproducing import reproduce_paper
-    from evodesign.cli.reproduction import Effort
+    from evodesign.reproduction import Effort
 
     reproduce_paper(problem, published, to, Effort(starts, evaluations, seed, minutes, jobs, pool), json)
 

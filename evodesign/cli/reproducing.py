@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import time
+from contextlib import AbstractContextManager
 from datetime import datetime
 from pathlib import Path
 
-from evodesign.cli.output import console, counted, figure, print_json
-from evodesign.cli.reproduction import Effort, Reproduction, reproduction
-from evodesign.cli.tables.reproduction import claims_table, reasons, reproduction_json, torque_table
+from evodesign.cli.making import making
+from evodesign.cli.output import console, counted, figure, print_json, show_notes
+from evodesign.cli.progress import observer
+from evodesign.cli.tables.reproduction import claims_table, reasons, torque_table
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
 from evodesign.report.export.folder import refuse_full
-from evodesign.report.reproduction import write_reproduction
+from evodesign.report.reproduction import Reproduction, reproduction_json, write_reproduction
+from evodesign.reproduction import Effort, Experiment, reproduction
+from evodesign.runlog.observer import Observer
 
 __all__ = ["reproduce_paper"]
 
@@ -32,7 +37,7 @@ def reproduce_paper(problem: Path, published: Path, to: Path | None, effort: Eff
     directory = Path("runs") / f"reproduce-{datetime.now():%Y%m%d-%H%M%S}" if to is None else to
     refuse_full(directory)
     with_limits, without = _scalar(problem), _scalar(published)
-    done = reproduction(with_limits, without, directory, effort, began)
+    done = reproduction(Experiment(with_limits, directory, effort, began, _Progress()), without)
     compared = (done.original, *(one.robot for one in done.found))
     files = write_reproduction(directory, compared, (done.published.original, done.published.optimised))
     seconds = time.monotonic() - began
@@ -44,6 +49,22 @@ def reproduce_paper(problem: Path, published: Path, to: Path | None, effort: Eff
     out.print(claims_table(done.claims))
     for line in (*reasons(done.claims), *_remarks(done, directory, seconds)):
         out.print(line, highlight=False, markup=False, soft_wrap=True)
+
+
+class _Progress:
+    """Everything on standard error."""
+
+    def note(self, sentence: str) -> None:
+        """What begins, or ended early."""
+        show_notes([sentence])
+
+    def precompute(self) -> AbstractContextManager[PrecomputeProgress]:
+        """Of what a problem needs before its first evaluation."""
+        return making()
+
+    def search(self) -> AbstractContextManager[Observer]:
+        """Of a logged run."""
+        return observer()
 
 
 def _scalar(path: Path) -> Problem:

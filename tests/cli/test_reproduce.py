@@ -11,10 +11,10 @@ import pytest
 
 from evodesign.cli.baseline import start_baseline
 from evodesign.cli.reproducing import reproduce_paper
-from evodesign.cli.reproduction import Effort
 from evodesign.errors import InputError
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.report.opened_design import open_design
+from evodesign.reproduction import Effort
 from evodesign.runlog.run import read_run
 
 QUICK = "\n[solver]\nsymmetry = 'off'\nseeds = false\ncompile = false\n"

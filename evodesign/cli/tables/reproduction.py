@@ -1,24 +1,17 @@
-"""A reproduction as tables for people and as JSON for programs."""
+"""A reproduction of the paper as tables."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable
-from pathlib import Path
-from typing import Any
 
-import msgspec
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.analysis.paper_claims import PAPER_OPTIMISED, PAPER_ORIGINAL, Claim, TorqueNormsByHeight
+from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
 from evodesign.cli.output import figure
-from evodesign.cli.reproduction import Reproduction
-from evodesign.records import Status
+from evodesign.report.reproduction import Reproduction
 
-__all__ = ["claims_table", "reasons", "reproduction_json", "torque_table"]
-
-PAPER = "paper"
+__all__ = ["claims_table", "reasons", "torque_table"]
 
 
 def torque_table(done: Reproduction) -> Table:
@@ -29,7 +22,7 @@ def torque_table(done: Reproduction) -> Table:
         table.add_column(column)
     for height in heights:
         table.add_column(f"{height:g} m", justify="right")
-    for model, rows in _models(done).items():
+    for model, rows in done.by_setting.items():
         for agent in ("human", "robot"):
             for number, (setting, torque_norms) in enumerate(rows.items()):
                 values = [
@@ -38,23 +31,6 @@ def torque_table(done: Reproduction) -> Table:
                 first = (model, agent) if number == 0 else ("", "")
                 table.add_row(*first, setting, *values, end_section=number == len(rows) - 1)
     return table
-
-
-def _models(done: Reproduction) -> dict[str, dict[str, TorqueNormsByHeight]]:
-    """Torque norms by model and setting."""
-    published, limits = done.published, "with limits"
-    return {
-        "original": {
-            PAPER: PAPER_ORIGINAL,
-            "published": published.original.torque_norms,
-            limits: done.original.torque_norms,
-        },
-        "optimised": {
-            PAPER: PAPER_OPTIMISED,
-            "published": published.optimised.torque_norms,
-            **{f"{limits}, {one.robot.name}": one.robot.torque_norms for one in done.found},
-        },
-    }
 
 
 def claims_table(claims: Iterable[Claim]) -> Table:
@@ -75,47 +51,3 @@ def reasons(claims: Iterable[Claim]) -> list[str]:
 
 def _verdict(claim: Claim) -> str:
     return "reproduced" if claim.reproduced else "not reproduced"
-
-
-def reproduction_json(
-    done: Reproduction, directory: Path, files: Iterable[Path], seconds: float
-) -> dict[str, Any]:
-    """A reproduction as a JSON object; its shape is a promise. Torque norms [N m], heights [m]."""
-    published = done.published
-    return {
-        "directory": str(directory),
-        "torque_norms": {
-            model: {setting: _torque_norms(torque_norms) for setting, torque_norms in rows.items()}
-            for model, rows in _models(done).items()
-        },
-        "claims": msgspec.to_builtins(list(done.claims)),
-        "published": {
-            "torque_difference": published.difference,
-            "broken_limits": published.broken,
-            "statuses": _statuses(published.statuses),
-        },
-        "original_highest_m": done.highest,
-        "found": {
-            one.robot.name: {
-                "run": str(one.run.directory),
-                "cost": one.cost,
-                "parameters": one.design,
-                "evaluations": len(one.run.evaluations),
-                "statuses": _statuses(one.statuses),
-            }
-            for one in done.found
-        },
-        "files": [str(path) for path in files],
-        "seconds": seconds,
-    }
-
-
-def _torque_norms(torque_norms: TorqueNormsByHeight) -> list[dict[str, float]]:
-    return [
-        {"height_m": height, "robot": strain.robot, "human": strain.human}
-        for height, strain in torque_norms.items()
-    ]
-
-
-def _statuses(statuses: Counter[Status]) -> dict[str, int]:
-    return {str(status): count for status, count in statuses.items()}
