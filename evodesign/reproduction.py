@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from evodesign import evolve
 from evodesign.analysis.front import front
@@ -77,17 +77,19 @@ class Effort:
     pool: str
 
 
-class ReproductionProgress(Protocol):
-    """Who is shown what is being done."""
+@dataclass(frozen=True, slots=True)
+class ReproductionProgress:
+    """What shows what is being done.
 
-    def note(self, sentence: str) -> None:
-        """What begins, or ended early."""
+    Args:
+        note: what begins, or ended early.
+        precompute: what a problem needs before its first evaluation.
+        search: a logged run.
+    """
 
-    def precompute(self) -> AbstractContextManager[PrecomputeProgress]:
-        """Of what a problem needs before its first evaluation."""
-
-    def search(self) -> AbstractContextManager[Observer]:
-        """Of a logged run."""
+    note: Callable[[str], None]
+    precompute: Callable[[], AbstractContextManager[PrecomputeProgress]]
+    search: Callable[[], AbstractContextManager[Observer]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,35 +27,28 @@ __all__ = ["header_of", "renewed", "versions"]
 PACKAGES = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
 
-class Parameters(Protocol):
-    """A design space, as far as a log knows it."""
-
+class _Space(Protocol):
     @property
-    def records(self) -> tuple[Parameter, ...]:
-        """The parameters, as they are logged."""
+    def records(self) -> tuple[Parameter, ...]: ...
 
 
-class LoggedProblem(Protocol):
+class _Problem(Protocol):
     """A problem, as far as a log knows it: a run is read without robots."""
 
     @property
-    def source(self) -> ProblemSource:
-        """What it was built from."""
+    def source(self) -> ProblemSource: ...
 
     @property
-    def name(self) -> str:
-        """As its file says."""
+    def name(self) -> str: ...
 
     @property
-    def space(self) -> Parameters:
-        """Its parameters."""
+    def space(self) -> _Space: ...
 
     @property
-    def objectives(self) -> tuple[Objective, ...]:
-        """With senses and units."""
+    def objectives(self) -> tuple[Objective, ...]: ...
 
 
-def header_of(problem: LoggedProblem, settings: SearchSettings, budget: int) -> RunHeader:
+def header_of(problem: _Problem, settings: SearchSettings, budget: int) -> RunHeader:
     """The header of a new run."""
     return RunHeader(
         format_version=FORMAT_VERSION,

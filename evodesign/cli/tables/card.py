@@ -12,9 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from evodesign.analysis.cases import named_people_or_loads
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, heading
 from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
-from evodesign.cli.tables.front import heading
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
 from evodesign.errors import on_one_line

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import statistics
+from collections.abc import Iterator
 
 from rich.table import Table
 
 from evodesign.analysis.best_designs import best_designs
 from evodesign.analysis.comparison import Comparison
 from evodesign.analysis.comparison_json import hypervolume_summary
-from evodesign.cli.output import figure, shown
-from evodesign.cli.tables.front import heading
+from evodesign.cli.output import figure, heading, shown
 
-__all__ = ["comparison_tables", "untested"]
+__all__ = ["comparison_tables", "lines_after", "lines_before"]
 
 
 def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
@@ -25,13 +25,27 @@ def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
     return tuple(tables)
 
 
-def untested(comparison: Comparison) -> list[str]:
-    """A sentence for each reason for which tests were not made."""
+def lines_before(comparison: Comparison, *, alone: bool) -> Iterator[str]:
+    """Which runs are compared, unless there is one comparison only, and notes on them."""
+    if not alone:
+        names = ", ".join(objective.name for objective in comparison.objectives)
+        yield f"runs with the objectives {names}; others cannot be compared with them"
+    yield from comparison.notes
+
+
+def lines_after(comparison: Comparison) -> Iterator[str]:
+    """Which tests were not made, and why; what hypervolumes are measured against."""
     reasons: dict[str, list[str]] = {}
     for test in comparison.tests:
         if test.p is None:
             reasons.setdefault(test.reason, []).append(" / ".join(test.samples))
-    return [f"not tested: {', '.join(samples)}: {reason}" for reason, samples in reasons.items()]
+    for reason, samples in reasons.items():
+        yield f"not tested: {', '.join(samples)}: {reason}"
+    if comparison.reference is None:
+        yield "no run has a feasible design, so there is nothing to measure"
+    else:
+        corner = ", ".join(f"{name} {value:.4g}" for name, value in comparison.reference.items())
+        yield f"hypervolumes after {comparison.evaluations} evaluations, against {corner}"
 
 
 def _searches(comparison: Comparison) -> Table:

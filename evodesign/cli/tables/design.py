@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.cases import named_people_or_loads
-from evodesign.cli.output import figure
+from evodesign.cli.output import figure, heading
 from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
-from evodesign.cli.tables.front import heading
 from evodesign.cli.tables.people import people_table
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
@@ -20,16 +19,31 @@ from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment
 
-__all__ = ["asked_table", "assessment_tables", "sensitivity_table"]
+__all__ = ["design_tables"]
 
 STRONGEST = 4
 """Parameters shown per objective."""
 
 
-def assessment_tables(
+def design_tables(
+    problem: Problem,
+    name: str,
+    result: DesignResult,
+    assessment: Assessment,
+    sensitivities: Mapping[str, ObjectiveSensitivity],
+) -> Iterator[Table]:
+    """One design: its results, what they ask of the people, and what would change them."""
+    yield from _assessment_tables(problem, name, result, assessment)
+    if any(height.solved for height in result.heights):
+        yield _people_table(result)
+    if sensitivities:
+        yield _sensitivity_table(problem, sensitivities)
+
+
+def _assessment_tables(
     problem: Problem, name: str, result: DesignResult, assessment: Assessment
 ) -> tuple[Table, ...]:
-    """One design: its objectives, its postures case by case, and a summary where there are many cases."""
+    """Its objectives, its postures case by case, and a summary where there are many cases."""
     summary = Table(title=escape(f"{problem.name}: {name}"), title_justify="left")
     summary.add_column("objective")
     summary.add_column("value", justify="right")
@@ -47,7 +61,7 @@ def assessment_tables(
     )
 
 
-def asked_table(result: DesignResult) -> Table:
+def _people_table(result: DesignResult) -> Table:
     """What the solved postures of a design ask of the people."""
     cases = []
     for height in result.heights:
@@ -58,7 +72,7 @@ def asked_table(result: DesignResult) -> Table:
     return people_table(cases, titled=True)
 
 
-def sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
+def _sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
     """The parameters that move each objective most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
     table = Table(title="what 1 % more of a parameter's range changes", title_justify="left")

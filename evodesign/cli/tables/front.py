@@ -12,11 +12,12 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.choice import Choice, Chosen, Order
-from evodesign.cli.output import figure, shown
-from evodesign.records import Evaluation, Objective, materials_of
+from evodesign.analysis.failures import causes, failures
+from evodesign.cli.output import figure, heading, shown
+from evodesign.records import Evaluation, materials_of
 from evodesign.runlog.run import Run
 
-__all__ = ["front_csv", "front_json", "front_table", "heading"]
+__all__ = ["front_csv", "front_json", "front_lines", "front_table"]
 
 TITLES = {
     Order.FIRST_OBJECTIVE: "Front of",
@@ -24,12 +25,6 @@ TITLES = {
     Order.NEAR: "Closest to the aspiration, on the front of",
     Order.DIFFERENT: "Most different designs of the front of",
 }
-
-
-def heading(objective: Objective) -> str:
-    """A column's heading: name, sense and unit."""
-    arrow = "↓" if objective.sense == "minimise" else "↑"
-    return f"{objective.name} [{objective.unit}] {arrow}"
 
 
 def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
@@ -95,3 +90,43 @@ def front_table(run: Run, choice: Choice, designs: Sequence[Evaluation]) -> Tabl
         values = evaluation.assessment.objectives
         table.add_row(str(evaluation.number), *(figure(values[objective.name]) for objective in objectives))
     return table
+
+
+def front_lines(run: Run, choice: Choice, chosen: Chosen, rows: int) -> list[str]:
+    """What is not in a table of so many rows, and why; then what the run holds."""
+    feasible = sum(evaluation.feasible for evaluation in run.evaluations)
+    counts = failures(run.evaluations)
+    failed = f", failed: {causes(counts)}" if counts else ""
+    return [
+        *_remarks(run, choice, chosen, rows),
+        f"{len(run.evaluations)} evaluations, {feasible} feasible, {len(chosen.front)} on the front"
+        f"{_such(choice)}{failed}; the run lies in {run.directory}",
+    ]
+
+
+def _remarks(run: Run, choice: Choice, chosen: Chosen, shown: int) -> list[str]:
+    """What is not in the table, and why."""
+    if chosen.front:
+        if shown == chosen.found:
+            return []
+        more = "" if choice.limit is not None else "; more with --limit, all with --csv or --json"
+        kind = "knees" if choice.order is Order.KNEE else "designs"
+        return [f"{shown} of {chosen.found} {kind} are shown{more}"]
+    if any(evaluation.feasible for evaluation in run.evaluations):
+        return [f"no feasible design{_such(choice)}"] if choice.where else []
+    nearest = _least_violated(run.evaluations)
+    if nearest is None:
+        return ["no design was evaluated to an end"] if run.evaluations else ["nothing was evaluated yet"]
+    return [
+        f"no design is feasible; design {nearest.number} comes nearest: it lacks "
+        f"{nearest.assessment.violation:.4g} m ({nearest.assessment.reason})"
+    ]
+
+
+def _such(choice: Choice) -> str:
+    return f" with {' and '.join(map(str, choice.where))}" if choice.where else ""
+
+
+def _least_violated(evaluations: Sequence[Evaluation]) -> Evaluation | None:
+    known = [each for each in evaluations if each.assessment.violation is not None]
+    return min(known, key=lambda each: each.assessment.violation or 0.0, default=None)

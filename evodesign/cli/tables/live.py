@@ -14,8 +14,7 @@ from rich.text import Text
 from evodesign.analysis.hypervolume import best
 from evodesign.analysis.knees import knees
 from evodesign.analysis.live_state import LiveState
-from evodesign.cli.output import figure, shown, visible
-from evodesign.cli.tables.front import heading
+from evodesign.cli.output import figure, heading, shown, visible
 from evodesign.records import Generation
 from evodesign.report.live.state import MOST_KNEES, word
 
@@ -59,11 +58,11 @@ def _bar(done: int, budget: int) -> Table:
     return line
 
 
-def generation_line(live_state: LiveState, generation: Generation) -> str:
-    """One generation as a line of text."""
+def generation_line(generation: Generation, budget: int) -> str:
+    """One generation of a search with a budget as a line of text."""
     best = " ".join(f"{visible(name)} {figure(value)}" for name, value in generation.best.items())
     return (
-        f"generation {generation.number}: {generation.evaluations}/{live_state.header.budget} evaluations, "
+        f"generation {generation.number}: {generation.evaluations}/{budget} evaluations, "
         f"feasible {generation.feasible_share:.0%}, hypervolume {figure(generation.hypervolume)}, "
         f"best {best or '-'}"
     )

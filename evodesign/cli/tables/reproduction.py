@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 
 from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
-from evodesign.cli.output import figure
+from evodesign.cli.output import counted, figure
 from evodesign.report.reproduction import Reproduction
 
-__all__ = ["claims_table", "reasons", "torque_table"]
+__all__ = ["claims_table", "reproduction_lines", "torque_table"]
 
 
 def torque_table(done: Reproduction) -> Table:
@@ -44,9 +45,21 @@ def claims_table(claims: Iterable[Claim]) -> Table:
     return table
 
 
-def reasons(claims: Iterable[Claim]) -> list[str]:
-    """A sentence for every verdict."""
-    return [f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in claims]
+def reproduction_lines(done: Reproduction, directory: Path, seconds: float) -> list[str]:
+    """A sentence for every verdict, then what was computed and where it lies."""
+    published = done.published
+    return [
+        *(f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in done.claims),
+        f"published setting: starts {counted(published.statuses)}; largest difference of a torque from the "
+        f"paper's formula {published.difference:.1e} N m",
+        f"the original robot holds loads up to {figure(done.highest)} m",
+        *(
+            f"{one.robot.name}: least cost {figure(one.cost)}; {len(one.run.evaluations)} evaluations, "
+            f"{counted(one.statuses)}; the run lies in {one.run.directory}"
+            for one in done.found
+        ),
+        f"figures and robots lie in {directory}; {seconds / 60.0:.1f} min",
+    ]
 
 
 def _verdict(claim: Claim) -> str:

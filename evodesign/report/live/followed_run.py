@@ -5,8 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from pathlib import Path
-
-import msgspec
+from typing import Any
 
 from evodesign.analysis.live_state import LiveRun, LiveState
 from evodesign.errors import RunError
@@ -52,6 +51,6 @@ class FollowedRun:
         """What cannot be read."""
         return self._follower.notes
 
-    def state(self) -> bytes:
-        """The state as JSON, for the page."""
-        return msgspec.json.encode(state_of(self.look(), ended=self.ended, now=time.time()))
+    def state(self) -> dict[str, Any]:
+        """Where the search stands now, as the JSON object of the page."""
+        return state_of(self.look(), ended=self.ended, now=time.time())

@@ -16,6 +16,7 @@ from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
+from tests.problem.test_disturbances import TABLES, source_with
 
 
 @pytest.fixture(scope="module")
@@ -116,3 +117,10 @@ def test_tables_fit_the_terminal_and_cut_nothing_off(small: Problem, width: int)
     assert rows[at + 1] == ["", "sphere 0.05", "-", "", ""]
     assert ["root_link", "box 0.2, 0.3, 0.4", "+-z"] in [row[:3] for row in rows]
     assert "without mass: l_sole, r_sole, l_palm, r_palm" in text
+
+
+def test_disturbances_are_told_in_words(problem: Problem) -> None:
+    out = StringIO()
+    Console(file=out, width=110).print(model_tables(build_problem(source_with(problem, TABLES)))[1])
+    assert "heavier: load +20%" in out.getvalue()
+    assert "N on the robot" in out.getvalue()

@@ -11,7 +11,7 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.cli.tables.live import sparkline
-from evodesign.cli.watching import watch
+from evodesign.cli.watch import watch
 from evodesign.errors import RunError
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_evaluations, toy_generation, toy_header

@@ -1,40 +1,28 @@
-"""`seeds`: what a problem is solved from, and how much is left to luck."""
+"""What a problem is solved from, and how well other designs are solved from it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.cli.making import making
-from evodesign.cli.output import console, figure, print_json
+from evodesign.cli.output import figure
 from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.source import read_source
+from evodesign.problem.build import Problem
 
-__all__ = ["show_seeds"]
+__all__ = ["starts_json", "starts_tables"]
 
 
-def show_seeds(path: Path, jobs: int, json: bool) -> None:
-    """Make a problem ready and print its seeds' coverage and its person's value functions."""
-    problem = build_problem(read_source(path))
-    with make_pool("joblib", jobs) as pool, making() as progress:
-        known = cached_precomputed(problem, pool, progress)
-    if json:
-        print_json(_json(problem, known))
-        return
-    console().print(_seeds_table(problem, known))
-    console().print(_people_table(problem, known))
+def starts_tables(problem: Problem, known: Precomputed) -> tuple[Table, Table]:
+    """Coverage of each portfolio of starts, and errors of each value function of the person."""
+    return _starts_table(problem, known), _people_table(problem, known)
 
 
-def _landscapes(problem: Problem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
+def _portfolios(problem: Problem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
     """Each portfolio with what it is for and the unit in which it misses."""
     if not problem.seeds:
         return
@@ -44,12 +32,12 @@ def _landscapes(problem: Problem, known: Precomputed) -> Iterator[tuple[str, Sta
         yield f"posture at {height:g} m", known.postures[height], "100 N^2 m^2"
 
 
-def _seeds_table(problem: Problem, known: Precomputed) -> Table:
+def _starts_table(problem: Problem, known: Precomputed) -> Table:
     table = Table(title="seeds, and designs that they were not made from", title_justify="left")
     table.add_column("problem")
     for column in ("seeds", "designs tried", "led well", "worst miss"):
         table.add_column(column, justify="right")
-    for name, found, unit in _landscapes(problem, known):
+    for name, found, unit in _portfolios(problem, known):
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
         miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
@@ -79,7 +67,8 @@ def _errors(problem: Problem, known: Precomputed) -> Iterator[tuple[str, float, 
             yield scene.label, height, errors.get((number, height))
 
 
-def _json(problem: Problem, known: Precomputed) -> dict[str, Any]:
+def starts_json(problem: Problem, known: Precomputed) -> dict[str, Any]:
+    """The same as a JSON object; its shape is a promise."""
     return {
         "problem": problem.name,
         "seeds": [
@@ -91,7 +80,7 @@ def _json(problem: Problem, known: Precomputed) -> dict[str, Any]:
                 "worst_miss": found.coverage.worst,
                 "unit": unit,
             }
-            for name, found, unit in _landscapes(problem, known)
+            for name, found, unit in _portfolios(problem, known)
         ],
         "human_values": [
             {

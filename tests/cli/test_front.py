@@ -7,6 +7,7 @@ import io
 import json
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -14,7 +15,7 @@ from rich.console import Console
 
 from evodesign.analysis.front import front
 from evodesign.analysis.knees import knees
-from evodesign.cli.fronts import Picking, Printing, show
+from evodesign.cli.front import front as command
 from evodesign.cli.tables.card import card
 from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, Parameter, RunHeader, Sense, materials_of
@@ -40,10 +41,8 @@ def run(tmp_path: Path) -> Path:
     return logged(tmp_path / "run", HEADER, RUN)
 
 
-def printed(
-    capsys: pytest.CaptureFixture[str], run: Path, picking: Picking | None = None, **form: bool
-) -> str:
-    show(run, picking or Picking(), Printing(**form))
+def printed(capsys: pytest.CaptureFixture[str], run: Path, **options: Any) -> str:
+    command(run, **options)
     return capsys.readouterr().out
 
 
@@ -102,8 +101,8 @@ def test_table_holds_the_log_s_numbers_to_four_figures(run: Path, capsys: pytest
 
 
 def test_knees_within_a_condition_come_as_json(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    picking = Picking(knee=True, where=["reach_height >= 1.5"], limit=2)
-    found = json.loads(printed(capsys, run, picking, json=True))
+    shown = printed(capsys, run, knee=True, where=["reach_height >= 1.5"], limit=2, json=True)
+    found = json.loads(shown)
     high = [each for each in RUN if each.assessment.objectives["reach_height"] >= 1.5]
     expected = knees(HEADER.objectives, front(HEADER.objectives, high))[:2]
     assert [design["id"] for design in found["designs"]] == [each.number for each in expected]
@@ -113,7 +112,7 @@ def test_knees_within_a_condition_come_as_json(run: Path, capsys: pytest.Capture
 
 def test_what_the_limit_leaves_out_is_said(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     whole = len(front(HEADER.objectives, RUN))
-    assert f"2 of {whole} designs are shown" in printed(capsys, run, Picking(limit=2))
+    assert f"2 of {whole} designs are shown" in printed(capsys, run, limit=2)
     assert "are shown" not in printed(capsys, run)
 
 
@@ -126,7 +125,7 @@ def test_empty_and_infeasible_runs_say_so(tmp_path: Path, capsys: pytest.Capture
     assert f"design {nearest.number} comes nearest" in shown
     assert f"{nearest.assessment.violation:.4g} m" in shown
     for run in (empty, tmp_path / "infeasible"):
-        assert json.loads(printed(capsys, run, Picking(knee=True), json=True))["designs"] == []
+        assert json.loads(printed(capsys, run, knee=True, json=True))["designs"] == []
 
 
 @pytest.mark.parametrize("count", [1, 5])
@@ -139,8 +138,8 @@ def test_runs_of_one_and_of_five_objectives_have_a_table(
     header = msgspec.structs.replace(HEADER, objectives=objectives)
     run = [_with_objectives(each, objectives) for each in RUN]
     place = logged(tmp_path / "run", header, run)
-    for picking in (Picking(), Picking(knee=True), Picking(different=True), Picking(near="number_0=0")):
-        shown = printed(capsys, place, picking)
+    for options in ({}, {"knee": True}, {"different": True}, {"near": "number_0=0"}):
+        shown = printed(capsys, place, **options)
         assert f"{len(front(objectives, run))} on the front" in shown
 
 
@@ -158,7 +157,7 @@ def test_names_are_shown_as_text(tmp_path: Path, capsys: pytest.CaptureFixture[s
     parameters = tuple(Parameter(name=f"{name}{index}", lower=0.5, upper=2.0, unit="1") for index in range(2))
     header = msgspec.structs.replace(HEADER, problem_name=name, parameters=parameters)
     run = logged(tmp_path / "run", header, toy_evaluations(header, 40))
-    table = printed(capsys, run, Picking(where=[f"{name}1 >= 0.5"]))
+    table = printed(capsys, run, where=[f"{name}1 >= 0.5"])
     assert "<script>[bold]\\x1b[31m" in table
     assert "\x1b" not in table
     rows = list(csv.DictReader(io.StringIO(printed(capsys, run, csv=True))))
@@ -166,16 +165,16 @@ def test_names_are_shown_as_text(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 @pytest.mark.parametrize(
-    ("picking", "printing", "words"),
+    ("options", "words"),
     [
-        (Picking(knee=True, different=True), Printing(), "--knee: wanted one way to choose"),
-        (Picking(near="reach=1"), Printing(), "--near: wanted objectives among .*'reach_height'"),
-        (Picking(where=["reach_height"]), Printing(), "--where: wanted NAME <"),
-        (Picking(), Printing(json=True, csv=True), "--csv: wanted one form of output"),
+        ({"knee": True, "different": True}, "--knee: wanted one way to choose"),
+        ({"near": "reach=1"}, "--near: wanted objectives among .*'reach_height'"),
+        ({"where": ["reach_height"]}, "--where: wanted NAME <"),
+        ({"json": True, "csv": True}, "--csv: wanted one form of output"),
     ],
 )
 def test_options_that_make_no_sense_are_refused_in_one_sentence(
-    picking: Picking, printing: Printing, words: str, run: Path
+    options: dict[str, Any], words: str, run: Path
 ) -> None:
     with pytest.raises(InputError, match=words):
-        show(run, picking, printing)
+        command(run, **options)

@@ -10,7 +10,7 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.analysis.hypervolume import hypervolume
-from evodesign.cli.comparing import compare_runs
+from evodesign.cli.compare import compare
 from evodesign.errors import InputError
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_evaluations, toy_header
@@ -46,7 +46,7 @@ def logged(directory: Path, seed: int, algorithm: str, count: int, objectives: i
 
 
 def test_json_holds_the_log_s_numbers(runs: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
-    compare_runs(runs[:10], json=True, plot=None)
+    compare(runs[:10], json=True, plot=None)
     (found,) = json.loads(capsys.readouterr().out)["comparisons"]
     header = toy_header()
     for place, each in enumerate(found["runs"]):
@@ -63,7 +63,7 @@ def test_json_holds_the_log_s_numbers(runs: list[Path], capsys: pytest.CaptureFi
 def test_tables_show_searches_runs_tests_and_best_designs(
     runs: list[Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    compare_runs(runs[:10], json=False, plot=None)
+    compare(runs[:10], json=False, plot=None)
     shown = capsys.readouterr().out
     for words in ("Searches", "Runs", "Rank tests", "Mann-Whitney", "Best designs", "random-4"):
         assert words in shown
@@ -72,7 +72,7 @@ def test_tables_show_searches_runs_tests_and_best_designs(
 def test_empty_runs_and_other_objectives_are_explained(
     runs: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    compare_runs([runs[0], runs[5], runs[10], runs[11]], json=False, plot=tmp_path / "figure.html")
+    compare([runs[0], runs[5], runs[10], runs[11]], json=False, plot=tmp_path / "figure.html")
     shown = capsys.readouterr().out
     assert "others cannot be compared with them" in shown
     assert "holds no evaluation and is left out" in shown
@@ -84,10 +84,10 @@ def test_names_are_shown_as_text(
     runs: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     figure = tmp_path / "figure.html"
-    compare_runs([runs[0], runs[1], runs[11]], json=False, plot=figure)
+    compare([runs[0], runs[1], runs[11]], json=False, plot=figure)
     shown = capsys.readouterr().out
     assert "\x1b" not in shown
-    compare_runs([runs[0], runs[11], runs[5]], json=False, plot=figure)
+    compare([runs[0], runs[11], runs[5]], json=False, plot=figure)
     page = figure.read_text()
     assert "<script>[red]" not in page
 
@@ -97,9 +97,9 @@ def test_names_are_shown_as_text(
 )
 def test_less_than_two_runs_are_refused(runs: list[Path], chosen: list[int], words: str) -> None:
     with pytest.raises(InputError, match=words):
-        compare_runs([runs[place] for place in chosen], json=False, plot=None)
+        compare([runs[place] for place in chosen], json=False, plot=None)
 
 
 def test_figure_that_cannot_be_written_is_named(runs: list[Path], tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--plot: wanted a file that can be written"):
-        compare_runs(runs[:2], json=False, plot=tmp_path / "none" / "figure.html")
+        compare(runs[:2], json=False, plot=tmp_path / "none" / "figure.html")
