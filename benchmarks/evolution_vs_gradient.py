@@ -32,13 +32,13 @@ import msgspec
 import numpy as np
 
 from evodesign.analysis.hypervolume import hypervolume
-from evodesign.cli.ready import known_of
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
 from evodesign.problem.source import read_source
@@ -66,7 +66,7 @@ Step = tuple[Genome, dict[str, float], float | None, float, DesignResult | None]
 def _known(problem: Problem) -> Precomputed:
     """Seeds and the person's part, from the cache or worked out now."""
     with make_pool("joblib", 2) as pool:
-        return known_of(problem, pool)
+        return cached_precomputed(problem, pool)
 
 
 class Bench:

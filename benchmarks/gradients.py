@@ -19,10 +19,10 @@ from pathlib import Path
 
 import numpy as np
 
-from evodesign.cli.ready import evaluator_of
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.factory import evaluator_of
 from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import DesignDerivative, Sensitivities

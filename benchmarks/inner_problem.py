@@ -9,11 +9,11 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from evodesign.cli.ready import known_of
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 
 HERE = Path(__file__).parent
@@ -34,7 +34,7 @@ def problem_at(heights: Sequence[float]) -> Problem:
 def known_at(problem: Problem, jobs: int) -> Precomputed:
     """What is known of the problem beforehand, from the user's cache or worked out now."""
     with JoblibPool(jobs) as pool:
-        return known_of(problem, pool)
+        return cached_precomputed(problem, pool)
 
 
 def random_designs(problem: Problem, count: int) -> list[Design]:

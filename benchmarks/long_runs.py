@@ -21,8 +21,13 @@ from typing import Any
 import msgspec
 
 from evodesign.evolve import Silent, start
+from evodesign.pool.registry import make_pool
 from evodesign.pool.worker import SerialPool
+from evodesign.problem.build import build_problem
+from evodesign.problem.factory import evaluation_factory
+from evodesign.problem.source import read_source
 from evodesign.records import Evaluation
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 
@@ -96,7 +101,7 @@ def opening(folder: Path, evaluations: int) -> dict[str, Any]:
         for number in range(evaluations):
             log.evaluation(msgspec.structs.replace(some[number % 1000], number=number))
     size = (folder / "large" / "000.mcap").stat().st_size
-    command = [sys.executable, "-c", "from evodesign.cli import main; main()", "front", str(folder / "large")]
+    command = [sys.executable, "-m", "evodesign.cli", "front", str(folder / "large")]
     began = time.perf_counter()
     subprocess.run(command, check=True, capture_output=True)
     command_seconds = time.perf_counter() - began
@@ -113,14 +118,12 @@ def opening(folder: Path, evaluations: int) -> dict[str, Any]:
 
 def cost_of_the_disk(folder: Path, evaluations: int) -> dict[str, Any]:
     """A real search on two workers, in this process, with every wait for the disk timed."""
-    from evodesign.cli import searching
-
-    problem = ROOT / "problems" / "icub_lifting.toml"
-    run = folder / "real"
-    budgets = searching.Budgets(evaluations, None, None)
-    with disk_time() as waits:
+    problem = build_problem(read_source(ROOT / "problems" / "icub_lifting.toml"))
+    settings = problem.settings(problem.search.algorithm, problem.search.population, problem.search.seed)
+    header = header_of(problem, settings, evaluations)
+    with disk_time() as waits, make_pool("joblib", 2) as pool:
         began = time.perf_counter()
-        searching.start(problem, run, searching.Wishes(None, None, None), budgets, 2, "joblib", json=True)
+        start(folder / "real", header, evaluation_factory(header, pool), pool, Silent())
         wall = time.perf_counter() - began
     return {
         "evaluations": evaluations,

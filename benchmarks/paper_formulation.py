@@ -23,7 +23,6 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_posture import PaperPostures
-from evodesign.cli.ready import known_of
 from evodesign.nlp.solver import IpoptOptions
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.check import AgentModel, Checker
@@ -32,6 +31,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
 
@@ -138,7 +138,7 @@ def main() -> None:
     compiled = replace(problem, options=replace(problem.options, compiled=True))
     plain = replace(problem, options=replace(problem.options, compiled=False))
     with SerialPool() as pool:
-        known = known_of(problem, pool)
+        known = cached_precomputed(problem, pool)
     designs = reaching_designs(plain, options.height, options.designs)
     if len(designs) < options.designs:
         sys.exit(

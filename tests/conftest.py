@@ -17,6 +17,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.precompute import precomputed
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
 from tests.machine import NEEDS, leave_out, left_out
 from tests.pool.cluster import Cluster
@@ -91,17 +92,7 @@ def known(problem: Problem) -> Precomputed:
     """What is worked out of the default problem beforehand, where commands started by tests find it too."""
     cache = user_cache("precomputed", os.environ)
     with cache.lock("default"), JoblibPool(2) as pool:
-        return precomputed(problem, cache, pool, Unwatched())
-
-
-class Unwatched:
-    """A watcher that keeps still."""
-
-    def missing(self, pieces: int) -> None:
-        pass
-
-    def done(self, piece: str) -> None:
-        pass
+        return precomputed(problem, cache, pool, PrecomputeProgress())
 
 
 @pytest.fixture(scope="session")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -20,8 +22,6 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.search.registry",
         "evodesign.pool.registry",
         "evodesign.evolve",
-        "evodesign.cli.fronts",
-        "evodesign.cli.showing",
         "evodesign.report.front_figure",
         "evodesign.report.figures.joint_torques",
         "evodesign.report.figures.posture_figure",
@@ -29,8 +29,8 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.report.replay.layout",
         "evodesign.report.replay.recording",
         "evodesign.api.opened_run",
-        "evodesign.cli.watching",
-        "evodesign.cli.comparing",
+        "evodesign.report.opened_design",
+        "evodesign.report.live.followed_run",
     ],
 )
 def test_module_loads_without_casadi(module: str) -> None:
@@ -49,3 +49,14 @@ def test_evodesign_itself_loads_nothing_and_offers_its_names() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == ["[]", "[]", "True False"]
+
+
+def test_the_command_line_is_imported_by_itself_and_its_tests_alone() -> None:
+    root = Path(__file__).parents[1]
+    files = [path for folder in ("tests", "benchmarks") for path in (root / folder).rglob("*.py")]
+    assert [
+        path
+        for path in files
+        if root / "tests" / "cli" not in path.parents
+        and re.search(r"^\s*(from|import) evodesign\.cli\b", path.read_text(), re.MULTILINE)
+    ] == []

@@ -10,12 +10,11 @@ from pathlib import Path
 from evodesign.api.design import Design
 from evodesign.design.space import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name
-from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.materials import refuse_no_choice
-from evodesign.problem.precompute import precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Objective, Parameter, ProblemSource
 
@@ -46,8 +45,7 @@ class OpenedProblem:
         self.source = source
         problem = build_problem(source)
         with make_pool("joblib" if jobs > 1 else "serial", jobs) as pool:
-            known = precomputed(problem, _cache(), pool, _Unwatched())
-        self._evaluator = Evaluator(problem, known)
+            self._evaluator = Evaluator(problem, cached_precomputed(problem, pool))
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
@@ -98,21 +96,3 @@ class OpenedProblem:
             if values[name] != self.unscaled[name]:
                 refuse_no_choice(parameter, values[name], "design", name)
         return tuple(float(values[name]) for name in names)
-
-
-class _Unwatched:
-    """Is shown what is worked out, and keeps still."""
-
-    def missing(self, pieces: int) -> None:
-        """Nothing."""
-
-    def done(self, piece: str) -> None:
-        """Nothing."""
-
-
-def _cache() -> Cache | None:
-    """Where what is worked out is kept; None where nothing can be."""
-    try:
-        return user_cache("precomputed", os.environ)
-    except OSError:
-        return None

@@ -3,37 +3,56 @@
 from __future__ import annotations
 
 from collections import Counter
-from datetime import datetime
 from pathlib import Path
+from typing import Annotated
 
-from evodesign.cli.output import console, counted
-from evodesign.cli.searching import Budgets, Wishes, Workers, start
-from evodesign.problem.baseline import refuse_unsuited
-from evodesign.problem.build import build_problem
-from evodesign.problem.source import read_source
-from evodesign.runlog.directory import name_in_path
-from evodesign.runlog.run import read_run
-from evodesign.search.base import JOINT_STARTS
+import typer
 
-__all__ = ["GENERATION", "start_baseline"]
+from evodesign.cli.options import CORES, Jobs, Json, PoolName, ProblemPath
+from evodesign.cli.search import search
 
-GENERATION = 10
-"""Starts after which the log says how things stand."""
+__all__ = ["baseline"]
 
 
-def start_baseline(
-    problem: Path, run: Path | None, starts: int, seed: int | None, jobs: int, pool: str, json: bool
+def baseline(
+    problem: ProblemPath,
+    starts: Annotated[int, typer.Option(min=1, help="How many starts.")] = 50,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Of the starts.", show_default="as in the problem")
+    ] = None,
+    run: Annotated[
+        Path | None, typer.Option(help="Directory of the new run.", show_default="runs/NAME-baseline-TIME")
+    ] = None,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
 ) -> None:
-    """Solve the joint problem from many starts; print its front, and how the starts ended."""
+    """The paper's way: postures at all heights and the design in one program, from many starts."""
+    from evodesign.cli.output import counted, print_lines
+    from evodesign.cli.session import new_directory
+    from evodesign.problem.baseline import GENERATION, refuse_unsuited
+    from evodesign.problem.build import build_problem
+    from evodesign.problem.source import read_source
+    from evodesign.runlog.directory import name_in_path
+    from evodesign.runlog.run import read_run
+    from evodesign.search.base import JOINT_STARTS
+
     built = build_problem(read_source(problem))
     refuse_unsuited(built)
-    name = name_in_path(built.name)
-    directory = Path("runs") / f"{name}-baseline-{datetime.now():%Y%m%d-%H%M%S}" if run is None else run
-    wishes = Wishes(JOINT_STARTS, min(starts, GENERATION), seed, asynchronous=False)
-    budgets = Budgets(starts, hours=None, stagnation_generations=0)
-    workers = Workers(pool, jobs, scheduler=None, cache=False)
-    start(problem, directory, wishes, budgets, workers, None, json)
-    if json:
-        return
-    ended = Counter(evaluation.assessment.status for evaluation in read_run(directory).evaluations)
-    console().print(f"how the {sum(ended.values())} starts ended: {counted(ended)}", highlight=False)
+    directory = new_directory(f"{name_in_path(built.name)}-baseline") if run is None else run
+    search(
+        problem,
+        directory,
+        JOINT_STARTS,
+        starts,
+        stagnation_generations=0,
+        population=min(starts, GENERATION),
+        seed=seed,
+        asynchronous=False,
+        jobs=jobs,
+        pool=pool,
+        json=json,
+    )
+    if not json:
+        ended = Counter(evaluation.assessment.status for evaluation in read_run(directory).evaluations)
+        print_lines(f"how the {sum(ended.values())} starts ended: {counted(ended)}")

@@ -1,17 +1,59 @@
-"""The commands' one door: registers them and turns errors into exit codes."""
+"""The commands' one door: registers them and turns errors into exit codes.
+
+What a command needs is imported when it is called: showing a front must not wait for CasADi to load.
+"""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 
 import typer
 
-from evodesign.cli.commands import COMMANDS
+from evodesign.cli.baseline import baseline
+from evodesign.cli.branch import branch
+from evodesign.cli.check import check
+from evodesign.cli.compare import compare
+from evodesign.cli.evaluate import evaluate
+from evodesign.cli.export import export
+from evodesign.cli.front import front
+from evodesign.cli.merge import merge
+from evodesign.cli.polish import polish
+from evodesign.cli.recover import recover
+from evodesign.cli.report import report
+from evodesign.cli.reproduce import reproduce
+from evodesign.cli.resume import resume
+from evodesign.cli.search import search
+from evodesign.cli.show import show
+from evodesign.cli.starts import starts
+from evodesign.cli.verify import verify
+from evodesign.cli.watch import watch
 from evodesign.errors import EvodesignError, Interrupted
 
-__all__ = ["app", "main"]
+__all__ = ["COMMANDS", "app", "main"]
 
 BAD_INPUT, STOPPED = 2, 3
+
+COMMANDS: dict[str, Callable[..., None]] = {
+    "search": search,
+    "resume": resume,
+    "branch": branch,
+    "front": front,
+    "report": report,
+    "show": show,
+    "export": export,
+    "watch": watch,
+    "compare": compare,
+    "evaluate": evaluate,
+    "polish": polish,
+    "check": check,
+    "seeds": starts,
+    "verify": verify,
+    "recover": recover,
+    "merge": merge,
+    "baseline": baseline,
+    "reproduce": reproduce,
+}
 
 app = typer.Typer(
     name="evodesign",
@@ -20,8 +62,8 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in COMMANDS:
-    app.command()(command)
+for name, command in COMMANDS.items():
+    app.command(name)(command)
 
 
 def main() -> None:

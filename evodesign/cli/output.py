@@ -1,18 +1,31 @@
-"""Where text goes."""
+"""Where text goes, and how numbers and names are written."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 import msgspec
 from rich.console import Console
 from rich.markup import escape
 
-from evodesign.records import Status
+from evodesign.errors import InputError
+from evodesign.records import Objective, Status
 
-__all__ = ["console", "counted", "figure", "print_json", "show_notes", "shown", "visible"]
+__all__ = [
+    "console",
+    "counted",
+    "figure",
+    "heading",
+    "print_json",
+    "print_lines",
+    "show_notes",
+    "shown",
+    "visible",
+    "write_text",
+]
 
 PLAIN_WIDTH = 110
 """Columns of a table that is not shown on a terminal."""
@@ -44,6 +57,18 @@ def shown(name: str) -> str:
     return escape(visible(name))
 
 
+def heading(objective: Objective) -> str:
+    """A column's heading: name, sense and unit."""
+    arrow = "↓" if objective.sense == "minimise" else "↑"
+    return f"{objective.name} [{objective.unit}] {arrow}"
+
+
+def print_lines(*lines: str, stderr: bool = False) -> None:
+    """Lines of text on standard output or error, as they stand."""
+    for line in lines:
+        console(stderr=stderr).print(line, highlight=False, markup=False, soft_wrap=True)
+
+
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
     sys.stdout.write(msgspec.json.format(msgspec.json.encode(value), indent=2).decode() + "\n")
@@ -51,5 +76,16 @@ def print_json(value: Any) -> None:
 
 def show_notes(sentences: Iterable[str]) -> None:
     """Remarks on standard error, one line each."""
-    for sentence in sentences:
-        console(stderr=True).print(f"note: {sentence}", highlight=False, markup=False, soft_wrap=True)
+    print_lines(*(f"note: {sentence}" for sentence in sentences), stderr=True)
+
+
+def write_text(path: Path, text: str, option: str) -> None:
+    """Write the file that an option names.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(option, "", "a file that can be written", f"'{path}' ({error.strerror})") from error

@@ -1,4 +1,7 @@
-"""Progress of a search: a live panel on a terminal, one plain line per generation elsewhere."""
+"""Progress on standard error: of a search, and of what its problem needs before the first evaluation.
+
+On a terminal something is redrawn in place; elsewhere there is a plain line per generation or piece.
+"""
 
 from __future__ import annotations
 
@@ -23,29 +26,40 @@ from rich.progress import (
 from rich.table import Table
 
 from evodesign.analysis.failures import causes, failures
-from evodesign.cli.output import console, figure
-from evodesign.cli.tables import heading
+from evodesign.cli.output import console, figure, heading, show_notes
+from evodesign.cli.tables.live import generation_line
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.observer import Observer
 from evodesign.runlog.run import Run
 
-__all__ = ["LivePanel", "PlainLines", "observer"]
+__all__ = ["precompute_progress", "search_progress"]
 
 
 @contextmanager
-def observer() -> Iterator[Observer]:
+def search_progress() -> Iterator[Observer]:
     """The observer that suits standard error; the terminal is given back however the search ends."""
     if not sys.stderr.isatty():
-        yield PlainLines(sys.stderr)
+        yield SearchLines(sys.stderr)
         return
-    panel = LivePanel()
+    panel = SearchPanel()
     try:
         yield panel
     finally:
         panel.close()
 
 
-class PlainLines:
+@contextmanager
+def precompute_progress() -> Iterator[PrecomputeProgress]:
+    """What suits standard error for a problem's pieces; it shows nothing until one is missing."""
+    progress = PrecomputeBar() if sys.stderr.isatty() else PrecomputeLines(sys.stderr)
+    try:
+        yield progress
+    finally:
+        progress.close()
+
+
+class SearchLines:
     """One line when a session starts and one per generation."""
 
     def __init__(self, stream: TextIO) -> None:
@@ -54,19 +68,16 @@ class PlainLines:
         self._budget = 0
         self._failures: Counter[Status] = Counter()
 
-    def _write(self, line: str) -> None:
-        self._stream.write(line + "\n")
-        self._stream.flush()
-
     def started(self, header: RunHeader, evaluations_done: int) -> None:
         """Say what begins."""
         self._budget = header.budget
         self._clock.start(evaluations_done, header.budget)
         search = header.search
         known = f", {evaluations_done} known" if evaluations_done else ""
-        self._write(
+        _write(
+            self._stream,
             f"{header.problem_name}: {search.algorithm}, population {search.population}, seed {search.seed}, "
-            f"{header.budget} evaluations{known}"
+            f"{header.budget} evaluations{known}",
         )
 
     def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
@@ -76,19 +87,15 @@ class PlainLines:
 
     def generation_done(self, generation: Generation) -> None:
         """Say where the search stands."""
-        best_values = " ".join(f"{name} {figure(value)}" for name, value in generation.best.items())
-        self._write(
-            f"generation {generation.number}: {generation.evaluations}/{self._budget} evaluations, "
-            f"feasible {generation.feasible_share:.0%}, hypervolume {figure(generation.hypervolume)}, "
-            f"best {best_values or '-'}, {self._clock.left()} left"
-            + (f"; failed in this session: {causes(self._failures)}" if self._failures else "")
-        )
+        failed = f"; failed in this session: {causes(self._failures)}" if self._failures else ""
+        line = generation_line(generation, self._budget)
+        _write(self._stream, f"{line}, {self._clock.left()} left{failed}")
 
     def finished(self, run: Run) -> None:
         """Nothing: the result follows."""
 
 
-class LivePanel:
+class SearchPanel:
     """A bar and the state of the search, redrawn in place."""
 
     def __init__(self) -> None:
@@ -202,3 +209,70 @@ class _Clock:
         seconds = (time.monotonic() - self._began) / made * (self._budget - self._done)
         minutes, rest = divmod(round(seconds), 60)
         return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+
+
+class ShownProgress(PrecomputeProgress):
+    """Progress that is shown on standard error until it is closed."""
+
+    def note(self, sentence: str) -> None:
+        """Say it."""
+        show_notes([sentence])
+
+    def close(self) -> None:
+        """Give the terminal back."""
+
+
+class PrecomputeLines(ShownProgress):
+    """One line for each piece."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._began = time.monotonic()
+        self._pieces = self._done = 0
+
+    def missing(self, pieces: int) -> None:
+        """Say what begins."""
+        if not self._pieces:
+            _write(self._stream, "making the problem ready, once; the next time it is read from the cache")
+        self._pieces += pieces
+
+    def done(self, piece: str) -> None:
+        """Say what is done."""
+        self._done += 1
+        seconds = time.monotonic() - self._began
+        _write(self._stream, f"ready {self._done}/{self._pieces}: {piece} ({seconds:.0f} s)")
+
+
+class PrecomputeBar(ShownProgress):
+    """A bar over all pieces, with the one that was done last."""
+
+    def __init__(self) -> None:
+        self._progress = Progress(
+            TextColumn("[bold]making ready, once"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.description}"),
+            console=console(stderr=True),
+        )
+        self._task = self._progress.add_task("", total=0)
+        self._pieces = 0
+
+    def missing(self, pieces: int) -> None:
+        """Draw the bar, longer by so many pieces."""
+        self._pieces += pieces
+        self._progress.update(self._task, total=self._pieces)
+        self._progress.start()
+
+    def done(self, piece: str) -> None:
+        """Move the bar."""
+        self._progress.update(self._task, advance=1, description=piece)
+
+    def close(self) -> None:
+        """Give the terminal back."""
+        self._progress.stop()
+
+
+def _write(stream: TextIO, line: str) -> None:
+    stream.write(line + "\n")
+    stream.flush()

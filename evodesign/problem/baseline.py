@@ -25,7 +25,10 @@ from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
-__all__ = ["Baseline", "BaselineFactory", "refuse_unsuited"]
+__all__ = ["GENERATION", "Baseline", "BaselineFactory", "refuse_unsuited"]
+
+GENERATION = 10
+"""Starts after which a log says how things stand."""
 
 
 def refuse_unsuited(problem: Problem) -> None:

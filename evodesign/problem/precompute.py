@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from evodesign.errors import InputError, RunError
 from evodesign.nlp.disk_cache import Cache
@@ -19,19 +18,10 @@ from evodesign.posture.precompute.pieces import (
 )
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import ProblemSource
 
-__all__ = ["PrecomputeProgress", "precompute_setting", "precomputed"]
-
-
-class PrecomputeProgress(Protocol):
-    """Someone who is shown how far the pieces are."""
-
-    def missing(self, pieces: int) -> None:
-        """So many pieces, of one stage, have to be worked out."""
-
-    def done(self, piece: str) -> None:
-        """One of them is."""
+__all__ = ["precompute_setting", "precomputed"]
 
 
 def precompute_setting(problem: Problem) -> PrecomputeSetting:

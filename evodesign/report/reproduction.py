@@ -1,4 +1,4 @@
-"""The files of a reproduction: the paper's figures for our robots, and the robots themselves.
+"""What a reproduction gives, and its files: the paper's figures for our robots, and the robots themselves.
 
     robot_torques, human_torques    box plots of joint torques per height (the paper's Fig. 4 and 5)
     postures_NAME                   postures with the forces on feet and hands (Fig. 2 and 3)
@@ -10,21 +10,34 @@ Source: Sartore et al. 2022, Fig. 2 to 5.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from evodesign.analysis.paper_claims import TorqueNorms, TorqueNormsByHeight
+import msgspec
+
+from evodesign.analysis.paper_claims import (
+    PAPER_OPTIMISED,
+    PAPER_ORIGINAL,
+    Claim,
+    TorqueNorms,
+    TorqueNormsByHeight,
+)
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.records import CaseDetail
+from evodesign.records import CaseDetail, Status
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.figures.torque_boxes import torque_boxes
 from evodesign.report.scene_models import SceneModels, placed_scene
+from evodesign.runlog.run import Run
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["ReproducedRobot", "write_reproduction"]
+__all__ = ["Found", "Published", "ReproducedRobot", "Reproduction", "reproduction_json", "write_reproduction"]
+
+PAPER = "paper"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +65,75 @@ class ReproducedRobot:
                 human=math.hypot(*detail.agents[HUMAN].torques_n_m.values()),
             )
             for detail in self.cases
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Published:
+    """What the published setting gives; a robot without heights had no start that was solved.
+
+    Args:
+        original, optimised: robots and postures.
+        broken: physical limits that the postures break, in words.
+        difference: largest difference of a torque from the paper's formula [N m].
+        statuses: how the starts ended.
+    """
+
+    original: ReproducedRobot
+    optimised: ReproducedRobot
+    broken: str
+    difference: float
+    statuses: Counter[Status]
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The best robot of a run; without heights when the run holds no feasible one."""
+
+    robot: ReproducedRobot
+    run: Run
+    cost: float | None
+    design: dict[str, float]
+
+    @property
+    def statuses(self) -> Counter[Status]:
+        """How the evaluations ended."""
+        return Counter(evaluation.assessment.status for evaluation in self.run.evaluations)
+
+
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """Everything that is shown.
+
+    Args:
+        published: the paper's setting, without limits.
+        original: the robot as it is, with limits.
+        highest: load that it can hold [m]; None when not solved.
+        found: the best robots with limits: by gradients, by evolution.
+        claims: each with its verdict.
+    """
+
+    published: Published
+    original: ReproducedRobot
+    highest: float | None
+    found: tuple[Found, ...]
+    claims: tuple[Claim, ...]
+
+    @property
+    def by_setting(self) -> dict[str, dict[str, TorqueNormsByHeight]]:
+        """Table II of the paper with ours beside it: torque norms by model and setting."""
+        published, limits = self.published, "with limits"
+        return {
+            "original": {
+                PAPER: PAPER_ORIGINAL,
+                "published": published.original.torque_norms,
+                limits: self.original.torque_norms,
+            },
+            "optimised": {
+                PAPER: PAPER_OPTIMISED,
+                "published": published.optimised.torque_norms,
+                **{f"{limits}, {one.robot.name}": one.robot.torque_norms for one in self.found},
+            },
         }
 
 
@@ -96,3 +178,47 @@ def _urdf(directory: Path, robot: ReproducedRobot) -> Path:
         wanted = "a directory that can be written"
         raise InputError(str(directory), "", wanted, f"{error.strerror}") from error
     return path
+
+
+def reproduction_json(
+    done: Reproduction, directory: Path, files: Iterable[Path], seconds: float
+) -> dict[str, Any]:
+    """A reproduction as a JSON object; its shape is a promise. Torque norms [N m], heights [m]."""
+    published = done.published
+    return {
+        "directory": str(directory),
+        "torque_norms": {
+            model: {setting: _torque_norms(torque_norms) for setting, torque_norms in rows.items()}
+            for model, rows in done.by_setting.items()
+        },
+        "claims": msgspec.to_builtins(list(done.claims)),
+        "published": {
+            "torque_difference": published.difference,
+            "broken_limits": published.broken,
+            "statuses": _statuses(published.statuses),
+        },
+        "original_highest_m": done.highest,
+        "found": {
+            one.robot.name: {
+                "run": str(one.run.directory),
+                "cost": one.cost,
+                "parameters": one.design,
+                "evaluations": len(one.run.evaluations),
+                "statuses": _statuses(one.statuses),
+            }
+            for one in done.found
+        },
+        "files": [str(path) for path in files],
+        "seconds": seconds,
+    }
+
+
+def _torque_norms(torque_norms: TorqueNormsByHeight) -> list[dict[str, float]]:
+    return [
+        {"height_m": height, "robot": norms.robot, "human": norms.human}
+        for height, norms in torque_norms.items()
+    ]
+
+
+def _statuses(statuses: Counter[Status]) -> dict[str, int]:
+    return {str(status): count for status, count in statuses.items()}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.cli.reports import write_report
+from evodesign.cli.report import report
 from evodesign.errors import InputError, RunError
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_evaluations, toy_header
@@ -21,11 +21,11 @@ def run(tmp_path: Path) -> Path:
 
 
 def test_page_lies_in_the_run_unless_told_otherwise(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write_report(run, None, "")
+    report(run, None, "")
     shown = capsys.readouterr()
     assert shown.out.startswith(f"{run / 'report.html'} (")
     assert "no robot is drawn" in shown.err
-    write_report(run, run / "other.html", "3, 5,3")
+    report(run, run / "other.html", "3, 5,3")
     assert (run / "other.html").read_text(encoding="utf-8").startswith("<!doctype html>")
 
 
@@ -34,16 +34,16 @@ def test_page_lies_in_the_run_unless_told_otherwise(run: Path, capsys: pytest.Ca
 )
 def test_designs_that_are_none_are_refused(run: Path, designs: str, found: str) -> None:
     with pytest.raises(InputError, match="--designs") as refused:
-        write_report(run, None, designs)
+        report(run, None, designs)
     assert found in str(refused.value)
     assert not (run / "report.html").exists()
 
 
 def test_place_that_cannot_be_written_is_named(run: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--output"):
-        write_report(run, tmp_path / "missing" / "page.html", "")
+        report(run, tmp_path / "missing" / "page.html", "")
 
 
 def test_directory_without_a_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="is not a run"):
-        write_report(tmp_path, None, "")
+        report(tmp_path, None, "")

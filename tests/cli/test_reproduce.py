@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.cli.baseline import start_baseline
-from evodesign.cli.opening import open_design, scene_set_of
-from evodesign.cli.reproducing import reproduce_paper
-from evodesign.cli.reproduction import Effort
+from evodesign.cli.baseline import baseline
+from evodesign.cli.reproduce import reproduce
 from evodesign.errors import InputError
+from evodesign.problem.progress import PrecomputeProgress
+from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 
 QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\ncompile = false\n"
@@ -37,11 +37,10 @@ def folder(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_paper_is_reproduced_with_verdicts_and_figures(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    to, effort = tmp_path / "out", Effort(1, 2, 1, 10.0, 1, "serial")
-    problems = folder / "problems"
-    reproduce_paper(
-        problems / "sartore2022.toml", problems / "sartore2022_as_published.toml", to, effort, json=True
-    )
+    to, limited = tmp_path / "out", folder / "problems" / "sartore2022.toml"
+    published = folder / "problems" / "sartore2022_as_published.toml"
+    effort = {"starts": 1, "evaluations": 2, "seed": 1, "minutes": 10.0, "jobs": 1, "pool": "serial"}
+    reproduce(to, limited, published, **effort, json=True)
     shown = json.loads(capsys.readouterr().out)
     verdicts = {(claim["subject"], claim["by"]): claim["reproduced"] for claim in shown["claims"]}
     assert len(verdicts) == 7
@@ -64,7 +63,7 @@ def test_the_paper_is_reproduced_with_verdicts_and_figures(
     robot = ET.parse(to / "original.urdf").getroot()
     assert robot.tag == "robot"
     with pytest.raises(InputError, match="a new or empty folder"):
-        reproduce_paper(problems / "sartore2022.toml", problems / "sartore2022.toml", to, effort, json=True)
+        reproduce(to, limited, limited, **effort, json=True)
 
 
 def test_a_baseline_counts_how_its_starts_ended(
@@ -74,9 +73,9 @@ def test_a_baseline_counts_how_its_starts_ended(
     text = text.replace("[baseline]\n", "[baseline]\niterations = 3\n").replace("'off'", "'on'")
     small = folder / "problems" / "small.toml"
     small.write_text(text)
-    start_baseline(small, tmp_path / "run", 2, 1, 1, "serial", json=False)
+    baseline(small, starts=2, seed=1, run=tmp_path / "run", jobs=1, pool="serial")
     assert "how the 2 starts ended: iteration limit 2" in capsys.readouterr().out
-    start_baseline(small, tmp_path / "again", 2, 1, 1, "serial", json=True)
+    baseline(small, starts=2, seed=1, run=tmp_path / "again", jobs=1, pool="serial", json=True)
     assert json.loads(capsys.readouterr().out)["statuses"] == {"iteration limit": 2}
 
 
@@ -84,18 +83,26 @@ def test_a_design_of_a_baseline_is_where_its_start_ended(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Shown with its logged design, and solved anew from its start where the log holds no postures."""
-    start_baseline(folder / "problems" / "sartore2022.toml", tmp_path / "run", 3, 1, 1, "serial", json=True)
+    baseline(
+        folder / "problems" / "sartore2022.toml", 3, 1, tmp_path / "run", jobs=1, pool="serial", json=True
+    )
     run = read_run(tmp_path / "run")
     logged = {detail.evaluation for detail in run.details}
     number = next(e.number for e in run.evaluations if e.number not in logged)
-    opened = open_design(tmp_path / "run", number, 1)
+    told: list[str] = []
+
+    class Notes(PrecomputeProgress):
+        def note(self, sentence: str) -> None:
+            told.append(sentence)
+
+    opened = open_design(run, number, 1, Notes())
     norms = {h.case.task.height_m: h.robot_torque_norm for h in opened.evaluation.assessment.cases}
     for height in opened.cases:
         norm = math.hypot(*height.agents["robot"].torques_n_m.values())
         assert norm == pytest.approx(norms[height.case.task.height_m], rel=1e-9)
     problem = opened.rebuilt.problem
-    arm = scene_set_of(opened).robot.link_by_name["l_upper_arm"].inertia.mass
+    arm = opened.scene_set().robot.link_by_name["l_upper_arm"].inertia.mass
     values = list(opened.evaluation.assessment.design.values())
     tree = problem.space.resized(problem.scene.robot.tree, values)
     assert arm == tree.link_by_name["l_upper_arm"].inertia.mass
-    assert "solved anew" in capsys.readouterr().err
+    assert "solved anew" in told[0]

@@ -12,10 +12,9 @@ import msgspec
 import pytest
 from mcap.reader import make_reader
 
-from evodesign.cli.exporting import export_run_design
-from evodesign.cli.header import header_of
+from evodesign.cli.export import export
 from evodesign.cli.output import figure
-from evodesign.cli.showing import show_design
+from evodesign.cli.show import show
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
@@ -29,6 +28,7 @@ from evodesign.records import (
     Sense,
     Status,
 )
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import hold_json, random_detail
@@ -78,7 +78,7 @@ def cells(text: str) -> list[list[str]]:
 
 
 def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(run, 0, jobs=1, json=False, plot=None)
+    show(run, 0)
     text = capsys.readouterr().out
     logged = read_run(run)
     evaluation, detail = logged.evaluations[0], logged.details[0]
@@ -110,7 +110,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
 def test_card_and_json_say_what_the_postures_ask_of_the_person(
     run: Path, problem: Problem, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    show_design(run, 0, jobs=1, json=True, plot=None)
+    show(run, 0, jobs=1, json=True, plot=None)
     told = json.loads(capsys.readouterr().out)["ergonomics"]
     details = read_run(run).details[0].cases
     person = problem.scene.human
@@ -123,7 +123,7 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
         assert one["held_kg"] == pytest.approx(2.5, abs=1e-3), "half of 5 kg, with point grasps"
         assert one["hands_height_m"] == pytest.approx(detail.case.task.height_m + 0.0125, abs=1e-4)
         assert one["lifting_index"] == pytest.approx(one["held_kg"] / one["recommended_weight_kg"])
-    show_design(run, 0, jobs=1, json=False, plot=None)
+    show(run, 0)
     text = capsys.readouterr().out
     rows = {row[0]: row[1:] for row in cells(text) if row[0].endswith(" m")}
     assert set(rows) == {f"{detail.case.task.height_m:g} m" for detail in details}
@@ -135,7 +135,7 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
 
 
 def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(run, 0, jobs=1, json=True, plot=None)
+    show(run, 0, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()
     assert captured.err == ""
     found = json.loads(captured.out)
@@ -153,7 +153,7 @@ def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
 def test_design_without_logged_postures_is_solved_anew(
     run: Path, problem: Problem, evaluator: Evaluator, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    show_design(run, 1, jobs=1, json=True, plot=None)
+    show(run, 1, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()
     assert captured.err == "note: the log holds no postures of design 1, so it is solved anew\n"
     expected = evaluator.assess(problem.start[1]).cases
@@ -163,7 +163,7 @@ def test_design_without_logged_postures_is_solved_anew(
 def test_plot_writes_three_figures_twice(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    show_design(run, 0, jobs=1, json=False, plot=tmp_path / "new" / "figures")
+    show(run, 0, jobs=1, json=False, plot=tmp_path / "new" / "figures")
     names = sorted(path.name for path in (tmp_path / "new" / "figures").iterdir())
     stems = ("postures", "torques", "torques_by_joint")
     assert names == sorted(f"{stem}.{kind}" for stem in stems for kind in ("png", "svg"))
@@ -173,7 +173,7 @@ def test_plot_writes_three_figures_twice(
 def test_export_writes_the_logged_postures(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    export_run_design(run, 0, tmp_path / "design", jobs=1)
+    export(run, 0, tmp_path / "design", jobs=1)
     printed = capsys.readouterr().out.split()
     assert sorted(printed) == sorted(str(path) for path in (tmp_path / "design").iterdir())
     told = json.loads((tmp_path / "design" / "postures.json").read_text())
@@ -216,7 +216,7 @@ def hostile(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_hostile_names_are_text_on_the_terminal(hostile: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(hostile, 0, jobs=1, json=False, plot=None)
+    show(hostile, 0)
     text = capsys.readouterr().out
     assert text.splitlines()[0] == f"{HOSTILE}: design 0"
     names = [row[0] for row in cells(text)]
@@ -226,8 +226,8 @@ def test_hostile_names_are_text_on_the_terminal(hostile: Path, capsys: pytest.Ca
 
 
 def test_hostile_names_stay_names_in_files(hostile: Path, tmp_path: Path) -> None:
-    show_design(hostile, 0, jobs=1, json=True, plot=tmp_path / "figures")
-    export_run_design(hostile, 0, tmp_path / "design", jobs=1)
+    show(hostile, 0, jobs=1, json=True, plot=tmp_path / "figures")
+    export(hostile, 0, tmp_path / "design", jobs=1)
     assert {path.name for path in tmp_path.iterdir()} == {"figures", "design"}
     for path in [*(tmp_path / "figures").iterdir(), *(tmp_path / "design").iterdir()]:
         assert re.fullmatch(r"[A-Za-z_]+\.[a-z]+", path.name)
@@ -270,7 +270,7 @@ def test_any_number_of_objectives_gives_a_card(
 ) -> None:
     place = toy_run(tmp_path / "run", objectives)
     for number in range(8):
-        show_design(place, number, jobs=1, json=False, plot=None)
+        show(place, number)
         rows = cells(capsys.readouterr().out)
         named = [row[0] for row in rows[:objectives]]
         names = ["robot_torque", "reach_height", "third", "[bold]", "fifth"][:objectives]
@@ -281,7 +281,7 @@ def test_any_number_of_objectives_gives_a_card(
 def test_infeasible_design_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     place = toy_run(tmp_path / "run", count=12)
     number = next(e.number for e in read_run(place).evaluations if not e.feasible)
-    show_design(place, number, jobs=1, json=False, plot=None)
+    show(place, number)
     text = capsys.readouterr().out
     assert "not feasible: too high by a third" in text
     assert "infeasible: too high by a" in text
@@ -297,19 +297,19 @@ def test_run_cut_by_a_crash_shows_what_it_holds(tmp_path: Path, capsys: pytest.C
         if len(kept) < 8:
             break
     assert len(kept) == 7
-    show_design(place, kept[-1].number, jobs=1, json=False, plot=None)
+    show(place, kept[-1].number)
     captured = capsys.readouterr()
     assert captured.out.startswith(f"toy: design {kept[-1].number}\n")
     assert "without a footer" in captured.err
     with pytest.raises(InputError, match="0 to"):
-        show_design(place, 7, jobs=1, json=False, plot=None)
+        show(place, 7)
 
 
 def test_empty_run_is_explained(tmp_path: Path) -> None:
     place = write_run(tmp_path / "run", toy_header(), [], [])
     for command in (
-        lambda: show_design(place, 0, jobs=1, json=False, plot=None),
-        lambda: export_run_design(place, 0, tmp_path / "design", jobs=1),
+        lambda: show(place, 0),
+        lambda: export(place, 0, tmp_path / "design", jobs=1),
     ):
         with pytest.raises(RunError, match="holds no evaluation yet"):
             command()
@@ -321,13 +321,13 @@ def test_places_that_cannot_be_written_are_explained(run: Path, tmp_path: Path) 
     file.write_text("mine")
     for command, words in (
         (
-            lambda: show_design(run, 0, jobs=1, json=False, plot=file),
+            lambda: show(run, 0, jobs=1, json=False, plot=file),
             "--plot: wanted a folder that can be written",
         ),
-        (lambda: export_run_design(run, 0, file, jobs=1), "--to: wanted a new or empty folder"),
-        (lambda: export_run_design(run, 0, tmp_path, jobs=1), "which holds files"),
+        (lambda: export(run, 0, file, jobs=1), "--to: wanted a new or empty folder"),
+        (lambda: export(run, 0, tmp_path, jobs=1), "which holds files"),
         (
-            lambda: export_run_design(run, 9, tmp_path / "new", jobs=1),
+            lambda: export(run, 9, tmp_path / "new", jobs=1),
             "DESIGN: wanted the number of an evaluation, 0 to 1",
         ),
     ):

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 
 from evodesign.api.opened_problem import OpenedProblem
-from evodesign.cli.baseline import start_baseline
-from evodesign.cli.model_table import model_json
 from evodesign.errors import InputError
 from evodesign.posture.allocation import EffortWeights
+from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.model_json import model_json
 from evodesign.problem.polish import aim_of, polish
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Parameter
@@ -196,14 +195,9 @@ def test_polishing_moves_allocations(shared: Problem) -> None:
     assert done.after.design["allocation.robot_share"] < 0.45
 
 
-def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem, tmp_path: Path) -> None:
-    """Before it begins a run."""
-    for name, text in {"p.toml": shared.source.text, **shared.source.files}.items():
-        (tmp_path / "problems" / name).resolve().parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "problems" / name).write_text(text)
+def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem) -> None:
     with pytest.raises(InputError, match=r"design\.allocation: wanted no effort_ratio in the joint problem"):
-        start_baseline(tmp_path / "problems/p.toml", tmp_path / "run", 1, 1, 1, "serial", json=False)
-    assert not (tmp_path / "run").exists()
+        refuse_unsuited(shared)
 
 
 def test_reach_with_rigid_grasps_has_a_gradient(problem: Problem) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -193,18 +192,3 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
         for piece in stage:
             same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
             assert same is (piece.subject is not Subject.POSTURE), "start portfolios of undisturbed reach do"
-
-
-def test_check_names_disturbances(
-    problem: Problem, tmp_path: Path, repository: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    from evodesign.cli.designs import check_problem
-
-    text = source_with(problem, TABLES).text.replace("robots/", f"{repository}/problems/robots/")
-    text = text.replace("../populations", f"{repository}/populations")
-    path = tmp_path / "shaken.toml"
-    path.write_text(text)
-    check_problem(path, json=False)
-    shown = capsys.readouterr().out
-    assert "heavier: load +20%" in shown
-    assert "N on the robot" in shown

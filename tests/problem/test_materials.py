@@ -8,11 +8,11 @@ import msgspec
 import pytest
 
 from evodesign.body.material import CATALOGUE
-from evodesign.cli.model_table import model_json
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.designs import designs_text, read_designs, start_genomes
+from evodesign.problem.model_json import model_json
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, design_of, materials_of
 from evodesign.search.base import JOINT_STARTS

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from evodesign.cli.header import header_of
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import (
@@ -19,6 +18,7 @@ from evodesign.records import (
     ReachOutcome,
     Status,
 )
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail, random_values

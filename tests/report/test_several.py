@@ -20,21 +20,21 @@ from mcap.reader import make_reader
 import evodesign
 from evodesign.analysis.conditions import conditions, meeting
 from evodesign.analysis.quantities import quantities
-from evodesign.cli.exporting import export_run_design
-from evodesign.cli.output import figure
-from evodesign.cli.showing import show_design
 from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import Problem
+from evodesign.problem.progress import SILENT
+from evodesign.report.export.design import ExportedDesign
+from evodesign.report.export.folder import export_design
 from evodesign.report.figures.posture_figure import posture_figure
+from evodesign.report.opened_design import open_design
 from evodesign.report.page import gather, page_content
 from evodesign.runlog.run import Run
 from evodesign.tree.urdf_write import urdf_text
-from tests.cli.test_show_and_export import cells
 from tests.report.replay.test_replay import frames
 from tests.report.scenes import random_company
-from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
+from tests.report.several import CASES, LOADS, PEOPLE, problem_of_several, write_several
 from tests.report.test_scene_models import posture_of
 
 
@@ -51,53 +51,10 @@ def run(several: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
 @pytest.fixture(scope="module")
 def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("export") / "design"
-    export_run_design(run.directory, 1, place, jobs=1)
+    opened = open_design(run, 1, 1, SILENT)
+    design = ExportedDesign("run", run.header, opened.evaluation, opened.scene_set(), opened.cases)
+    export_design(design, place, on_front=opened.on_front)
     return place
-
-
-def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
-    show_design(run.directory, 1, jobs=1, json=False, plot=None)
-    rows = cells(capsys.readouterr().out)
-    outcomes = run.evaluations[1].assessment.cases
-    for (human, payload, height), outcome in zip(CASES, outcomes, strict=True):
-        norms = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
-        assert [row[3:5] for row in rows if row[:3] == [human, payload, f"{height:g} m"]] == [norms]
-    table = pd.DataFrame(
-        [
-            (*case, one.robot_torque_norm, one.human_torque_norm)
-            for case, one in zip(CASES, outcomes, strict=True)
-        ],
-        columns=["human", "payload", "height", "robot", "person"],
-    )
-    groups = {
-        "all": table,
-        **{human: table[table.human == human] for human in PEOPLE},
-        **{payload: table[table.payload == payload] for payload in LOADS},
-        **{f"{height:g} m": table[table.height == height] for height in HEIGHTS},
-    }
-    for name, group in groups.items():
-        numbers = (group.robot.mean(), group.robot.max(), group.person.mean(), group.person.max())
-        expected = [name, f"{len(group)} of {len(group)}", *map(figure, numbers)]
-        assert expected in rows
-
-
-def test_card_names_the_case_of_largest_torque_and_contact_force(
-    run: Run, capsys: pytest.CaptureFixture[str]
-) -> None:
-    show_design(run.directory, 1, jobs=1, json=False, plot=None)
-    rows = cells(capsys.readouterr().out)
-    names = [f"{human}, {payload}, {height:g} m" for human, payload, height in CASES]
-    for agent in (ROBOT, HUMAN):
-        postures = [detail.agents[agent] for detail in run.details[1].cases]
-        torques = pd.DataFrame([posture.torques_n_m for posture in postures], index=names)
-        sizes = torques.abs()
-        for joint in sizes.max().sort_values(ascending=False).index[:6]:
-            case = sizes[joint].idxmax()
-            numbers = [figure(sizes[joint].mean()), figure(torques[joint][case])]
-            assert [agent, joint, *numbers, case] in rows
-        forces = [float(np.linalg.norm(posture.hand_wrenches["left"][:3])) for posture in postures]
-        numbers = [figure(float(np.mean(forces))), figure(max(forces))]
-        assert [agent, "left hand", *numbers, names[int(np.argmax(forces))]] in rows
 
 
 def test_each_persons_file_has_the_persons_stature_and_mass(folder: Path) -> None:
@@ -210,14 +167,6 @@ def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(run: Run, s
     stages = [scene_set.placed_scene(run.details[1].cases[number]) for number in (0, 1, 3)]
     names = ["{}, {}\nload at {:g} m".format(*CASES[number]) if number != 2 else "" for number in range(4)]
     assert [axes.get_title() for axes in posture_figure(stages, "all but the third").axes] == names
-
-
-def test_figures_of_show_are_written(several: Problem, tmp_path: Path) -> None:
-    few = write_several(several, tmp_path / "run", designs=1, cases=3)
-    show_design(few.directory, 0, jobs=1, json=True, plot=tmp_path / "figures")
-    assert len(list((tmp_path / "figures").iterdir())) == 6
-    svg = (tmp_path / "figures" / "torques_by_joint.svg").read_text()
-    assert "with all people and loads" in svg
 
 
 def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: Run) -> None:

@@ -10,10 +10,10 @@ import pytest
 
 from evodesign.analysis.front import RunningFront, front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
-from evodesign.cli.header import header_of
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Detail, Evaluation, Front, Generation
+from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.page.chromium import Tab, browser

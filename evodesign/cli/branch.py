@@ -1,0 +1,63 @@
+"""`branch`: a new run with the past of another one, and another seed or search."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from evodesign.cli import options
+from evodesign.cli.resume import resume
+
+__all__ = ["branch"]
+
+
+def branch(
+    run: options.RunPath,
+    branch_from: Annotated[
+        int, typer.Option(min=1, metavar="GENERATION", help="How many generations the new run takes over.")
+    ],
+    to: options.NewRun = None,
+    algorithm: options.Algorithm = None,
+    evaluations: options.Evaluations = None,
+    hours: options.Hours = None,
+    stagnation_generations: options.Stagnation = None,
+    population: options.PopulationSize = None,
+    seed: options.Seed = None,
+    jobs: options.Jobs = options.CORES,
+    pool: options.PoolName = "joblib",
+    scheduler: options.Scheduler = None,
+    cache: options.UseCache = False,
+    json: options.Json = False,
+) -> None:
+    """Begin a new run with the first generations of another, and go on with another seed or search."""
+    from msgspec.structs import replace
+
+    from evodesign.cli.output import show_notes
+    from evodesign.cli.session import given, new_directory
+    from evodesign.runlog.branch import begin_branch
+    from evodesign.runlog.directory import name_in_path
+    from evodesign.runlog.run import read_run
+
+    old = read_run(run)
+    settings = replace(
+        old.header.search,
+        algorithm=given(algorithm, old.header.search.algorithm),
+        population=given(population, old.header.search.population),
+        seed=given(seed, old.header.search.seed),
+    )
+    directory = new_directory(name_in_path(old.header.problem_name)) if to is None else to
+    past = begin_branch(old, directory, branch_from, settings)
+    show_notes([f"{past} evaluations taken over from {run}; the new run lies in {directory}"])
+    resume(
+        directory,
+        evaluations,
+        hours,
+        stagnation_generations,
+        jobs,
+        pool,
+        scheduler,
+        cache,
+        accept_versions=True,
+        json=json,
+    )

@@ -1,0 +1,59 @@
+"""`compare`: several runs side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from evodesign.cli.options import Json
+from evodesign.errors import InputError
+
+if TYPE_CHECKING:
+    from evodesign.analysis.comparison import Comparison
+
+__all__ = ["compare"]
+
+
+def compare(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN RUN...", help="Directories of runs.")],
+    json: Json = False,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also write a figure of the comparison (HTML).")
+    ] = None,
+) -> None:
+    """Several runs side by side: hypervolumes, rank tests over seeds, the best designs of all."""
+    from evodesign.analysis import comparison
+    from evodesign.analysis.comparison_json import comparison_json
+    from evodesign.cli.output import print_json, show_notes, write_text
+    from evodesign.runlog.run import read_run
+
+    if len(runs) < 2:
+        raise InputError("RUN", "", "two runs or more", f"{len(runs)}")
+    for place, directory in enumerate(runs):
+        if directory.resolve() in [other.resolve() for other in runs[:place]]:
+            raise InputError("RUN", "", "each run once", f"'{directory}' twice")
+    opened = [read_run(directory) for directory in runs]
+    for run in opened:
+        show_notes(f"{run.directory}: {note}" for note in run.notes)
+    comparisons = comparison.compare(opened)
+    if plot is not None:
+        from evodesign.report.comparison_figure import comparison_html  # plotly takes its time to load
+
+        write_text(plot, comparison_html(comparisons), "--plot")
+    if json:
+        print_json({"comparisons": [comparison_json(each) for each in comparisons]})
+        return
+    for each in comparisons:
+        _print(each, alone=len(comparisons) == 1)
+
+
+def _print(comparison: Comparison, *, alone: bool) -> None:
+    from evodesign.cli.output import console, print_lines, visible
+    from evodesign.cli.tables.comparison import comparison_tables, lines_after, lines_before
+
+    print_lines(*map(visible, lines_before(comparison, alone=alone)))
+    for table in comparison_tables(comparison):
+        console().print(table)
+    print_lines(*map(visible, lines_after(comparison)))

@@ -1,0 +1,77 @@
+"""`evaluate`: one design in full."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, SymmetryName
+from evodesign.errors import InputError, nearest_name
+
+if TYPE_CHECKING:
+    from evodesign.problem.build import Problem
+
+__all__ = ["evaluate"]
+
+UNSCALED = "unscaled"
+
+
+def evaluate(
+    problem: ProblemPath,
+    design: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="File of named designs.", show_default="the unscaled robot"),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(help="Which design of the file.", show_default="the file's only one"),
+    ] = None,
+    symmetry: SymmetryName = None,
+    jobs: Jobs = CORES,
+    json: Json = False,
+) -> None:
+    """One design in full: reach, postures, torques, wrenches, residuals."""
+    from evodesign.cli.output import console, print_json
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.cli.tables.design import design_tables
+    from evodesign.problem.build import build_problem
+    from evodesign.problem.evaluation_json import evaluation_json
+    from evodesign.problem.factory import evaluator_of
+    from evodesign.problem.sensitivities import Sensitivities
+    from evodesign.problem.source import read_source
+
+    built = build_problem(read_source(problem, symmetry))
+    chosen, values = _chosen(built, design, name)
+    with precompute_progress() as progress:
+        evaluator = evaluator_of(built, jobs, progress)
+    result = evaluator.solve(values)
+    assessment = evaluator.assessment(values, result)
+    sensitivities = Sensitivities(built, evaluator.known).at(values, result).sensitivities()
+    if json:
+        print_json(evaluation_json(built, values, result, assessment, sensitivities))
+        return
+    for table in design_tables(built, chosen, result, assessment, sensitivities):
+        console().print(table)
+
+
+def _chosen(problem: Problem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:
+    """Name and parameter values of the design that the options ask for."""
+    from evodesign.problem.designs import read_designs
+    from evodesign.problem.source import read_text
+
+    tree = problem.scene.robot.tree
+    if file is None:
+        if name is not None and name != UNSCALED:
+            raise InputError("--name", "", "a --design FILE that holds it", "no file")
+        return UNSCALED, problem.space.unscaled(tree)
+    designs = read_designs(read_text(file, "--design", ""), str(file), problem.space, tree)
+    if name is None and len(designs) == 1:
+        name = next(iter(designs))
+    if name is None:
+        raise InputError("--name", "", f"one of the designs {', '.join(designs)} of '{file}'", "nothing")
+    if name not in designs:
+        wanted = f"one of the designs {', '.join(designs)} of '{file}'"
+        raise InputError("--name", "", wanted, f"'{name}'{nearest_name(name, designs)}")
+    return name, designs[name]

@@ -1,0 +1,74 @@
+"""Arguments and options that several commands share."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def checked_hours(hours: float | None) -> float | None:
+    """The hours given, if any.
+
+    Raises:
+        typer.BadParameter: a negative number, or none.
+    """
+    if hours is not None and not 0.0 <= hours < math.inf:
+        raise typer.BadParameter(f"wanted a number of hours from 0, found {hours:g}", param_hint="--hours")
+    return hours
+
+
+ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
+RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
+NewRun = Annotated[
+    Path | None, typer.Option("--run", help="Directory of the new run.", show_default="runs/NAME-TIME")
+]
+Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+SymmetryName = Annotated[
+    str | None,
+    typer.Option("--symmetry", help="Postures: on, off or polish.", show_default="as in the problem"),
+]
+Evaluations = Annotated[
+    int | None, typer.Option(min=1, help="Total evaluations of the run.", show_default="as in the problem")
+]
+Hours = Annotated[
+    float | None,
+    typer.Option(
+        help="Wall time of a session; then it stops, resumable. 0 for no limit.",
+        show_default="no limit",
+        callback=checked_hours,
+    ),
+]
+Stagnation = Annotated[
+    int | None,
+    typer.Option(
+        min=0,
+        metavar="N",
+        help="End when the hypervolume has grown by less than 0.1 % in N generations; 0 for never.",
+        show_default="never",
+    ),
+]
+Algorithm = Annotated[
+    str | None, typer.Option(help="nsga2, cma-es or random.", show_default="as in the problem")
+]
+PopulationSize = Annotated[
+    int | None, typer.Option(min=2, help="Evaluations of a generation.", show_default="as in the problem")
+]
+Seed = Annotated[int | None, typer.Option(min=0, help="Of the search.", show_default="as in the problem")]
+Jobs = Annotated[int, typer.Option(min=1, help="Evaluations that run at the same time.")]
+PoolName = Annotated[str, typer.Option("--pool", help="Where evaluations run: serial, joblib or dask.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS", help="Of the Dask scheduler for --pool dask, such as tcp://127.0.0.1:8786."
+    ),
+]
+UseCache = Annotated[
+    bool, typer.Option("--cache", help="Look up designs that were evaluated before, and keep new ones.")
+]

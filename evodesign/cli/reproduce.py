@@ -1,0 +1,76 @@
+"""`reproduce`: the paper's experiment again, by gradients and by evolution, held against its claims."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from evodesign.cli.options import CORES, Jobs, Json, PoolName
+from evodesign.errors import InputError
+
+if TYPE_CHECKING:
+    from evodesign.problem.build import Problem
+
+__all__ = ["reproduce"]
+
+
+def reproduce(
+    to: Annotated[
+        Path | None,
+        typer.Option(help="New folder for runs, figures and robots.", show_default="runs/reproduce-TIME"),
+    ] = None,
+    problem: Annotated[Path, typer.Option(metavar="FILE", help="The problem with physical limits.")] = Path(
+        "problems/sartore2022.toml"
+    ),
+    published: Annotated[
+        Path, typer.Option(metavar="FILE", help="The published setting, without limits.")
+    ] = Path("problems/sartore2022_as_published.toml"),
+    starts: Annotated[int, typer.Option(min=1, help="Starts of the joint problem.")] = 50,
+    evaluations: Annotated[int, typer.Option(min=1, help="Designs that the search evaluates.")] = 480,
+    seed: Annotated[int, typer.Option(min=0, help="Of starts and search.")] = 1,
+    minutes: Annotated[
+        float, typer.Option(min=0.1, help="After which both have ended, with what they have by then.")
+    ] = 12.0,
+    jobs: Jobs = CORES,
+    pool: PoolName = "joblib",
+    json: Json = False,
+) -> None:
+    """Sartore et al. 2022 again: its table, claims and figures, with verdicts, then by evolution."""
+    from evodesign.cli.output import console, print_json, print_lines, show_notes
+    from evodesign.cli.progress import precompute_progress, search_progress
+    from evodesign.cli.session import new_directory
+    from evodesign.cli.tables.reproduction import claims_table, reproduction_lines, torque_table
+    from evodesign.report.export.folder import refuse_full
+    from evodesign.report.reproduction import reproduction_json, write_reproduction
+    from evodesign.reproduction import Effort, Experiment, ReproductionProgress, reproduction
+
+    began = time.monotonic()
+    directory = new_directory("reproduce") if to is None else to
+    refuse_full(directory)
+    effort = Effort(starts, evaluations, seed, minutes, jobs, pool)
+    progress = ReproductionProgress(lambda note: show_notes([note]), precompute_progress, search_progress)
+    experiment = Experiment(_scalar(problem), directory, effort, began, progress)
+    done = reproduction(experiment, _scalar(published))
+    compared = (done.original, *(one.robot for one in done.found))
+    files = write_reproduction(directory, compared, (done.published.original, done.published.optimised))
+    seconds = time.monotonic() - began
+    if json:
+        print_json(reproduction_json(done, directory, files, seconds))
+        return
+    console().print(torque_table(done))
+    console().print(claims_table(done.claims))
+    print_lines(*reproduction_lines(done, directory, seconds))
+
+
+def _scalar(path: Path) -> Problem:
+    """A problem with one objective, so that one robot is the best."""
+    from evodesign.problem.build import build_problem
+    from evodesign.problem.source import read_source
+
+    problem = build_problem(read_source(path))
+    if len(problem.objectives) != 1:
+        raise InputError(str(path), "objectives", "one objective to reproduce", f"{len(problem.objectives)}")
+    return problem

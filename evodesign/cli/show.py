@@ -1,0 +1,75 @@
+"""`show`: one design of a run as a card, as JSON, and as figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from evodesign.cli.options import CORES, Design, Jobs, Json, RunPath
+from evodesign.errors import InputError
+
+if TYPE_CHECKING:
+    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.report.opened_design import OpenedDesign
+
+__all__ = ["show"]
+
+
+def show(
+    run: RunPath,
+    design: Design,
+    jobs: Jobs = CORES,
+    json: Json = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Also write figures of its torques and postures (SVG and PNG)."),
+    ] = None,
+) -> None:
+    """One design of a run: objectives, parameters, torques, contact forces."""
+    from evodesign.cli.output import console, print_json, show_notes
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.report.opened_design import open_design
+    from evodesign.runlog.run import read_run
+
+    if plot is not None:
+        _make(plot)
+    logged = read_run(run)
+    show_notes(logged.notes)
+    with precompute_progress() as progress:
+        opened = open_design(logged, design, jobs, progress)
+    if plot is not None:
+        from evodesign.report.figures.design import write_design_figures  # matplotlib takes its time to load
+
+        show_notes(f"written: {path}" for path in write_design_figures(opened, plot))
+    if json:
+        from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
+        from evodesign.report.export.design import design_json
+
+        told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
+        asked = [ergonomics_json(one) for one in _ergonomics(opened)]
+        print_json({"run": str(run), **told, "ergonomics": asked})
+    else:
+        from evodesign.cli.tables.card import card
+
+        console().print(card(opened, _ergonomics(opened)))
+
+
+def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
+    """What the postures ask of the people; none, and a note, if the people cannot be told."""
+    from evodesign.cli.output import show_notes
+
+    try:
+        return opened.ergonomics()
+    except InputError as error:
+        show_notes([f"what the postures ask of the person is left out ({error})"])
+        return ()
+
+
+def _make(directory: Path) -> None:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        found = f"'{directory}' ({error.strerror})"
+        raise InputError("--plot", "", "a folder that can be written", found) from error

@@ -1,0 +1,27 @@
+"""`seeds`: what a problem is solved from, and how well other designs are solved from it."""
+
+from __future__ import annotations
+
+from evodesign.cli.options import CORES, Jobs, Json, ProblemPath
+
+__all__ = ["starts"]
+
+
+def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
+    """What a problem is solved from: its seeds, and how well they lead other designs."""
+    from evodesign.cli.output import console, print_json
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.cli.tables.starts import starts_json, starts_tables
+    from evodesign.pool.registry import make_pool
+    from evodesign.problem.build import build_problem
+    from evodesign.problem.factory import cached_precomputed
+    from evodesign.problem.source import read_source
+
+    built = build_problem(read_source(problem))
+    with make_pool("joblib", jobs) as pool, precompute_progress() as progress:
+        known = cached_precomputed(built, pool, progress)
+    if json:
+        print_json(starts_json(built, known))
+        return
+    for table in starts_tables(built, known):
+        console().print(table)

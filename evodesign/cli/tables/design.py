@@ -1,0 +1,90 @@
+"""One design as tables for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from rich.markup import escape
+from rich.table import Table
+
+from evodesign.cli.output import figure, heading
+from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
+from evodesign.cli.tables.people import people_table
+from evodesign.mechanics.scene import HUMAN
+from evodesign.problem.build import Problem
+from evodesign.problem.ergonomics import ergonomics
+from evodesign.problem.evaluate import detail_of
+from evodesign.problem.result import DesignResult
+from evodesign.problem.sensitivities import ObjectiveSensitivity
+from evodesign.records import Assessment
+
+__all__ = ["design_tables"]
+
+STRONGEST = 4
+"""Parameters shown per objective."""
+
+
+def design_tables(
+    problem: Problem,
+    name: str,
+    result: DesignResult,
+    assessment: Assessment,
+    sensitivities: Mapping[str, ObjectiveSensitivity],
+) -> Iterator[Table]:
+    """One design: its results, what they ask of the people, and what would change them."""
+    yield from _assessment_tables(problem, name, result, assessment)
+    if any(solution.solved for solution in result.cases):
+        yield _people_table(result)
+    if sensitivities:
+        yield _sensitivity_table(problem, sensitivities)
+
+
+def _assessment_tables(
+    problem: Problem, name: str, result: DesignResult, assessment: Assessment
+) -> tuple[Table, ...]:
+    """Its objectives, its postures case by case, and a summary where there are many cases."""
+    summary = Table(title=escape(f"{problem.name}: {name}"), title_justify="left")
+    summary.add_column("objective")
+    summary.add_column("value", justify="right")
+    for objective in problem.objectives:
+        value = assessment.objectives.get(objective.name)
+        summary.add_row(escape(heading(objective)), figure(value))
+    summary.add_row(escape("violation [m]"), figure(assessment.violation))
+    summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
+    if not any(outcome.case.label for outcome in assessment.cases):
+        return summary, heights_table(assessment, "the load at each height")
+    return (
+        summary,
+        summary_table(assessment, "torque norms |tau| over the cases [N m]"),
+        cases_table(assessment, "the load in each case, torques in N m"),
+    )
+
+
+def _people_table(result: DesignResult) -> Table:
+    """What the solved postures of a design ask of the people."""
+    solved = [solution for solution in result.cases if solution.solved]
+    asked = [
+        (one.case, ergonomics(result.scene_of(one.case).human, detail_of(one).agents[HUMAN]))
+        for one in solved
+    ]
+    return people_table(asked, titled=True)
+
+
+def _sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
+    """The parameters that move each objective most, for equal shares of their ranges."""
+    ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
+    table = Table(title="what 1 % more of a parameter's range changes", title_justify="left")
+    table.add_column("objective")
+    table.add_column("strongest parameters", overflow="fold")
+    for objective in problem.objectives:
+        found = sensitivities.get(objective.name)
+        if found is None:
+            continue
+        if found.gradient is None:
+            shown = next((kink for kink in found.notes if "no gradient" in kink), "no gradient")
+        else:
+            moves = {name: value * ranges[name] * 0.01 for name, value in found.gradient.items()}
+            strongest = sorted(moves, key=lambda name: -abs(moves[name]))[:STRONGEST]
+            shown = ", ".join(f"{name} {moves[name]:+.2g}" for name in strongest if moves[name])
+        table.add_row(escape(heading(objective)), escape(shown or "nothing moves it"))
+    return table

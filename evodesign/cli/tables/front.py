@@ -1,0 +1,132 @@
+"""Fronts as tables for people, and as JSON and CSV for programs."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from evodesign.analysis.choice import Choice, Chosen, Order
+from evodesign.analysis.failures import causes, failures
+from evodesign.cli.output import figure, heading, shown
+from evodesign.records import Evaluation, materials_of
+from evodesign.runlog.run import Run
+
+__all__ = ["front_csv", "front_json", "front_lines", "front_table"]
+
+TITLES = {
+    Order.FIRST_OBJECTIVE: "Front of",
+    Order.KNEE: "Knees of the front of",
+    Order.NEAR: "Closest to the aspiration, on the front of",
+    Order.DIFFERENT: "Most different designs of the front of",
+}
+
+
+def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
+    """Chosen designs as a JSON object; its shape is a promise."""
+    return {
+        "run": str(run.directory),
+        "objectives": [objective.name for objective in run.header.objectives],
+        "evaluations": len(run.evaluations),
+        "front": len(chosen.front),
+        "order": choice.order,
+        "where": [str(condition) for condition in choice.where],
+        "statuses": Counter(str(evaluation.assessment.status) for evaluation in run.evaluations),
+        "designs": [
+            {
+                "id": evaluation.number,
+                "objectives": evaluation.assessment.objectives,
+                "parameters": evaluation.assessment.design,
+                **_materials(run, evaluation),
+            }
+            for evaluation in chosen.designs
+        ],
+    }
+
+
+def _materials(run: Run, evaluation: Evaluation) -> dict[str, Any]:
+    """The materials by parameter, under a key that only designs of materials have."""
+    found = materials_of(run.header.parameters, evaluation.assessment.design)
+    return {"materials": found} if found else {}
+
+
+def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
+    """Designs as comma-separated values: number, objectives, parameters (in full), materials."""
+    objectives = [objective.name for objective in run.header.objectives]
+    parameters = [parameter.name for parameter in run.header.parameters]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    made_of = [parameter for parameter in run.header.parameters if parameter.materials]
+    writer.writerow(
+        ["design", *objectives, *parameters, *(f"{parameter.name}.material" for parameter in made_of)]
+    )
+    for evaluation in designs:
+        assessment = evaluation.assessment
+        writer.writerow(
+            [
+                evaluation.number,
+                *(assessment.objectives[name] for name in objectives),
+                *(assessment.design[name] for name in parameters),
+                *(parameter.material_of(assessment.design[parameter.name]) for parameter in made_of),
+            ]
+        )
+    return text.getvalue()
+
+
+def front_table(run: Run, choice: Choice, designs: Sequence[Evaluation]) -> Table:
+    """Designs with their objectives, in the given order."""
+    objectives = run.header.objectives
+    title = f"{TITLES[choice.order]} {shown(run.header.problem_name)}"
+    table = Table(title=title, title_justify="left")
+    table.add_column("design", justify="right")
+    for objective in objectives:
+        table.add_column(escape(heading(objective)), justify="right")
+    for evaluation in designs:
+        values = evaluation.assessment.objectives
+        table.add_row(str(evaluation.number), *(figure(values[objective.name]) for objective in objectives))
+    return table
+
+
+def front_lines(run: Run, choice: Choice, chosen: Chosen, rows: int) -> list[str]:
+    """What is not in a table of so many rows, and why; then what the run holds."""
+    feasible = sum(evaluation.feasible for evaluation in run.evaluations)
+    counts = failures(run.evaluations)
+    failed = f", failed: {causes(counts)}" if counts else ""
+    return [
+        *_remarks(run, choice, chosen, rows),
+        f"{len(run.evaluations)} evaluations, {feasible} feasible, {len(chosen.front)} on the front"
+        f"{_such(choice)}{failed}; the run lies in {run.directory}",
+    ]
+
+
+def _remarks(run: Run, choice: Choice, chosen: Chosen, shown: int) -> list[str]:
+    """What is not in the table, and why."""
+    if chosen.front:
+        if shown == chosen.found:
+            return []
+        more = "" if choice.limit is not None else "; more with --limit, all with --csv or --json"
+        kind = "knees" if choice.order is Order.KNEE else "designs"
+        return [f"{shown} of {chosen.found} {kind} are shown{more}"]
+    if any(evaluation.feasible for evaluation in run.evaluations):
+        return [f"no feasible design{_such(choice)}"] if choice.where else []
+    nearest = _least_violated(run.evaluations)
+    if nearest is None:
+        return ["no design was evaluated to an end"] if run.evaluations else ["nothing was evaluated yet"]
+    return [
+        f"no design is feasible; design {nearest.number} comes nearest: it lacks "
+        f"{nearest.assessment.violation:.4g} m ({nearest.assessment.reason})"
+    ]
+
+
+def _such(choice: Choice) -> str:
+    return f" with {' and '.join(map(str, choice.where))}" if choice.where else ""
+
+
+def _least_violated(evaluations: Sequence[Evaluation]) -> Evaluation | None:
+    known = [each for each in evaluations if each.assessment.violation is not None]
+    return min(known, key=lambda each: each.assessment.violation or 0.0, default=None)

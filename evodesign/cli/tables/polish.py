@@ -1,0 +1,50 @@
+"""What polishing a design changed, as tables and as JSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from evodesign.cli.output import figure, heading
+from evodesign.problem.build import Problem
+from evodesign.problem.polish import Aim, Polished
+from evodesign.runlog.run import Run
+
+__all__ = ["polish_json", "polish_tables"]
+
+
+def polish_tables(problem: Problem, number: int, done: Polished) -> tuple[Table, Table]:
+    """Objectives and changed parameters before and after."""
+    objectives = Table(title=escape(f"{problem.name}: design {number}"), title_justify="left")
+    for column in ("objective", "before", "after", "change"):
+        objectives.add_column(column, justify="left" if column == "objective" else "right")
+    for objective in problem.objectives:
+        before, after = (a.objectives[objective.name] for a in (done.before, done.after))
+        change = f"{(after - before) / abs(before):+.2%}" if before else "-"
+        objectives.add_row(escape(heading(objective)), figure(before), figure(after), change)
+    parameters = Table(title="parameters that changed", title_justify="left")
+    for column in ("parameter", "before", "after"):
+        parameters.add_column(column, justify="left" if column == "parameter" else "right")
+    for name, before in done.before.design.items():
+        after = done.after.design[name]
+        if after != before:
+            parameters.add_row(escape(name), figure(before), figure(after))
+    return objectives, parameters
+
+
+def polish_json(run: Run, number: int, aim: Aim, done: Polished, file: Path) -> dict[str, Any]:
+    """What changed, as a JSON object; its shape is a promise."""
+    return {
+        "run": str(run.directory),
+        "design": number,
+        "weights": dict(aim.weights),
+        "none_worse": aim.none_worse,
+        "evaluations": done.evaluations,
+        "reason": done.reason,
+        "before": {"objectives": done.before.objectives, "parameters": done.before.design},
+        "after": {"objectives": done.after.objectives, "parameters": done.after.design},
+        "file": str(file),
+    }

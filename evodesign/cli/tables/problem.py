@@ -1,0 +1,146 @@
+"""What a problem file was understood to mean, as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from evodesign.cli.output import figure, shown, visible
+from evodesign.errors import on_one_line
+from evodesign.problem.build import Problem
+from evodesign.problem.model_json import model_json
+
+__all__ = ["model_tables"]
+
+CAPTION = (
+    "sizes [m]: box x, y, z; cylinder radius, length; sphere radius; density [kg/m^3]\n"
+    "grows along: direction in the link's frame in which it gets longer; -: keeps its size"
+)
+
+
+def model_tables(problem: Problem) -> tuple[Table, ...]:
+    """What was understood, for a person: agents, task, the robot's links, and the parameters."""
+    shown = model_json(problem)
+    return (
+        _agents_table(problem.name, shown["agents"]),
+        _task_table(shown),
+        _links_table(shown["links"]),
+        _parameters_table(shown["parameters"]),
+        *([_materials_table(shown["materials"])] if "materials" in shown else []),
+    )
+
+
+def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
+    """Robot and people; of several people, also who each is and how tall."""
+    several = any("who" in agent for agent in agents)
+    table = Table(title=escape(name), title_justify="left")
+    for column in ("agent", *(("person",) if several else ()), "model"):
+        table.add_column(escape(column), overflow="fold")
+    for column in ("links", "joints", "that move", "mass [kg]"):
+        table.add_column(escape(column), justify="right")
+    for agent in agents:
+        counts = (agent["links"], agent["joints"], agent["moving_joints"])
+        table.add_row(
+            agent["name"],
+            *([shown(agent.get("who", ""))] if several else []),
+            escape(_model(agent)),
+            *map(str, counts),
+            figure(agent["mass_kg"]),
+        )
+    return table
+
+
+def _model(agent: dict[str, Any]) -> str:
+    """The model's name, or what a generated person is, where that tells it from others."""
+    return f"{agent['sex']}, {figure(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
+
+
+def _task_table(shown: dict[str, Any]) -> Table:
+    table = Table(show_header=False)
+    for load in shown["payloads"] if "payloads" in shown else [shown["payload"]]:
+        mass, size = f"{load['mass_kg']:g} kg", f"{' x '.join(map(figure, load['size_m']))} m"
+        name = load.get("payload_name", mass)
+        told = mass if name == mass else f"{visible(name)}: {mass}"
+        table.add_row("load", escape(f"{told}, {size}"))
+    table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
+    for disturbance in shown.get("disturbances", ()):
+        table.add_row("disturbance", escape(_disturbance_text(disturbance)))
+    table.add_row("objectives", ", ".join(shown["objectives"]))
+    return table
+
+
+def _disturbance_text(disturbance: dict[str, Any]) -> str:
+    """A disturbance in words."""
+    parts = []
+    if disturbance["load_mass_share"]:
+        parts.append(f"load {disturbance['load_mass_share']:+.0%}")
+    if any(disturbance["center_of_mass_m"]):
+        parts.append(f"centre of mass moved by {disturbance['center_of_mass_m']} m")
+    if any(disturbance["push_n"]):
+        parts.append(f"{disturbance['push_n']} N on the {disturbance['at']}")
+    return f"{disturbance['name']}: {', '.join(parts) or 'nothing changes'}"
+
+
+def _links_table(links: Iterable[dict[str, Any]]) -> Table:
+    """Every link that has mass; the frames without are named below."""
+    frames = [link["link"] for link in links if link["kind"] == "frame"]
+    caption = f"{CAPTION}\nwithout mass: {', '.join(frames)}" if frames else CAPTION
+    table = Table(title="links of the robot", title_justify="left", caption=escape(caption))
+    table.caption_justify = "left"
+    for column in ("link", "shape", "grows along", "density", "mass [kg]"):
+        table.add_column(escape(column))
+    for link in links:
+        if link["kind"] != "frame":
+            _add_link(table, link)
+    return table
+
+
+def _add_link(table: Table, link: dict[str, Any]) -> None:
+    """A link's rows, one for each solid."""
+    figures = (figure(link["density_kg_per_m3"]), figure(link["mass_kg"]))
+    for number, shape in enumerate(link["solids"] or [link["kind"]]):
+        name, density, mass = (link["link"], *figures) if number == 0 else ("", "", "")
+        table.add_row(escape(name), shape, escape(_growth(link, number)), density, mass)
+
+
+def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
+    table = Table(title="parameters", title_justify="left")
+    for column in ("parameter", "from", "to", "unit", "links"):
+        table.add_column(column)
+    for parameter in parameters:
+        bounds = (figure(parameter["lower"]), figure(parameter["upper"]), parameter["unit"])
+        links = ", ".join(link["link"] for link in parameter["links"])
+        if "materials" in parameter:
+            links = f"{links}; of {', '.join(parameter['materials'])}"
+        table.add_row(escape(parameter["name"]), *bounds, escape(links))
+    return table
+
+
+def _materials_table(materials: Iterable[dict[str, Any]]) -> Table:
+    table = Table(title="materials", title_justify="left")
+    table.add_column("material", overflow="fold")
+    table.add_column(escape("density [kg/m^3]"), justify="right")
+    table.add_column("source", overflow="fold")
+    for material in materials:
+        name, source = escape(on_one_line(material["name"])), escape(on_one_line(material["source"]))
+        table.add_row(name, figure(material["density_kg_per_m3"]), source)
+    return table
+
+
+def _growth(link: dict[str, Any], solid: int) -> str:
+    """The direction in which a solid of a link grows, or a dash."""
+    if link["axis"] is None or solid not in link["longer_solids"]:
+        return "-"
+    return _direction(link["axis"], link["about_centre"])
+
+
+def _direction(axis: list[float], about_centre: bool) -> str:
+    """The axis in words: `-z` where it is a main axis, its components otherwise; `+-` for both ways."""
+    for name, component in zip("xyz", axis, strict=True):
+        if abs(abs(component) - 1.0) < 1e-6:
+            return f"+-{name}" if about_centre else f"{'+' if component > 0.0 else '-'}{name}"
+    components = f"({', '.join(f'{component:.2f}' for component in axis)})"
+    return f"+-{components}" if about_centre else components

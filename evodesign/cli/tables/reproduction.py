@@ -1,0 +1,66 @@
+"""A reproduction of the paper as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from rich.markup import escape
+from rich.table import Table
+
+from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
+from evodesign.cli.output import counted, figure
+from evodesign.report.reproduction import Reproduction
+
+__all__ = ["claims_table", "reproduction_lines", "torque_table"]
+
+
+def torque_table(done: Reproduction) -> Table:
+    """Table II of the paper with ours beside it, row under row."""
+    heights = list(PAPER_OPTIMISED)
+    table = Table(title="Table II: torque norm [N m] by height of the load", title_justify="left")
+    for column in ("model", "agent", "setting"):
+        table.add_column(column)
+    for height in heights:
+        table.add_column(f"{height:g} m", justify="right")
+    for model, rows in done.by_setting.items():
+        for agent in ("human", "robot"):
+            for number, (setting, torque_norms) in enumerate(rows.items()):
+                values = [
+                    figure(getattr(torque_norms[h], agent)) if h in torque_norms else "-" for h in heights
+                ]
+                first = (model, agent) if number == 0 else ("", "")
+                table.add_row(*first, setting, *values, end_section=number == len(rows) - 1)
+    return table
+
+
+def claims_table(claims: Iterable[Claim]) -> Table:
+    """Every claim with its verdict."""
+    table = Table(title="Claims", title_justify="left")
+    for column in ("claim", "by", "paper", "here", "verdict"):
+        table.add_column(column, overflow="fold")
+    for claim in claims:
+        shown = (claim.subject, claim.by, claim.paper, claim.found, _verdict(claim))
+        table.add_row(*(escape(text) for text in shown))
+    return table
+
+
+def reproduction_lines(done: Reproduction, directory: Path, seconds: float) -> list[str]:
+    """A sentence for every verdict, then what was computed and where it lies."""
+    published = done.published
+    return [
+        *(f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in done.claims),
+        f"published setting: starts {counted(published.statuses)}; largest difference of a torque from the "
+        f"paper's formula {published.difference:.1e} N m",
+        f"the original robot holds loads up to {figure(done.highest)} m",
+        *(
+            f"{one.robot.name}: least cost {figure(one.cost)}; {len(one.run.evaluations)} evaluations, "
+            f"{counted(one.statuses)}; the run lies in {one.run.directory}"
+            for one in done.found
+        ),
+        f"figures and robots lie in {directory}; {seconds / 60.0:.1f} min",
+    ]
+
+
+def _verdict(claim: Claim) -> str:
+    return "reproduced" if claim.reproduced else "not reproduced"

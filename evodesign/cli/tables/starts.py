@@ -1,0 +1,93 @@
+"""What a problem is solved from, and how well other designs are solved from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from evodesign.cli.output import figure
+from evodesign.nlp.start_portfolio import StartPortfolio
+from evodesign.posture.formulations.human_value import COST_UNIT
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.problem.build import Problem
+from evodesign.records import Case
+
+__all__ = ["starts_json", "starts_tables"]
+
+
+def starts_tables(problem: Problem, known: Precomputed) -> tuple[Table, Table]:
+    """Coverage of each portfolio of starts, and errors of each value function of the person."""
+    return _starts_table(problem, known), _people_table(problem, known)
+
+
+def _portfolios(problem: Problem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
+    """Each portfolio with what it is for and the unit in which it misses."""
+    if not problem.start_portfolio:
+        return
+    yield "highest load", known.highest, "m"
+    yield "lowest load", known.lowest, "m"
+    for task in problem.tasks:
+        yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
+
+
+def _starts_table(problem: Problem, known: Precomputed) -> Table:
+    table = Table(title="seeds, and designs that they were not made from", title_justify="left")
+    table.add_column("problem")
+    for column in ("seeds", "designs tried", "led well", "worst miss"):
+        table.add_column(column, justify="right")
+    for name, found, unit in _portfolios(problem, known):
+        coverage = found.coverage
+        share = f"{coverage.share:.1%}" if coverage.designs else "-"
+        miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
+        table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
+    return table
+
+
+def _people_table(problem: Problem, known: Precomputed) -> Table:
+    table = Table(title="the person's part V(X), X the push between the agents", title_justify="left")
+    several = len(problem.scenes) > 1
+    if several:
+        table.add_column("person and load")
+    for column in ("height", "known", "largest error"):
+        table.add_column(column, justify="right")
+    for case, error in _errors(problem, known):
+        shown = "-" if error is None else f"{figure(error)} N^2 m^2"
+        row = (str(case.task), "no: solved jointly" if error is None else "yes", shown)
+        table.add_row(*([escape(case.label)] if several else []), *row)
+    return table
+
+
+def _errors(problem: Problem, known: Precomputed) -> Iterator[tuple[Case, float | None]]:
+    """Each case with the error of its value function [N^2 m^2], if it has one."""
+    for case in problem.cases:
+        yield case, known.values[case].error * COST_UNIT if case in known.values else None
+
+
+def starts_json(problem: Problem, known: Precomputed) -> dict[str, Any]:
+    """The same as a JSON object; its shape is a promise."""
+    return {
+        "problem": problem.name,
+        "seeds": [
+            {
+                "for": name,
+                "seeds": len(found.starts),
+                "designs_tried": found.coverage.designs,
+                "designs_led_well": found.coverage.good,
+                "worst_miss": found.coverage.worst,
+                "unit": unit,
+            }
+            for name, found, unit in _portfolios(problem, known)
+        ],
+        "human_values": [
+            {
+                **({"scene": case.label} if case.label else {}),
+                "height_m": case.task.height_m,
+                "known": error is not None,
+                "error_n2_m2": error,
+            }
+            for case, error in _errors(problem, known)
+        ],
+    }

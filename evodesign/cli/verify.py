@@ -1,0 +1,31 @@
+"""`verify`: the files of a run checked."""
+
+from __future__ import annotations
+
+from evodesign.cli.options import Json, RunPath
+from evodesign.errors import ResumeMismatch, RunError
+
+__all__ = ["verify"]
+
+
+def verify(run: RunPath, json: Json = False) -> None:
+    """Check a run: every checksum and record, their order, what follows from them, and the replay."""
+    from evodesign.analysis.audit import audit
+    from evodesign.cli.output import print_json, print_lines, show_notes
+    from evodesign.cli.tables.run import run_json, run_lines
+    from evodesign.evolve import replay
+    from evodesign.runlog.run import read_run
+
+    opened = read_run(run)
+    faults = [*(opened.notes if opened.damaged else ()), *audit(opened)]
+    try:
+        replay(opened)
+    except ResumeMismatch as mismatch:
+        faults.append(str(mismatch))
+    if json:
+        print_json(run_json(opened) | {"sound": not faults, "faults": faults})
+    else:
+        print_lines(*(faults or run_lines(opened)))
+        show_notes(() if opened.damaged else opened.notes)
+    if faults:
+        raise RunError(f"{run}: {len(faults)} fault{'s' * (len(faults) > 1)} found")

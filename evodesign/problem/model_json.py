@@ -1,0 +1,138 @@
+"""What a problem file was understood to mean, as a JSON object: agents, loads, task, links, parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from evodesign.body.shape import Box, Cylinder, Shape
+from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.mechanics.disturbance import Disturbance
+from evodesign.mechanics.scene import Agent, Payload
+from evodesign.problem.build import Problem
+from evodesign.problem.decode import decode_toml
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.people import everyone
+from evodesign.tree.model import Link, Tree
+from evodesign.tree.resize import growth_of
+
+__all__ = ["model_json"]
+
+
+def model_json(problem: Problem) -> dict[str, Any]:
+    """What was understood, as a JSON object."""
+    scene = problem.scene
+    loads = {each.payload.label: each.payload for each in problem.scenes}
+    told = [_load(load) for load in loads.values()]
+    disturbed = scene.disturbances
+    return {
+        "problem": problem.name,
+        "agents": [_agent(scene.robot), *_people(problem)],
+        **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
+        "heights_m": [task.height_m for task in problem.tasks],
+        **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
+        "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
+        "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
+        "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
+        **_materials(problem),
+    }
+
+
+def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
+    return {
+        "name": disturbance.name,
+        "load_mass_share": disturbance.mass_share,
+        "center_of_mass_m": list(disturbance.center_of_mass),
+        "push_n": list(disturbance.push),
+        "at": str(disturbance.at),
+    }
+
+
+def _materials(problem: Problem) -> dict[str, Any]:
+    """All materials that some parameter may be of, under a key that other problems do not have."""
+    found = {each.name: each for parameter in problem.space.parameters for each in parameter.materials}
+    shown = [
+        {"name": each.name, "density_kg_per_m3": each.density, "source": each.source}
+        for each in sorted(found.values(), key=lambda each: each.density)
+    ]
+    return {"materials": shown} if shown else {}
+
+
+def _load(load: Payload) -> dict[str, Any]:
+    name = {"payload_name": load.label} if load.label else {}
+    return {**name, "size_m": list(load.size), "mass_kg": load.mass}
+
+
+def _people(problem: Problem) -> list[dict[str, Any]]:
+    """The people in short; of several, also who each is, with sex and stature unless a URDF describes it."""
+    people = {scene.human.label: scene.human for scene in problem.scenes}
+    if len(people) == 1:
+        return [_agent(problem.scene.human)]
+    tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
+    given = [table for _, table in everyone(tables, problem.source)]
+    return [
+        {**_agent(person), "who": label, "sex": table.sex, "stature_m": table.stature_m}
+        for (label, person), table in zip(people.items(), given, strict=True)
+    ]
+
+
+def _agent(agent: Agent) -> dict[str, Any]:
+    return {
+        "name": agent.name,
+        "model": agent.tree.name,
+        "links": len(agent.tree.links),
+        "joints": len(agent.tree.joints),
+        "moving_joints": len(agent.joints),
+        "mass_kg": sum(float(link.inertia.mass) for link in agent.tree.links),
+    }
+
+
+def _parameter(parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
+    grows = parameter.kind is ParameterKind.LENGTH
+    return {
+        "name": parameter.name,
+        "lower": parameter.lower,
+        "upper": parameter.upper,
+        "unit": parameter.record.unit,
+        **({"materials": [each.name for each in parameter.materials]} if parameter.materials else {}),
+        "links": [_link(tree.link_by_name[name], tree, grows=grows) for name in parameter.links],
+    }
+
+
+def _link(link: Link, tree: Tree, *, grows: bool) -> dict[str, Any]:
+    """A link, and how it answers to a length multiplier: None without solids, or if not asked for."""
+    solids = [_shape(solid.shape) for solid in link.solids]
+    growth = growth_of(tree, link.name) if grows and solids else None
+    return {
+        "link": link.name,
+        "kind": _kind(link),
+        "shape": " + ".join(solids),
+        "solids": solids,
+        "axis": None if growth is None else list(growth.axis),
+        "about_centre": None if growth is None else growth.about_centre,
+        "dimension_m": None if growth is None else growth.dimension,
+        "longer_solids": None if growth is None else sorted(growth.stretched),
+        "density_kg_per_m3": float(link.solids[0].density) if solids else None,
+        "mass_kg": float(link.inertia.mass),
+    }
+
+
+def _kind(link: Link) -> str:
+    """What a link's mass is made of."""
+    if len(link.solids) > 1:
+        return "composite"
+    if link.solids:
+        return type(link.solids[0].shape).__name__.lower()
+    return "inertia of the file" if link.inertia.mass > 0.0 else "frame"
+
+
+def _shape(shape: Shape) -> str:
+    if isinstance(shape, Box):
+        return f"box {_sizes(shape.sides)}"
+    if isinstance(shape, Cylinder):
+        return f"cylinder {_sizes((shape.radius, shape.length))}"
+    return f"sphere {shape.radius:g}"
+
+
+def _sizes(sizes: Iterable[float]) -> str:
+    return ", ".join(f"{size:.4g}" for size in sizes)

@@ -1,0 +1,45 @@
+"""The figures of one design of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from evodesign.report.figures.joint_torques import joint_torques
+from evodesign.report.figures.paint import write_figure
+from evodesign.report.figures.posture_figure import posture_figure
+from evodesign.report.figures.torque_boxes import torque_boxes
+from evodesign.report.opened_design import OpenedDesign
+
+__all__ = ["write_design_figures"]
+
+
+def write_design_figures(opened: OpenedDesign, directory: Path) -> list[Path]:
+    """Write figures of a design's joint torques and postures to an existing directory."""
+    name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
+    scene_set = opened.scene_set()
+    torques = {
+        agent: [(detail.case.task.height_m, detail.agents[agent].torques_n_m) for detail in opened.cases]
+        for agent in scene_set.models[0].trees
+    }
+    several = any(detail.case.label for detail in opened.cases)
+    whom = " with all people and loads" if several else ""
+    stages = [scene_set.placed_scene(detail) for detail in opened.cases]
+    figures = {
+        "torques": torque_boxes(_by_height(torques), f"{name}: joint torques{whom}"),
+        "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint{whom}"),
+        "postures": posture_figure(stages, f"{name}: postures"),
+    }
+    return [path for stem, figure in figures.items() for path in write_figure(figure, directory, stem)]
+
+
+def _by_height(
+    torques: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
+) -> dict[str, dict[float, list[float]]]:
+    """Of each agent, all joint torques [N m] at a height, whoever holds whichever load."""
+    boxes: dict[str, dict[float, list[float]]] = {}
+    for agent, cases in torques.items():
+        boxes[agent] = {}
+        for height, by_joint in cases:
+            boxes[agent].setdefault(height, []).extend(by_joint.values())
+    return boxes

@@ -1,0 +1,128 @@
+"""One design of a run: its evaluation and postures, and its robot where that is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from evodesign.analysis.front import front
+from evodesign.errors import InputError, RunError
+from evodesign.mechanics.scene import HUMAN
+from evodesign.records import CaseDetail, Evaluation, RunHeader
+from evodesign.report.scene_set import SceneSet
+from evodesign.runlog.run import Run
+from evodesign.search.base import JOINT_STARTS
+
+if TYPE_CHECKING:
+    from evodesign.mechanics.scene import Agent
+    from evodesign.problem.build import Problem
+    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.problem.progress import PrecomputeProgress
+
+__all__ = ["OpenedDesign", "RebuiltProblem", "open_design"]
+
+
+class RebuiltProblem:
+    """The problem of a run, built from the header's text when it is first asked for, and once."""
+
+    def __init__(self, header: RunHeader) -> None:
+        self._header = header
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem."""
+        from evodesign.problem.build import build_problem  # CasADi takes its time to load
+
+        return build_problem(self._header.problem)
+
+    @cached_property
+    def people(self) -> Mapping[str, Agent]:
+        """Its people by what they are called; faster than the whole problem, whose robot is a URDF."""
+        from evodesign.problem.agents import human_agents  # CasADi takes its time to load
+        from evodesign.problem.decode import decode_toml
+        from evodesign.problem.file import ProblemFile
+
+        source = self._header.problem
+        tables = decode_toml(source.text, source.path, ProblemFile)
+        return {person.label: person for person in human_agents(tables, source)}
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedDesign:
+    """One design of a run.
+
+    Args:
+        run: that holds it.
+        evaluation: as logged.
+        cases: its postures, from the log or solved anew.
+        on_front: whether no design of the run beats it.
+        rebuilt: the run's problem.
+    """
+
+    run: Run
+    evaluation: Evaluation
+    cases: tuple[CaseDetail, ...]
+    on_front: bool
+    rebuilt: RebuiltProblem
+
+    def scene_set(self) -> SceneSet:
+        """Robot of the design, people and loads, built from the problem in the run's header."""
+        problem = self.rebuilt.problem
+        design = self.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
+        values = [design[parameter.name] for parameter in problem.space.parameters]
+        return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+
+    def ergonomics(self) -> tuple[Ergonomics, ...]:
+        """What the design's postures ask of the people, one for each.
+
+        Raises:
+            InputError: the people cannot be told from the header's problem.
+        """
+        if not self.cases:
+            return ()
+        from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
+
+        people = self.rebuilt.people
+        return tuple(ergonomics(people[detail.case.person], detail.agents[HUMAN]) for detail in self.cases)
+
+
+def open_design(run: Run, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:
+    """A design of a run by the number of its evaluation; one without logged postures is solved anew.
+
+    Args:
+        run: that holds it.
+        number: of the evaluation.
+        jobs: that may work out what a solve needs first.
+        progress: is shown what is worked out, and that it has to be.
+    Raises:
+        RunError: the run holds no evaluation yet.
+        InputError: it holds no evaluation of that number.
+    """
+    if not run.evaluations:
+        raise RunError(f"{run.directory}: holds no evaluation yet, so there is no design to open")
+    by_number = {evaluation.number: evaluation for evaluation in run.evaluations}
+    if number not in by_number:
+        wanted = f"the number of an evaluation, {min(by_number)} to {max(by_number)}"
+        raise InputError("DESIGN", "", wanted, f"{number}")
+    evaluation = by_number[number]
+    rebuilt = RebuiltProblem(run.header)
+    logged = {detail.evaluation: detail.cases for detail in run.details}
+    cases = logged[number] if number in logged else _solved(run, evaluation, rebuilt, jobs, progress)
+    return OpenedDesign(
+        run, evaluation, cases, evaluation in front(run.header.objectives, run.evaluations), rebuilt
+    )
+
+
+def _solved(
+    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int, progress: PrecomputeProgress
+) -> tuple[CaseDetail, ...]:
+    """The postures of a design of which the log holds none."""
+    from evodesign.problem.baseline import Baseline
+    from evodesign.problem.factory import evaluator_of  # CasADi takes its time to load
+
+    progress.note(f"the log holds no postures of design {evaluation.number}, so it is solved anew")
+    if run.header.search.algorithm == JOINT_STARTS:
+        return Baseline(rebuilt.problem).assess(evaluation.genome).cases
+    return evaluator_of(rebuilt.problem, jobs, progress).assess(evaluation.genome).cases

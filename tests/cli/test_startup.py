@@ -1,0 +1,36 @@
+"""A command loads only what it needs: the list of commands no numbers, a look at a run no solver."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from evodesign.evolve import Silent, start
+from tests.faults.synthetic import synthetic_header
+from tests.runlog.toys import OrderedPool, ToyTask, shuffled
+
+HEAVY = ("casadi", "pinocchio")
+
+
+def loaded(code: str, names: tuple[str, ...]) -> str:
+    code = f"import sys\n{code}\nprint([name for name in {names} if name in sys.modules], file=sys.stderr)"
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stderr
+
+
+def test_commands_are_listed_without_what_they_need() -> None:
+    names = (*HEAVY, "numpy", "msgspec", "rich", "mcap", "pymoo", "plotly", "matplotlib")
+    assert loaded("import evodesign.cli.main", names) == "[]\n"
+
+
+@pytest.mark.parametrize("command", ["front", "verify", "watch --once", "merge", "recover", "compare"])
+def test_a_run_is_looked_at_without_a_solver(command: str, tmp_path: Path) -> None:
+    header = synthetic_header(budget=20, seed=4, population=10)
+    runs = [tmp_path / "run", tmp_path / "other"][: 1 + (command == "compare")]
+    for run in runs:
+        start(run, header, ToyTask(header), OrderedPool(shuffled(1)), Silent())
+    arguments = ["evodesign", *command.split(), *map(str, runs)]
+    code = f"sys.argv = {arguments}\nfrom evodesign.cli.main import app\napp(standalone_mode=False)"
+    assert loaded(code, HEAVY).endswith("[]\n")

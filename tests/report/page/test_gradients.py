@@ -1,0 +1,48 @@
+"""Gradients that the report shows, against differences of ordinary evaluations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evodesign.problem.build import Problem
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.progress import SILENT
+from evodesign.records import Evaluation
+from evodesign.report.page.gradients import gradients_of
+from evodesign.runlog.header import header_of
+from evodesign.runlog.run import Run
+
+STEP = 1e-3
+
+
+def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
+    problem: Problem, evaluator: Evaluator, tmp_path: Path
+) -> None:
+    space = problem.space
+    values = space.unscaled(problem.scene.robot.tree)
+    genome = space.genome(values)
+    table = problem.search
+    header = header_of(problem, problem.settings("nsga2", table.population, 1, table.asynchronous), 1)
+    logged = Evaluation(
+        number=7,
+        generation=0,
+        genome=genome,
+        assessment=evaluator.assess(genome).assessment,
+        seconds=0.1,
+        worker="here",
+    )
+    run = Run(tmp_path, header, (logged,), (), (), (), complete=True, notes=())
+    gradients = gradients_of(run, [7], 1, SILENT)
+    assert set(gradients) == {7}
+    place = [parameter.name for parameter in space.parameters].index("length.forearm")
+    for objective in ("robot_torque", "reach_height"):
+        sides = []
+        for sign in (-1.0, 1.0):
+            moved = list(values)
+            moved[place] += sign * STEP
+            found = evaluator.assessment(moved, evaluator.solve(moved)).objectives
+            sides.append(found[objective])
+        slope = (sides[1] - sides[0]) / (2.0 * STEP)
+        assert gradients[7][objective]["length.forearm"] == pytest.approx(slope, rel=1e-3)
