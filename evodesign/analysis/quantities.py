@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from operator import attrgetter
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import Case, CaseOutcome, Evaluation, RunHeader, Task
@@ -24,7 +25,12 @@ Quantity = Callable[[Evaluation], float | None]
 """A number of an evaluation; None where it does not exist."""
 
 Norm = Callable[[CaseOutcome], float | None]
-"""The torque norm of one of the agents [N m]."""
+
+NORMS: Mapping[str, Norm] = {
+    "robot_torque": attrgetter("robot_torque_norm"),
+    "human_torque": attrgetter("human_torque_norm"),
+}
+"""The torque norm of each agent [N m]."""
 
 
 def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quantity]:
@@ -37,12 +43,12 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
     cases = () if example is None else tuple(outcome.case for outcome in example.assessment.cases)
     found: dict[str, Quantity] = {"lowest_reach": _lowest_reach, "highest_reach": _highest_reach}
     for case in cases:
-        found[f"robot_torque@{case.task.height_m:g}"] = partial(_largest, _robot_norm, case.task)
-        found[f"human_torque@{case.task.height_m:g}"] = partial(_largest, _human_norm, case.task)
+        for name, norm in NORMS.items():
+            found[f"{name}@{case.task.height_m:g}"] = partial(_largest, norm, case.task)
     for case in cases if any(case.label for case in cases) else ():
-        place = "@".join(name for name in (*case.pair, f"{case.task.height_m:g}") if name)
-        found[f"robot_torque@{place}"] = partial(_of_case, _robot_norm, case)
-        found[f"human_torque@{place}"] = partial(_of_case, _human_norm, case)
+        place = "@".join(part for part in (*case.pair, f"{case.task.height_m:g}") if part)
+        for name, norm in NORMS.items():
+            found[f"{name}@{place}"] = partial(_of_case, norm, case)
     for parameter in header.parameters:
         found[parameter.name] = partial(_parameter, parameter.name)
     for objective in header.objectives:
@@ -81,14 +87,6 @@ def _lowest_reach(evaluation: Evaluation) -> float | None:
 def _highest_reach(evaluation: Evaluation) -> float | None:
     reach = evaluation.assessment.reach
     return None if reach is None else reach.highest_m
-
-
-def _robot_norm(outcome: CaseOutcome) -> float | None:
-    return outcome.robot_torque_norm
-
-
-def _human_norm(outcome: CaseOutcome) -> float | None:
-    return outcome.human_torque_norm
 
 
 def _largest(norm: Norm, task: Task, evaluation: Evaluation) -> float | None:

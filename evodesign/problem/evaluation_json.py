@@ -41,7 +41,7 @@ from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
-from evodesign.records import Assessment, Case, hold_names, materials_of
+from evodesign.records import Assessment, hold_names, materials_of
 
 __all__ = ["evaluation_json"]
 
@@ -71,17 +71,16 @@ def evaluation_json(
             "status": str(result.reach.status),
             "reason": result.reach.reason,
         },
-        "cases": [_case(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
+        "cases": [
+            {"person": "", "payload": ""} | msgspec.to_builtins(each.case) | of
+            for each, of in zip(result.cases, shown, strict=True)
+        ],
         "heights": [hold_names(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
         "sensitivities": {
             name: {"gradient": found.gradient, "notes": list(found.notes)}
             for name, found in sensitivities.items()
         },
     }
-
-
-def _case(case: Case) -> dict[str, Any]:
-    return {"person": case.person, "payload": case.payload, "task": msgspec.to_builtins(case.task)}
 
 
 def _shown(solution: CaseSolution, result: DesignResult) -> dict[str, Any]:

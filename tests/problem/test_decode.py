@@ -22,6 +22,12 @@ from evodesign.problem.file import ProblemFile
         ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = -1}", "design[0].length", "> 0", "'arm': -1"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = inf}", "design[0].length.arm", "finite", "inf"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlenght = {}", "design[0].lenght", "keys name", "'length'?"),
+        (
+            "name = 'a'\n[[design]]\nname = 'b'\npolicy = {}",
+            "design[0].policy",
+            "name",
+            "called 'allocation' now",
+        ),
     ],
 )
 def test_errors_say_where_and_what(text: str, key: str, wanted: str, found: str) -> None:
@@ -33,6 +39,18 @@ def test_errors_say_where_and_what(text: str, key: str, wanted: str, found: str)
     assert wanted in error.wanted
     assert found in error.found
     assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[design.policy]]", r"design\.policy: .*found 'policy'; it is called 'allocation' now"),
+        ("[solver]\nseeds = true", r"solver\.seeds: .*found 'seeds'; it is called 'start_portfolio' now"),
+    ],
+)
+def test_a_key_of_an_earlier_version_is_refused_with_its_new_name(text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        decode_toml(text, "file.toml", ProblemFile)
 
 
 def test_value_under_a_dictionary_key_is_found() -> None:

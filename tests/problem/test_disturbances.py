@@ -145,7 +145,10 @@ def test_records_hold_the_load_cases_and_nothing_where_there_are_none(result: De
 def test_the_result_shows_torques_and_wrenches_of_every_case(
     shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
-    (told,) = evaluation_json(shaken, values, result, exact.assessment(values, result), {})["heights"]
+    whole = evaluation_json(shaken, values, result, exact.assessment(values, result), {})
+    (told,), (case,) = whole["heights"], whole["cases"]
+    names = {"person": "", "payload": "", "task": {"kind": "hold", "height_m": told["height_m"]}}
+    assert case | {"height_m": told["height_m"]} == told | names
     (height,) = result.cases
     assert list(told["disturbed"]) == ["heavier", "disturbance_2"]
     shown = told["disturbed"]["disturbance_2"]
