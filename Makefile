@@ -7,14 +7,15 @@ BIN := $(VENV)/bin
 PROBLEM ?= problems/icub_lifting.toml
 RUN ?=
 JOBS ?= 2
+PYTEST := $(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test check bench faults robot clean
+.PHONY: help install search test test-quick test-all test-bare check bench faults robot clean
 
 help:  ## what can be made
-	@sed -n 's/^\([a-z]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST)
+	@sed -n 's/^\([a-z-]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST) | expand --tabs=20
 
 $(VENV)/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -30,8 +31,17 @@ install: $(VENV)/installed  ## the virtual environment with evodesign in it
 search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, JOBS=)
 	$(BIN)/evodesign search $(PROBLEM) --jobs $(JOBS) $(if $(RUN),--run $(RUN))
 
-test: $(VENV)/installed-dev  ## the tests
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
+test: $(VENV)/installed-dev  ## the tests, but for the slow ones
+	$(PYTEST) -m 'not slow'
+
+test-quick: $(VENV)/installed-dev  ## the quick tests of what needs no solver, for every save
+	$(PYTEST) -m 'not slow' $(QUICK)
+
+test-all: $(VENV)/installed-dev  ## every test
+	$(PYTEST)
+
+test-bare:  ## what the tests make of a machine without a browser and a C compiler
+	.ci/bare-machine
 
 check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 	$(BIN)/ruff format --check .

@@ -1,7 +1,7 @@
-"""Do the searches beat random sampling where densities come from a catalogue?
+"""Are the searches better than random sampling where densities come from a catalogue?
 
 As `search_quality`, on `problems/icub_materials.toml`: lengths within bounds, densities of materials. Every
-evaluated design is held against the catalogue first. Results go to benchmarks/results/catalogue_quality.json
+evaluated design is compared with the catalogue first. Results go to benchmarks/results/catalogue_quality.json
 and are printed as a Markdown table.
 
     python -m benchmarks.catalogue_quality [--evaluations 480] [--population 48] [--seeds 3] [--jobs 2]

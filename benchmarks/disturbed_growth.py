@@ -22,13 +22,13 @@ from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, HeightSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
-from evodesign.records import Status
 
 HEIGHT = 1.0
 SIZES = (2.0, 1.5, 1.0, 0.75, 0.5, 0.25, 0.0)
@@ -53,10 +53,11 @@ class Bench:
     """A scene's posture problem with its check."""
 
     def __init__(self, problem: Problem, scene: Scene) -> None:
-        self._problem, self._scene, self._shelf = problem, scene, SolverCache()
+        self._problem, self._scene, self._solvers = problem, scene, SolverCache()
         options = replace(problem.options, compiled=False)
-        self._ingredients = (scene, problem.space, problem.weights, options, problem.symmetry)
-        self._landscape = PostureProblem(*self._ingredients, shelf=self._shelf).landscape(HEIGHT)
+        self._setting = Setting(scene, problem.space, problem.weights, options)
+        bare = PostureProblem(self._setting, problem.symmetry, solvers=self._solvers)
+        self._landscape = bare.landscape(HEIGHT)
         self._human = AgentModel.of(scene.human, scene.human.tree)
 
     def best(self, design: Design, like: Postures | None) -> HeightSolution:
@@ -64,17 +65,18 @@ class Bench:
         tree = self._problem.space.resized(self._scene.robot.tree, design)
         starts = self._landscape.starts
         if like is not None:
-            known = start_from(symmetric_forms(self._scene), self._landscape.solver.program, like)
-            starts = (known, *starts)
-        seeds = Precomputed(postures={HEIGHT: StartPortfolio(starts, Coverage(0, 0, 0.0))})
-        postures = PostureProblem(*self._ingredients, seeds, self._shelf)
+            like_known = start_from(
+                self._landscape.solver.program, symmetric_forms(self._scene), [Instant(0.0, like)]
+            )
+            starts = (like_known, *starts)
+        known = Precomputed(postures={HEIGHT: StartPortfolio(starts, Coverage(0, 0, 0.0))})
+        postures = PostureProblem(self._setting, self._problem.symmetry, known, self._solvers)
         return postures.solve(design, HEIGHT, Checker(self._scene, tree, self._human))
 
 
 def cost_of(solution: HeightSolution) -> float:
     """The cost of the start that won; infinite where none did."""
-    won = [a.cost for a in solution.attempts if a.start == solution.start and a.status is Status.SOLVED]
-    return min(won, default=float("inf"))
+    return solution.attempt.cost if solution.attempt else float("inf")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +111,7 @@ def main() -> None:
         size: Bench(problem, replace(problem.scene, disturbances=disturbances_of(size, OverCases.WORST)))
         for size in SIZES
     }
-    quiet = Bench(problem, problem.scene)
+    undisturbed_bench = Bench(problem, problem.scene)
     mean = Bench(problem, replace(problem.scene, disturbances=disturbances_of(0.0, OverCases.MEAN)))
     rows = []
     for design in random_designs(problem, options.designs):
@@ -119,7 +121,7 @@ def main() -> None:
             found = bench.best(design, like)
             costs[f"{size:g}"] = cost_of(found)
             like = found.postures or None
-        undisturbed = quiet.best(design, like)
+        undisturbed = undisturbed_bench.best(design, like)
         at_zero = {
             "worst": cost_of(growing[0.0].best(design, undisturbed.postures)),
             "mean": cost_of(mean.best(design, undisturbed.postures)),

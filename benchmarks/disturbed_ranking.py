@@ -1,9 +1,9 @@
-"""Who is good when something happens? Random designs ranked with and without disturbances.
+"""Random designs ranked with and without disturbances.
 
-Random designs of the default problem hold a load quietly, and under disturbances of 20 % more load and of
-20 N on the load, away from the robot and towards it. They are ranked by the robot's torque: quietly by its
-mean over the heights; under disturbances by the mean over the heights of its worst case, in postures that are
-chosen for it. All solves begin at the same starts: the program's own and some random ones. Results go to
+Random designs of the default problem hold a load without disturbances, and with those of 20 % more load and
+of 20 N on the load, away from the robot and towards it. They are ranked by the robot's torque: undisturbed by
+its mean over the heights; under disturbances by the mean over the heights of its worst case, in postures that
+are chosen for it. All solves begin at the same starts: the program's own and some random ones. Results go to
 benchmarks/results/disturbed_ranking.json, a figure to docs/pictures/disturbed_ranking.png, and tables are
 printed.
 
@@ -25,8 +25,9 @@ from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio, random_start
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem
@@ -46,7 +47,7 @@ ITERATIONS = 80
 """Limit of a solve; those that succeed mostly take 15 to 40."""
 
 FALLEN = 3
-"""Designs that are told one by one."""
+"""Designs that are listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,35 +55,37 @@ class Row:
     """One design; torque norms are means over the heights [N m].
 
     Args:
-        quiet_robot, quiet_human: without disturbances.
+        undisturbed_robot, undisturbed_human: without disturbances.
         robot, human: of the worst case, in postures chosen for it.
-        calm_robot: without anything happening, in those postures.
-        case: what strains the robot most.
+        same_posture_robot: in the postures for disturbances, while none acts.
+        case: the load case of largest robot torque.
     """
 
-    quiet_robot: float
-    quiet_human: float
+    undisturbed_robot: float
+    undisturbed_human: float
     robot: float
     human: float
-    calm_robot: float
+    same_posture_robot: float
     case: str
 
 
 class Judge:
-    """A problem with one load, quiet and disturbed."""
+    """A problem with one load, undisturbed and disturbed."""
 
     def __init__(self, problem: Problem, load: str, starts: int) -> None:
         grasp, mass = LOADS[load]
         payload = replace(problem.scene.payload, grasp=grasp, mass=mass)
-        quiet = replace(problem.scene, payload=payload)
+        undisturbed = replace(problem.scene, payload=payload)
         self._problem = problem
-        self._scenes = (quiet, replace(quiet, disturbances=DISTURBANCES))
-        self._reach = ReachProblem(self._scenes[1], problem.space, problem.options, symmetric=True)
+        self._scenes = (undisturbed, replace(undisturbed, disturbances=DISTURBANCES))
+        self._reach = ReachProblem(
+            Setting(self._scenes[1], problem.space, problem.weights, problem.options), symmetric=True
+        )
         self._postures = [_with_starts(problem, scene, starts) for scene in self._scenes]
-        self._human = AgentModel.of(quiet.human, quiet.human.tree)
+        self._human = AgentModel.of(undisturbed.human, undisturbed.human.tree)
 
     def row(self, design: Design) -> Row | None:
-        """What a design bears; None if it does not reach every height."""
+        """Torques of a design; None if it does not reach every height."""
         reach = self._reach.solve(design)
         if any(reach.distance(height) != 0.0 for height in HEIGHTS):
             return None
@@ -93,14 +96,14 @@ class Judge:
             found.append([postures.solve(design, height, checker) for height in HEIGHTS])
         if not all(solution.solved for solutions in found for solution in solutions):
             return None
-        quiet, shaken = found
+        undisturbed, shaken = found
         worst = [max(_norms(solution, ROBOT).items(), key=lambda item: item[1]) for solution in shaken]
         return Row(
-            quiet_robot=float(np.mean([s.postures[ROBOT].torque_norm for s in quiet])),
-            quiet_human=float(np.mean([s.postures[HUMAN].torque_norm for s in quiet])),
+            undisturbed_robot=float(np.mean([s.postures[ROBOT].torque_norm for s in undisturbed])),
+            undisturbed_human=float(np.mean([s.postures[HUMAN].torque_norm for s in undisturbed])),
             robot=float(np.mean([norm for _, norm in worst])),
             human=float(np.mean([max(_norms(s, HUMAN).values()) for s in shaken])),
-            calm_robot=float(np.mean([s.postures[ROBOT].torque_norm for s in shaken])),
+            same_posture_robot=float(np.mean([s.postures[ROBOT].torque_norm for s in shaken])),
             case=max(worst, key=lambda item: item[1])[0],
         )
 
@@ -113,12 +116,13 @@ def _norms(solution: HeightSolution, agent: str) -> dict[str, float]:
 
 def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
     """A posture problem whose solves begin at the program's own starts and at some random ones."""
-    ingredients = (scene, problem.space, problem.weights, problem.options, problem.symmetry)
-    landscape = PostureProblem(*ingredients).landscape(HEIGHTS[0])
+    setting = Setting(scene, problem.space, problem.weights, problem.options)
+    landscape = PostureProblem(setting, problem.symmetry).landscape(HEIGHTS[0])
     rng = np.random.default_rng(0)
     starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
-    seeds = StartPortfolio(starts, Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Precomputed(postures=dict.fromkeys(HEIGHTS, seeds)))
+    portfolio = StartPortfolio(starts, Coverage(0, 0, 0.0))
+    known = Precomputed(postures=dict.fromkeys(HEIGHTS, portfolio))
+    return PostureProblem(setting, problem.symmetry, known)
 
 
 def judge(load: str, designs: list[Design], starts: int) -> list[Row | None]:
@@ -135,32 +139,32 @@ class Ranking:
 
     Args:
         tau: Kendall's, 1 for the same order.
-        kept: share of the best tenth of the quiet ranking that is in that of the other one.
-        rise: largest ratio of a robot's torque in the worst case to the quiet one.
-        quiet, disturbed: rank of each design, from 1.
+        kept: share of the best tenth of the undisturbed ranking that is in that of the other one.
+        rise: largest ratio of a robot's torque in the worst case to the undisturbed one.
+        undisturbed, disturbed: rank of each design, from 1.
         rows: the designs.
     """
 
     tau: float
     kept: float
     rise: float
-    quiet: list[float]
+    undisturbed: list[float]
     disturbed: list[float]
     rows: list[Row]
 
     @classmethod
     def of(cls, rows: list[Row]) -> Ranking:
         """The rankings of some designs by the robot's torque."""
-        quiet, disturbed = (
-            rankdata([getattr(row, name) for row in rows]) for name in ("quiet_robot", "robot")
+        undisturbed, disturbed = (
+            rankdata([getattr(row, name) for row in rows]) for name in ("undisturbed_robot", "robot")
         )
         tenth = max(1, len(rows) // 10)
-        best, still = (set(np.argsort(ranks)[:tenth].tolist()) for ranks in (quiet, disturbed))
+        best, still = (set(np.argsort(ranks)[:tenth].tolist()) for ranks in (undisturbed, disturbed))
         return cls(
-            tau=float(kendalltau(quiet, disturbed).statistic),
+            tau=float(kendalltau(undisturbed, disturbed).statistic),
             kept=len(best & still) / tenth,
-            rise=max(row.robot / row.quiet_robot for row in rows),
-            quiet=quiet.tolist(),
+            rise=max(row.robot / row.undisturbed_robot for row in rows),
+            undisturbed=undisturbed.tolist(),
             disturbed=disturbed.tolist(),
             rows=rows,
         )
@@ -168,7 +172,7 @@ class Ranking:
     @property
     def fallen(self) -> list[int]:
         """Places of the designs that fall furthest."""
-        fall = np.array(self.disturbed) - np.array(self.quiet)
+        fall = np.array(self.disturbed) - np.array(self.undisturbed)
         return np.argsort(-fall, kind="stable")[:FALLEN].tolist()
 
 
@@ -179,14 +183,15 @@ def table(rankings: dict[str, Ranking]) -> str:
         f"| {load} | {len(found.rows)} | {found.tau:.2f} | {found.kept:.0%} | {found.rise:.1f} x |"
         for load, found in rankings.items()
     ]
-    columns = "load | rank | robot quiet | robot worst | robot calm | human quiet | human worst | worst case"
+    robot = "robot undisturbed | robot worst | robot, same posture, undisturbed"
+    columns = f"load | rank | {robot} | human undisturbed | human worst | worst case"
     lines += ["", f"| {columns} |", "|---" * 8 + "|"]
     for load, found in rankings.items():
         for place in found.fallen:
-            row, ranks = found.rows[place], f"{found.quiet[place]:.0f} to {found.disturbed[place]:.0f}"
-            robot = f"{row.quiet_robot:.1f} | {row.robot:.1f} | {row.calm_robot:.1f}"
+            row, ranks = found.rows[place], f"{found.undisturbed[place]:.0f} to {found.disturbed[place]:.0f}"
+            robot = f"{row.undisturbed_robot:.1f} | {row.robot:.1f} | {row.same_posture_robot:.1f}"
             lines.append(
-                f"| {load} | {ranks} | {robot} | {row.quiet_human:.1f} | {row.human:.1f} | {row.case} |"
+                f"| {load} | {ranks} | {robot} | {row.undisturbed_human:.1f} | {row.human:.1f} | {row.case} |"
             )
     return "\n".join(lines)
 
@@ -198,8 +203,8 @@ def draw(rankings: dict[str, Ranking]) -> None:
         clean(axes)
         fallen = [place in found.fallen for place in range(len(found.rows))]
         axes.plot([1, len(found.rows)], [1, len(found.rows)], color="#8a9097", linewidth=0.8)
-        axes.scatter(found.quiet, found.disturbed, s=18, c=[SEQUENCE[int(fell)] for fell in fallen])
-        axes.set(title=f"{load}: tau {found.tau:.2f}", xlabel="quiet", ylabel="with disturbances")
+        axes.scatter(found.undisturbed, found.disturbed, s=18, c=[SEQUENCE[int(fell)] for fell in fallen])
+        axes.set(title=f"{load}: tau {found.tau:.2f}", xlabel="undisturbed", ylabel="with disturbances")
     write_figure(figure, PICTURES, "disturbed_ranking")[0].unlink()
 
 

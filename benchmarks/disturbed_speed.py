@@ -20,8 +20,9 @@ from benchmarks.disturbed_ranking import HEIGHTS, LOADS
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import Scene
-from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.postures import PostureProblem
 from evodesign.problem.build import Problem
 from evodesign.records import Status
 
@@ -55,10 +56,10 @@ class Cost:
 
 def measured(problem: Problem, scene: Scene, designs: list[Design]) -> Cost:
     """The cost of a scene's programs."""
-    space, options = problem.space, problem.options
-    postures = PostureProblem(scene, space, problem.weights, options, problem.symmetry)
+    setting = Setting(scene, problem.space, problem.weights, problem.options)
+    postures = PostureProblem(setting, problem.symmetry)
     landscapes = [postures.landscape(height) for height in HEIGHTS]
-    reach = ReachProblem(scene, space, options, symmetric=True)
+    reach = ReachProblem(setting, symmetric=True)
     times, counts, statuses, reach_times = [], [], [], []
     for design in designs:
         for landscape in landscapes:

@@ -5,7 +5,7 @@
 Random designs of the default problem are evaluated as a search evaluates them, from the seeds, with a
 tighter tolerance; so are their neighbours along every parameter. Central differences at two steps,
 extrapolated to none, are compared with the gradients, each component times its parameter's range, relative to
-the largest. A design is left out, and counted, where a kink is near.
+the largest. A design is left out, and counted, where a point without a derivative is near.
 """
 
 from __future__ import annotations

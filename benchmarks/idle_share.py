@@ -71,7 +71,7 @@ CASES = (
     ("nsga2", False, "uniform", 0),
     ("cma-es", False, "uniform", 0),
 )
-"""Search, whether asynchronous, times, arguments at each worker's door."""
+"""Search, whether asynchronous, times, prefetched arguments of each worker."""
 
 
 def assess(genome: Genome) -> Assessed:
@@ -95,7 +95,7 @@ class SimulatedPool(Pool):
 
     Args:
         workers: how many.
-        door: arguments that wait at each worker's door, as with Dask.
+        prefetch: arguments that wait for each worker, as with Dask.
         seconds: draws the time of an evaluation [s].
         clock: measures what the main process takes [s].
     """
@@ -103,11 +103,11 @@ class SimulatedPool(Pool):
     def __init__(
         self,
         workers: int,
-        door: int,
+        prefetch: int,
         seconds: Callable[[random.Random], float],
         clock: Callable[[], float],
     ) -> None:
-        self._capacity = workers * (1 + door)
+        self._capacity = workers * (1 + prefetch)
         self._workers = workers
         self._seconds = seconds
         self._clock = clock
@@ -220,17 +220,17 @@ def main() -> None:
     """Simulate, print a Markdown table, write the figures."""
     options = _options()
     rows = []
-    print("| search | mode | times | at the door | waiting | main process busy |")
+    print("| search | mode | times | prefetch | waiting | main process busy |")
     print("|---|---|---|---|---|---|")
-    for algorithm, asynchronous, name, door in CASES:
-        pool = SimulatedPool(options.workers, door, TIMES[name], CLOCKS[options.clock])
+    for algorithm, asynchronous, name, prefetch in CASES:
+        pool = SimulatedPool(options.workers, prefetch, TIMES[name], CLOCKS[options.clock])
         header = header_of(algorithm, options.workers, options.evaluations, asynchronous)
         with tempfile.TemporaryDirectory() as folder:
             start(Path(folder) / "run", header, lambda: assess, pool, Silent())
         mode = "asynchronous" if asynchronous else "generations"
-        rows.append({"search": algorithm, "mode": mode, "times": name, "door": door, **pool.measured})
+        rows.append({"search": algorithm, "mode": mode, "times": name, "prefetch": prefetch, **pool.measured})
         shares = f"{pool.measured['idle_share']:.1%} | {pool.measured['main_process_share']:.0%}"
-        print(f"| {algorithm} | {mode} | {name} | {door} | {shares} |", flush=True)
+        print(f"| {algorithm} | {mode} | {name} | {prefetch} | {shares} |", flush=True)
     figures = {"workers": options.workers, "evaluations": options.evaluations, "cases": rows}
     RESULTS.write_bytes(msgspec.json.format(msgspec.json.encode(figures), indent=2) + b"\n")
 

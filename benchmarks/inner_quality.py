@@ -1,4 +1,4 @@
-"""How much of a design's score is luck?
+"""How much does the result of a design depend on the starting points?
 
 Random designs of the default problem, the load at four heights. Of the heights that reach says can be held:
 how many are solved and pass the check; how many solved ones lie within 1 % of the best of 25 random starts of
@@ -19,7 +19,8 @@ from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import HEIGHTS, HERE, Design, known_at, problem_at, random_designs
 from evodesign.nlp.start_portfolio import Landscape, random_start
-from evodesign.posture.formulations.joint import PostureProblem
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
@@ -54,10 +55,9 @@ class Judge:
         self.problem = problem
         self._starts = starts
         self._evaluator = Evaluator(problem, known)
-        scene, space, options = problem.scene, problem.space, problem.options
-        self._split, self._joint = (
-            PostureProblem(scene, space, problem.weights, options, problem.symmetry, given)
-            for given in (known, Precomputed())
+        setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
+        self._decoupled, self._joint = (
+            PostureProblem(setting, problem.symmetry, given) for given in (known, Precomputed())
         )
 
     def rows(self, number: int, design: Design, joint: bool) -> list[Row]:
@@ -68,16 +68,15 @@ class Judge:
         for solution in result.heights:
             if result.reach.distance(solution.height) != 0.0:
                 continue
-            own = self._split.landscape(solution.height)
+            own = self._decoupled.landscape(solution.height)
             costs = [attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED]
-            won = [attempt.cost for attempt in solution.attempts if attempt.start == solution.start]
             best = self._best(own, design, rng)
             both = self._best(self._joint.landscape(solution.height), design, rng) if joint else np.nan
             row = Row(
                 solution.height,
                 str(solution.status),
                 min(costs, default=np.inf),
-                won[0] if won else np.inf,
+                solution.attempt.cost if solution.attempt else np.inf,
                 best,
                 both,
             )

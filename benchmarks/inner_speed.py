@@ -25,11 +25,13 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, known_at, problem_at, random_designs
 from benchmarks.paper_formulation import measure, measure_ours, reaching_designs
-from evodesign.nlp.program import RawSolution, Solver, Start
+from evodesign.nlp.program import Start
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
@@ -69,14 +71,14 @@ def _landscapes(
 ) -> Iterator[tuple[str, Landscape, Sequence[Start]]]:
     """The programs with their starts."""
     options = replace(problem.options, compiled=compiled)
-    scene, space, weights = problem.scene, problem.space, problem.weights
-    reach = ReachProblem(scene, space, options, symmetric=True)
-    yield "highest load", reach.landscape(HIGHEST), known.highest.seeds
-    yield "lowest load", reach.landscape(LOWEST), known.lowest.seeds
-    split = PostureProblem(scene, space, weights, options, Symmetry.ON, known)
-    yield "robot against V(X), 1.0 m", split.landscape(1.0), known.seeds(1.0)
+    setting = Setting(problem.scene, problem.space, problem.weights, options)
+    reach = ReachProblem(setting, symmetric=True)
+    yield "highest load", reach.landscape(HIGHEST), known.highest.starts
+    yield "lowest load", reach.landscape(LOWEST), known.lowest.starts
+    decoupled = PostureProblem(setting, Symmetry.ON, known)
+    yield "robot against V(X), 1.0 m", decoupled.landscape(1.0), known.starts(1.0)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
-        joint = PostureProblem(scene, space, weights, options, symmetry).landscape(1.0)
+        joint = PostureProblem(setting, symmetry).landscape(1.0)
         yield name, joint, joint.starts
 
 

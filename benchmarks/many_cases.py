@@ -1,9 +1,10 @@
-"""What a design with several people and loads costs, and what the short cut between people is worth.
+"""What a design with several people and loads costs, and what starts from neighbouring cases save.
 
 Random designs of problems/three_people_three_loads.toml (nine pairs of a person and a load, three heights),
-evaluated on one core: designs per second; the same with every person solved from the seeds, as if alone; how
-far the cost of a posture that began beside another person is from the one that began at the seeds; and the
-default problem (one pair, three heights) in the same run. Results go to benchmarks/results/many_cases.json.
+evaluated on one core: designs per second; the same with every person solved from the start portfolio, as if
+alone; how far the cost of a posture that began beside another person is from the one that began at the
+portfolio; and the default problem (one pair, three heights) in the same run. Results go to
+benchmarks/results/many_cases.json.
 
     python -m benchmarks.many_cases [--designs 40] [--problem FILE]
 """
@@ -105,12 +106,12 @@ def _compared(
         (one, other) for t, a in zip(together, apart, strict=True) for one, other in zip(t, a, strict=True)
     ]
     both = [(_cost(one), _cost(other)) for one, other in pairs if one.solved and other.solved]
-    dearer = np.array([one / other - 1.0 for one, other in both])
+    excess = np.array([one / other - 1.0 for one, other in both])
     return {
         "solved_cases_together": sum(one.solved for one, _ in pairs),
         "solved_cases_apart": sum(other.solved for _, other in pairs),
-        "largest_cost_above_apart": float(dearer.max()),
-        "share_within_one_percent": float((dearer <= 0.01).mean()),
+        "largest_cost_above_apart": float(excess.max()),
+        "share_within_one_percent": float((excess <= 0.01).mean()),
     }
 
 

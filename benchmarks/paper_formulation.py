@@ -23,11 +23,12 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_posture import PaperPostures
-from evodesign.nlp.program import IpoptOptions
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.pool.serial import SerialPool
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.factory import cached_precomputed
@@ -95,7 +96,7 @@ def measure_ours(
 ) -> Figures:
     """What our posture problem costs, every start and the check of the best included; as for `measure`."""
     scene, space = problem.scene, problem.space
-    ours = PostureProblem(scene, space, problem.weights, problem.options, problem.symmetry, known)
+    ours = PostureProblem(Setting(scene, space, problem.weights, problem.options), problem.symmetry, known)
     human = AgentModel.of(scene.human, scene.human.tree)
     ours.landscape(height)  # builds the program
     seconds, iterations, solved = 0.0, [], 0
@@ -122,9 +123,8 @@ def _figures(seconds: float, iterations: Sequence[int], solved: int, tried: int)
 def reaching_designs(problem: Problem, height: float, count: int) -> list[tuple[float, ...]]:
     """Uniformly random designs that reach a height [m], the same ones every time; fewer if few reach it."""
     symmetric = problem.symmetry is not Symmetry.OFF
-    reach = ReachProblem(
-        problem.scene, problem.space, problem.options, symmetric=symmetric, known=NOTHING_PRECOMPUTED
-    )
+    setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
+    reach = ReachProblem(setting, symmetric=symmetric, known=NOTHING_PRECOMPUTED)
     rng = np.random.default_rng(1)
     genomes = rng.uniform(size=(LOOKED_AT * count, len(problem.space.parameters))).tolist()
     designs = (problem.space.values(tuple(genome)) for genome in genomes)

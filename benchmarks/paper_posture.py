@@ -1,11 +1,11 @@
 """The posture problem as the paper states it: torques and wrenches are functions of the posture.
 
-    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + comfort            over bases and joints
+    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + regularisation     over bases and joints
     with        tau = (N B)^+ N h  and  f by Eq. 13                in the graph (`projected_graph`)
 
 Bounds, starts, and the constraints of hands, feet, stance, ground and push are the very ones of our whole
-posture program; comfort is ours without its terms in wrenches. The difference: our program chooses the
-wrenches and ties torques to them by equalities.
+posture program; the regularisation is ours without its terms in wrenches. The difference: our program chooses
+the wrenches and ties torques to them by equalities.
 
 Source: Sartore et al. 2022, Eq. 14 with pi fixed.
 """
@@ -22,14 +22,16 @@ from numpy.typing import NDArray
 
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
 from evodesign.mechanics.scene import SIDES, Agent, Scene
-from evodesign.nlp.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.results import AgentPosture
+from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.starts import fixed_starts
 from evodesign.posture.symmetry import whole
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.load import LOAD_UNIT, push_of
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.base import TORQUE_UNIT
+from evodesign.posture.terms.load import LOAD_UNIT, force_along_x
+from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import Problem
 from evodesign.tree.model import Tree
 
@@ -65,24 +67,28 @@ class PaperPostures:
         built = paper_program(problem)
         self._statics = built.statics
         self._solver = Solver(built.program, replace(options, compiled=False))
-        self._start = fixed_starts(self._solver)[0]
+        self._start = fixed_starts(built.program)[0]
 
     def solve(self, values: Sequence[float], height: float) -> RawSolution:
         """What IPOPT finds for a design at a height [m], from the first of our fixed starts."""
-        return self._solver.solve([*values, height], self._start)
+        return self._solver.solve({"design": values, "height": height}, self._start)
 
     def residual(self, raw: RawSolution, values: Sequence[float], height: float) -> float:
         """The largest residual (SI units) that the independent check finds in a solution."""
         agents = (self._scene.robot, self._scene.human)
-        columns = [np.concatenate([raw.of(agent.name)[part] for part in POSTURE]) for agent in agents]
-        found = Statics(*[np.array(part).ravel() for part in self._statics(*columns, [*values, height])])
+        own = {a.name: {part: raw.values[f"{a.name}.{part}"] for part in POSTURE} for a in agents}
+        columns = [np.concatenate(list(own[agent.name].values())) for agent in agents]
+        found = Statics(*[np.array(part).ravel() for part in self._statics(*columns, values, height)])
         torques = np.split(found.torques, [len(self._scene.robot.joints)])
         postures = {
-            agent.name: _posture(agent, raw.of(agent.name), torques[place], found, place)
+            agent.name: _posture(agent, own[agent.name], torques[place], found, place)
             for place, agent in enumerate(agents)
         }
         tree = self._space.resized(self._scene.robot.tree, values)
-        return max(Checker(self._scene, tree, self._human).residuals(postures, height).values())
+        return max(
+            residual.size
+            for residual in Checker(self._scene, tree, self._human).residuals(Instant(0.0, postures), height)
+        )
 
 
 def paper_program(problem: Problem) -> PaperProgram:
@@ -92,11 +98,13 @@ def paper_program(problem: Problem) -> PaperProgram:
     robot_tree = space.resized(scene.robot.tree, ca.vertsplit(design))
     robot = _part(scene.robot, robot_tree, scene, design, height)
     human = _part(scene.human, scene.human.tree, scene, design, height)
-    parameters = ca.MX.sym("parameters", len(space.parameters) + 1)
+    names = {"design": ca.MX.sym("design", len(space.parameters)), "height": ca.MX.sym("height")}
+    parameters = ca.vertcat(*names.values())
     postures, matrices = [robot.posture, human.posture], [robot.matrices, human.matrices]
     found = projected_statics(scene, matrices, postures, parameters[:-1], DAMPING)
-    statics = ca.Function("statics", [*postures, parameters], [found.torques, found.wrenches])
-    return PaperProgram(_program(problem, (robot, human), found, parameters), statics)
+    outputs = [found.torques, found.wrenches]
+    statics = ca.Function("statics", [*postures, names["design"], names["height"]], outputs)
+    return PaperProgram(_program(problem, (robot, human), found, names), statics)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,14 +116,14 @@ class _Part:
         matrices: SX function from posture and design to M, h and Q^T.
         constraints: of our agent block, less statics.
         rows: SX function from posture, feet's wrenches, design and height to each constraint's expression.
-        comfort: SX function from posture to our comfort under vanishing wrenches.
+        regularisation: SX function from posture to ours under vanishing wrenches.
     """
 
     variables: tuple[Variable, ...]
     matrices: Any
     constraints: tuple[Constraint, ...]
     rows: Any
-    comfort: Any
+    regularisation: Any
 
     @property
     def posture(self) -> Expression:
@@ -124,11 +132,15 @@ class _Part:
 
 
 def _part(agent: Agent, tree: Tree, scene: Scene, design: Expression, height: Expression) -> _Part:
-    block = agent_block(whole(agent), tree, scene, height)
-    variables = {variable.name.split(".", 1)[1]: variable for variable in block.variables}
+    form = whole(agent)
+    parties = (Embodied(form, tree), free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    variables = {v.key.part: v for v in assembly.variables if v.key.party == agent.name}
     posture = ca.vertcat(*[variables[name].value for name in POSTURE])
     feet = ca.SX.sym("feet", 12)
-    kept = tuple(c for c in block.constraints if c.name.split(".", 1)[1] not in STATICS)
+    prefix = f"{agent.name}."
+    own = [c for c in assembly.constraints if c.name.startswith(prefix)]
+    kept = tuple(c for c in own if c.name.removeprefix(prefix) not in STATICS)
     symbols = [variables[f"{side}_foot"] for side in SIDES]
     rows = ca.substitute(
         [c.expression for c in kept],
@@ -136,13 +148,17 @@ def _part(agent: Agent, tree: Tree, scene: Scene, design: Expression, height: Ex
         [part / symbols[0].scale for part in ca.vertsplit(feet, 6)],
     )
     wrenches = [v.symbol for name, v in variables.items() if name.endswith(("_hand", "_foot"))]
-    comfort = ca.substitute([block.comfort], wrenches, [ca.SX.zeros(symbol.numel()) for symbol in wrenches])
+    regularisation = ca.substitute(
+        [total(assembly.undisturbed.regularisation)],
+        wrenches,
+        [ca.SX.zeros(symbol.numel()) for symbol in wrenches],
+    )
     return _Part(
         variables=tuple(_in_mx(variables[name]) for name in POSTURE),
         matrices=agent_matrices(agent, tree, scene, design),
         constraints=kept,
         rows=ca.Function("rows", [posture, feet, design, height], rows),
-        comfort=ca.Function("comfort", [posture], comfort),
+        regularisation=ca.Function("regularisation", [posture], regularisation),
     )
 
 
@@ -151,15 +167,15 @@ def _in_mx(variable: Variable) -> Variable:
 
 
 def _program(
-    problem: Problem, parts: tuple[_Part, _Part], statics: Statics, parameters: Expression
+    problem: Problem, parts: tuple[_Part, _Part], statics: Statics, parameters: Mapping[str, Expression]
 ) -> Program:
     scene, weights = problem.scene, problem.weights
     constraints = []
     for place, part in enumerate(parts):
-        rows = part.rows(part.posture, statics.feet(place), parameters[:-1], parameters[-1])
+        rows = part.rows(part.posture, statics.feet(place), *parameters.values())
         pairs = zip(part.constraints, rows, strict=True)
         constraints += [replace(constraint, expression=row) for constraint, row in pairs]
-    push = push_of(scene.robot, statics.hands(0)) / LOAD_UNIT
+    push = force_along_x(scene.robot, statics.hands(0)) / LOAD_UNIT
     limit = scene.stance.push / LOAD_UNIT
     robot_joints = len(scene.robot.joints)
     effort = weights.robot * ca.sumsqr(statics.torques[:robot_joints])
@@ -168,7 +184,7 @@ def _program(
         name="paper",
         variables=(*parts[0].variables, *parts[1].variables),
         constraints=(*constraints, Constraint("load.push", push, -limit, limit)),
-        cost=effort / TORQUE_UNIT**2 + sum(part.comfort(part.posture) for part in parts),
+        cost=effort / TORQUE_UNIT**2 + sum(part.regularisation(part.posture) for part in parts),
         parameters=parameters,
     )
 

@@ -23,7 +23,8 @@ from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.coupled import PAYLOAD
 from evodesign.mechanics.dynamics import mass_matrix
 from evodesign.mechanics.scene import SIDES, Agent, Payload, Scene
-from evodesign.posture.terms.torque import GRASP_ROWS, hand_wrench
+from evodesign.posture.terms.base import hand_wrench
+from evodesign.posture.terms.grasp import GRASP_ROWS
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Link, Tree
 
@@ -195,8 +196,8 @@ def projected_statics(
     bias = ca.vertcat(*[body.bias for body in bodies])
     selector = ca.diagcat(*[_selector(body) for body in bodies])
     felt = transposed.T @ moved  # Q M^-1 Q^T
-    borne = _solved(felt, moved.T @ ca.horzcat(selector, bias))
-    projected = ca.horzcat(selector, bias) - transposed @ borne  # N B and N h
+    carried = _solved(felt, moved.T @ ca.horzcat(selector, bias))
+    projected = ca.horzcat(selector, bias) - transposed @ carried  # N B and N h
     count = selector.shape[1]
     projected_selector, projected_bias = projected[:, :count], projected[:, count]
     normal = projected_selector.T @ projected_selector + damping * ca.DM.eye(count)

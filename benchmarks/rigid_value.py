@@ -2,8 +2,8 @@
 
 With rigid grasps the load passes three numbers between robot and person in a symmetric posture: the push X,
 the vertical force Z and the moment N on the person's hands. V(X, Z, N) is fitted by a tensor of Chebyshev
-polynomials over the box |X| <= push, 0 <= Z <= m g, |N| <= what two hands bear, and held against the best of
-as many starts at random points of the box. Costs are in 100 N^2 m^2.
+polynomials over the box |X| <= push, 0 <= Z <= m g, |N| <= what two hands transmit, and compared with the
+best of as many starts at random points of the box. Costs are in 100 N^2 m^2.
 
     python -m benchmarks.rigid_value [--height 1.0] [--degrees 4 8 8] [--starts 9] [--points 60]
 """
@@ -23,14 +23,15 @@ from numpy.polynomial import chebyshev
 from benchmarks.inner_problem import problem_at
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import Grasp, Scene
-from evodesign.nlp.program import Program, Solver
+from evodesign.nlp.program import Constraint, Program
+from evodesign.nlp.solver import Solver
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.symmetry import Form, symmetric_forms
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.stance import equal
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.base import BodyTerm
+from evodesign.posture.terms.registry import TERMS
 from evodesign.records import Status
 
-MASS, MOMENT = 10.0, 7.0  # of the load [kg]; that a hand bears [N m]
+MASS, MOMENT = 10.0, 7.0  # of the load [kg]; that a hand transmits [N m]
 SHARES, SPREAD = (0.1, 0.5, 1.0), 0.3
 
 Array = Any
@@ -39,11 +40,16 @@ Array = Any
 def program(form: Form, scene: Scene, height: float) -> Program:
     """The person alone; the parameters are push, vertical force [N] and moment [N m] on both hands."""
     given = ca.SX.sym("given", 3)
-    block = agent_block(form, form.agent.tree, scene, height)
-    wrench = 2.0 * block.hand_wrenches["left"]
+    parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
+    terms = [term for term in TERMS.values() if isinstance(term, BodyTerm)]
+    assembly = assemble(parties, terms, CaseSymbols(scene, (height,)))
+    body, person = assembly.undisturbed, form.agent.name
+    wrench = 2.0 * body.hands[person]["left"]
     rows = ca.vertcat(wrench[0] - given[0], wrench[2] + given[1], wrench[4] - given[2]) / 10.0
-    cost = block.effort / TORQUE_UNIT**2 + block.comfort
-    return Program("human", block.variables, (*block.constraints, equal("given", rows)), cost, given)
+    cost = body.effort({person: 1.0}) + total(body.regularisation)
+    own = tuple(v for v in assembly.variables if v.key.party == person)
+    held = Constraint("given", rows, 0.0, 0.0)
+    return Program("human", own, (*assembly.constraints, held), cost, {"given": given})
 
 
 class Person:
@@ -51,7 +57,7 @@ class Person:
 
     def __init__(self, solver: Solver, starts: int) -> None:
         self._solver = solver
-        block = next(v for v in solver.program.variables if v.name.endswith(".joints"))
+        block = next(v for v in solver.program.variables if v.drawn)
         middle, rng = (block.lower + block.upper) / 2.0, np.random.default_rng(0)
         noise = [np.zeros(len(middle))] * len(SHARES)
         noise += [SPREAD * rng.standard_normal(len(middle)) for _ in range(starts - len(SHARES))]
@@ -63,7 +69,7 @@ class Person:
 
     def cost(self, given: Array) -> float:
         """The best cost that is found; not a number where there is none."""
-        ends = [self._solver.solve(list(given), start) for start in self._starts]
+        ends = [self._solver.solve({"given": given}, start) for start in self._starts]
         self.seconds += [end.seconds for end in ends]
         return min((end.cost for end in ends if end.status is Status.SOLVED), default=np.nan)
 

@@ -1,9 +1,9 @@
-"""What a policy trades: robot torque against human torque, with rigid grasps and the unscaled robot.
+"""Robot torque against human torque over an allocation parameter, with rigid grasps and the unscaled robot.
 
-For each height and value of a policy the best of many starts of the symmetric program, among them the optimum
-at the value before; every posture passes the independent check. Torque norms are printed in N m.
+For each height and value of the parameter the best of many starts of the symmetric program, among them the
+optimum at the value before; every posture passes the independent check. Torque norms are printed in N m.
 
-    python -m benchmarks.sharing [--policy effort_ratio] [--moment 7] [--mass 10] [--starts 8]
+    python -m benchmarks.sharing [--allocation effort_ratio] [--moment 7] [--mass 10] [--starts 8]
 """
 
 from __future__ import annotations
@@ -22,9 +22,11 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.nlp.start_portfolio import random_start
 from evodesign.posture.allocation import EffortWeights, shared_scene
-from evodesign.posture.check import TOLERANCE, AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
+from evodesign.posture.warm_start import instant_of, layout_of
 from evodesign.problem.build import Problem
 from evodesign.records import Status
 
@@ -38,17 +40,17 @@ Point = tuple[float, float, float]
 """Robot torque, human torque [N m] and the robot's share of the load [-]."""
 
 
-def sweep(problem: Problem, policy: str, height: float, starts: int) -> Iterator[Point | None]:
-    """A point for each value of a policy; None where nothing was found."""
+def sweep(problem: Problem, allocation: str, height: float, starts: int) -> Iterator[Point | None]:
+    """A point for each value of an allocation parameter; None where nothing was found."""
     scene = problem.scene
-    bounds = ALLOCATIONS[policy]
-    parameter = DesignParameter(ParameterKind.POLICY, policy, (), bounds.lowest, bounds.highest)
+    bounds = ALLOCATIONS[allocation]
+    parameter = DesignParameter(ParameterKind.POLICY, allocation, (), bounds.lowest, bounds.highest)
     space = DesignSpace((parameter,))
-    postures = PostureProblem(scene, space, EffortWeights(), problem.options, Symmetry.ON)
+    postures = PostureProblem(Setting(scene, space, EffortWeights(), problem.options), Symmetry.ON)
     landscape, rng = postures.landscape(height), np.random.default_rng(1)
     tried = [*landscape.starts, *(random_start(landscape, rng) for _ in range(starts))]
     person = AgentModel.of(scene.human, scene.human.tree)
-    for value in VALUES[policy]:
+    for value in VALUES[allocation]:
         ends = [landscape.solve((value,), start) for start in tried]
         solved = [end for end in ends if end.status is Status.SOLVED]
         if not solved:
@@ -56,10 +58,12 @@ def sweep(problem: Problem, policy: str, height: float, starts: int) -> Iterator
             continue
         best = min(solved, key=lambda end: end.cost)
         tried.append(best.values)
-        found = {f.agent.name: f.expand(best.of(f.agent.name)) for f in symmetric_forms(scene)}
+        layout = layout_of(landscape.solver.program)
+        instant = instant_of(layout, symmetric_forms(scene), scene, best.values)
+        found = instant.postures
         checker = Checker(shared_scene(scene, space, (value,)), scene.robot.tree, person)
-        if max(checker.residuals(found, height).values()) > TOLERANCE:
-            raise AssertionError(f"the check refuses {policy} {value:g} at {height:g} m")
+        if max(sizes(checker.residuals(instant, height)).values()) > TOLERANCE:
+            raise AssertionError(f"the check refuses {allocation} {value:g} at {height:g} m")
         carried = -sum(wrench[2] for wrench in found[ROBOT].hand_wrenches.values())
         share = carried / (GRAVITY * scene.payload.mass)
         yield found[ROBOT].torque_norm, found[HUMAN].torque_norm, float(share)
@@ -68,17 +72,19 @@ def sweep(problem: Problem, policy: str, height: float, starts: int) -> Iterator
 def main() -> None:
     """Sweep and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--policy", default=EFFORT_RATIO, choices=list(VALUES))
-    parser.add_argument("--moment", type=float, default=math.inf, help="that a hand can bear [N m]")
+    parser.add_argument("--allocation", default=EFFORT_RATIO, choices=list(VALUES))
+    parser.add_argument("--moment", type=float, default=math.inf, help="that a hand can transmit [N m]")
     parser.add_argument("--mass", type=float, default=10.0, help="of the load [kg]")
     parser.add_argument("--starts", type=int, default=8)
     asked = parser.parse_args()
     problem = problem_at(HEIGHTS)
     load = replace(problem.scene.payload, mass=asked.mass, grasp=Grasp.RIGID, hand_moment=asked.moment)
     problem = replace(problem, scenes=(replace(problem.scene, payload=load),))
-    rows = {height: list(sweep(problem, asked.policy, height, asked.starts)) for height in HEIGHTS}
-    print(f"{asked.policy}: robot / human torque [N m] (the robot's share), hands bear {asked.moment:g} N m")
-    for position, value in enumerate(VALUES[asked.policy]):
+    rows = {height: list(sweep(problem, asked.allocation, height, asked.starts)) for height in HEIGHTS}
+    print(
+        f"{asked.allocation}: robot / human torque [N m] (the robot's share); {asked.moment:g} N m per hand"
+    )
+    for position, value in enumerate(VALUES[asked.allocation]):
         points = [rows[height][position] for height in HEIGHTS]
         cells = ["-" if p is None else f"{p[0]:.1f} / {p[1]:.1f} ({p[2]:.2f})" for p in points]
         mean = np.mean([p for p in points if p is not None], axis=0)

@@ -1,4 +1,4 @@
-"""Humanoid robots designed by evolution, so that robot and person lifting together both strain less.
+"""Humanoid robots designed by evolution for low joint torques of robot and person who hold a load together.
 
 From Python:
 

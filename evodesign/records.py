@@ -171,7 +171,7 @@ class HeightOutcome(Record, frozen=True, omit_defaults=True):
 
 
 class Assessment(Record, frozen=True):
-    """What a design is worth: a property of problem and genome alone.
+    """The results of a design: a property of problem and genome alone.
 
     `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist.
     `violation` is the sum of constraint violations [m], zero for a feasible design, None when a failure
@@ -188,7 +188,7 @@ class Assessment(Record, frozen=True):
 
 
 class AgentDetail(Record, frozen=True):
-    """How an agent stands and what it bears, in its own frame (looking along +x at the load).
+    """Posture, torques and wrenches of an agent, in its own frame (looking along +x at the load).
 
     Attributes:
         base_position_m: origin of the root link, three coordinates.
@@ -208,7 +208,7 @@ class AgentDetail(Record, frozen=True):
 
 
 class LoadCaseDetail(Record, frozen=True):
-    """What an agent bears under a disturbance, its posture being what it is; as in `AgentDetail`."""
+    """Torques and wrenches of an agent under a disturbance, in the same posture; as in `AgentDetail`."""
 
     torques_n_m: dict[str, float]
     hand_wrenches: dict[str, tuple[float, ...]]
@@ -218,7 +218,7 @@ class LoadCaseDetail(Record, frozen=True):
 class HeightDetail(Record, frozen=True, omit_defaults=True):
     """The postures at one height of the load, by the agents' names; who and what as in `HeightOutcome`.
 
-    `disturbed` holds what the agents bear in the same postures, by disturbance and agent.
+    `disturbed` holds torques and wrenches in the same postures, by disturbance and agent.
     """
 
     height_m: float
@@ -229,7 +229,7 @@ class HeightDetail(Record, frozen=True, omit_defaults=True):
 
 
 class Assessed(Record, frozen=True):
-    """What a worker gives back: what a genome is worth, and its postures at the heights that were solved."""
+    """What a worker gives back: the results of a genome, and its postures at the heights that were solved."""
 
     assessment: Assessment
     heights: tuple[HeightDetail, ...] = ()

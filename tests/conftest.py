@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -18,12 +19,35 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
+from tests.machine import NEEDS, leave_out, left_out
 from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
-settings.register_profile("house", deadline=None, derandomize=True)
-settings.load_profile("house")
+settings.register_profile("evodesign", deadline=None, derandomize=True)
+settings.load_profile("evodesign")
+
+
+def pytest_configure() -> None:
+    """Heed Ctrl-C, as in a terminal: what a shell starts in the background inherits that it is ignored."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Ask what the machine lacks before fixtures are made for a test that cannot run."""
+    for marker, (there, reason) in NEEDS.items():
+        if item.get_closest_marker(marker) and not there():
+            leave_out(reason)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Say what was left out, and how to have it."""
+    for sentence in left_out(terminalreporter.stats.get("skipped", [])):
+        terminalreporter.write_line(sentence)
+    if "not slow" in config.option.markexpr:
+        terminalreporter.write_line("left out: the slow tests, which `make test-all` runs too")
 
 
 @pytest.fixture(scope="session")

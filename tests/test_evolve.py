@@ -52,7 +52,7 @@ def go_on(directory: Path, budget: int | None = None, pool: OrderedPool | None =
     return resume(directory, factory_of, pool, observer, budget, make_search=ToySearch, **rest)
 
 
-class Witness:
+class Listener:
     """An observer that notes what it is shown, and what the log held at that moment."""
 
     def __init__(self, directory: Path) -> None:
@@ -104,7 +104,7 @@ def test_every_design_of_a_front_is_logged_with_its_postures(tmp_path: Path) -> 
     run = begin(tmp_path / "run", toy_header(population=6, budget=60), OrderedPool(shuffled(3)))
     members = fronts_with_postures(run)
     assert members
-    assert len(run.details) < 30, "a design that is beaten on arrival is logged in short"
+    assert len(run.details) < 30, "a design that is dominated when it arrives is logged in short"
 
 
 def test_postures_of_a_front_survive_stops(tmp_path: Path) -> None:
@@ -196,10 +196,10 @@ def test_every_search_of_the_registry_resumes_as_if_never_interrupted(
 
 
 def test_evaluations_are_on_the_disk_as_they_arrive(tmp_path: Path) -> None:
-    witness = Witness(tmp_path / "run")
+    listener = Listener(tmp_path / "run")
     pool = OrderedPool(lambda count: range(count - 1, -1, -1))
-    begin(tmp_path / "run", toy_header(population=3, budget=6), pool, observer=witness)
-    assert witness.seen == [
+    begin(tmp_path / "run", toy_header(population=3, budget=6), pool, observer=listener)
+    assert listener.seen == [
         ("started", 0),
         ("evaluated", 2, 1, 6),
         ("evaluated", 1, 2, 6),

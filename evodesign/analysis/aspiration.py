@@ -5,8 +5,8 @@
 f_i are minimised values, z_i the aspirations, w_i = 1 / range over the designs. The first term is the worst
 shortfall from the aspirations, and nothing for a design that meets them all. The small sum decides between
 designs of equal shortfall: among those that meet every aspiration the best over all objectives comes first.
-Unlike a distance, s never prefers a design that another one beats, and never punishes one for being better
-than hoped.
+Unlike a distance, s never prefers a dominated design to one that dominates it, and never punishes a design
+for being better than the aspiration.
 
 Source: Wierzbicki 1980, The use of reference objectives in multiobjective optimization, augmented as in
 Miettinen 1999, Section 5.7. There the first term goes on below zero; here it stops, so that objectives that

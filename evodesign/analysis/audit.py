@@ -59,7 +59,7 @@ def _holes(run: Run) -> Iterator[str]:
 
 
 def _generations(run: Run) -> Iterator[str]:
-    """Records of generations and fronts that the evaluations do not bear out."""
+    """Records of generations and fronts that contradict the evaluations."""
     states = {state.number: state for state in run.generations}
     fronts = {front.generation: front for front in run.fronts}
     run_state = RunState(run.header.objectives)

@@ -20,7 +20,7 @@ MOST_KNEES = 5
 
 @dataclass(frozen=True, slots=True)
 class BestDesign:
-    """A design worth opening.
+    """A design to look at first.
 
     Args:
         reason: what it is best at, in words.

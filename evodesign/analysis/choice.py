@@ -1,7 +1,7 @@
 """Choosing among the designs of a run: conditions first, then the front, then an order, then how many.
 
 Conditions come before the front, as constraints do: the front is that of the designs that meet them, so that
-a design which only a forbidden one beats is on it.
+a design that is dominated only by a forbidden one is on it.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Runs with the same objectives can be compared, also of different problems. Those of one problem, algorithm and
 population are one search with several seeds. The reference is somewhat worse than all feasible evaluations of
-all these runs; hypervolumes also come as shares of what all runs together conquer, which has no unit.
+all these runs; hypervolumes also come as shares of that which all runs together dominate, without a unit.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Compared:
         search: name of its search.
         front: of its first evaluations, as many as every run has: the counted ones.
         hypervolume: of the counted ones; None for a run without any, or if no run has a feasible design.
-        share: of what all counted ones together conquer; None likewise.
+        share: of the hypervolume that all counted ones together dominate; None likewise.
         best: best counted natural value of each objective.
         curve: its history, to its own end.
     """

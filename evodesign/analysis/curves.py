@@ -50,11 +50,11 @@ def curve(
     places = sorted({round(place) for place in np.linspace(1, count, min(count, PLACES))} if count else set())
     volumes: list[float] = []
     bests: list[dict[str, float]] = []
-    standing: tuple[Evaluation, ...] = ()
+    best_so_far: tuple[Evaluation, ...] = ()
     for start, end in zip([0, *places], places, strict=False):
-        standing = front(objectives, [*standing, *evaluations[start:end]])
-        volumes.append(hypervolume(objectives, standing, reference))
-        bests.append(best(objectives, standing))
+        best_so_far = front(objectives, [*best_so_far, *evaluations[start:end]])
+        volumes.append(hypervolume(objectives, best_so_far, reference))
+        bests.append(best(objectives, best_so_far))
     return Curve(
         evaluations=tuple(places),
         hypervolume=tuple(volumes),

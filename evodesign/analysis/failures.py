@@ -11,7 +11,7 @@ __all__ = ["causes", "failed", "failures"]
 
 
 def failed(evaluation: Evaluation) -> bool:
-    """Whether an evaluation ended without saying what its design is worth."""
+    """Whether an evaluation ended without a result for its design."""
     return evaluation.assessment.status not in (Status.SOLVED, Status.INFEASIBLE)
 
 

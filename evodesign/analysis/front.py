@@ -1,4 +1,4 @@
-"""Which evaluations no other one beats: the front of a run.
+"""The Pareto front of a run: the evaluations that no other one dominates.
 
 A design dominates another when it is nowhere worse and somewhere better. Only feasible designs whose
 objectives all exist take part. moocore compares; maximised objectives are negated for it.
@@ -72,6 +72,6 @@ class RunningFront:
         new = np.array(values)
         if np.any(np.all(self._values <= new, axis=1) & np.any(self._values < new, axis=1)):
             return False
-        beaten = np.all(new <= self._values, axis=1)
-        self._values = np.vstack([self._values[~beaten], new])
+        dominated = np.all(new <= self._values, axis=1)
+        self._values = np.vstack([self._values[~dominated], new])
         return True

@@ -1,4 +1,4 @@
-"""How much of the objective space a run has conquered, in one number that only grows.
+"""How much of the objective space a run dominates, in one number that only grows.
 
 The hypervolume is the measure of the set of points that some feasible design dominates and that in turn
 dominate a reference point [product of the objectives' units]. It is comparable only between evaluations

@@ -1,4 +1,4 @@
-"""What the paper claims of its robots, and whether other robots bear it out.
+"""What the paper claims of its robots, and whether other robots confirm it.
 
 Source: Sartore et al. 2022, Table II and Section IV-A.
 """
@@ -65,7 +65,7 @@ class Claim:
         by: which robot it was tried on.
         paper: the paper's figure.
         found: ours.
-        reproduced: whether ours bears the claim out.
+        reproduced: whether ours confirms the claim.
         reason: why, in a sentence.
     """
 
@@ -139,7 +139,7 @@ def human_claim(by: str, original: TorqueNormsByHeight, optimised: TorqueNormsBy
     elif preserved:
         reason = "with point grasps a person carries half the load whatever the robot"
     else:
-        reason = "the postures that were found strain the person more; a better one may exist"
+        reason = "the postures that were found need higher torques of the person; a better one may exist"
     paper = [PAPER_OPTIMISED[h].human / PAPER_ORIGINAL[h].human - 1.0 for h in ORIGINAL_HEIGHTS]
     return Claim(
         subject="human torque preserved",
@@ -172,8 +172,8 @@ def table_claim(by: str, original: TorqueNormsByHeight, optimised: TorqueNormsBy
         )
     ]
     alike = bool(shares) and all(abs(share - 1.0) <= ALIKE for share in shares)
-    people = [strain.human for ours in (original, optimised) for strain in ours.values()]
-    reason = "other postures strain far less, so the table is a local solution and not an optimum"
+    people = [norms.human for ours in (original, optimised) for norms in ours.values()]
+    reason = "other postures need far lower torques, so the table is a local solution and not an optimum"
     if broken:
         reason += f"; without limits nothing holds torques up, and these postures break {broken}"
     return Claim(

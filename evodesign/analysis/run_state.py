@@ -1,7 +1,7 @@
 """Where a run stands: its front, best values and hypervolume, carried on from generation to generation.
 
-A design that is beaten once never counts again, so that only the front is carried on, and of its members what
-they are compared by. The work and the memory of a generation grow with the front, not with the run.
+A design that is dominated once never counts again, so that only the front is carried on, and of its members
+what they are compared by. The work and the memory of a generation grow with the front, not with the run.
 """
 
 from __future__ import annotations

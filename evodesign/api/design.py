@@ -12,7 +12,7 @@ __all__ = ["Design"]
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """A robot: its parameters and what it is worth. Units are SI: m, N m, kg/m^3.
+    """A robot: its parameters and its results. Units are SI: m, N m, kg/m^3.
 
     Args:
         number: of the evaluation in its run; None for a design that was evaluated outside of one.

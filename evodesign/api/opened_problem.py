@@ -61,14 +61,14 @@ class OpenedProblem:
         return f"<problem {self.name}: {len(self.parameters)} parameters, {len(self.objectives)} objectives>"
 
     def evaluate(self, design: Mapping[str, float] | Sequence[float]) -> Design:
-        """What a design is worth, with its postures. It depends on nothing but problem and design.
+        """The results of a design, with its postures. They depend on nothing but problem and design.
 
         Args:
             design: values by name, those left out as in the unscaled robot; or one value per parameter.
         Raises:
-            InputError: an unknown name, a wrong number of values, a value that is no positive number, a
-                policy beyond its range, or a density that is neither a material's nor the unscaled robot's
-                where there are materials.
+            InputError: an unknown name, a wrong number of values, a value that is no positive number, an
+                allocation parameter beyond its range, or a density that is neither a material's nor the
+                unscaled robot's where there are materials.
         """
         found = self._evaluator.assess_values(self._values(design))
         return Design(None, found.assessment, found.heights)

@@ -77,7 +77,7 @@ class OpenedRun:
 
     @property
     def front(self) -> tuple[Design, ...]:
-        """The designs that no other one beats, best first in the first objective."""
+        """The designs that no other one dominates, best first in the first objective."""
         return self.choose()
 
     def design(self, number: int) -> Design:

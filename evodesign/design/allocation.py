@@ -1,9 +1,10 @@
-"""Policies: numbers that a design chooses beside its hardware, on how robot and person divide the work.
+"""Allocation parameters: numbers by which a design chooses how robot and person share the load.
 
     robot_share     part of the load's weight that the robot carries, 0 to 1
     effort_ratio    log10(w_r / w_h), where w_r + w_h = 2 weigh the agents' squared torques
 
-So a front can span from "the robot carries" to "the person carries". A policy belongs to no link.
+So a front can span from "the robot carries" to "the person carries". An allocation parameter
+belongs to no link.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
 
 @dataclass(frozen=True, slots=True)
 class Allocation:
-    """A policy's range.
+    """The range of an allocation parameter.
 
     Args:
         usual: its value in the unscaled robot.

@@ -1,4 +1,4 @@
-"""What may change: length multipliers and densities of groups of links, and policies.
+"""What may change: length multipliers and densities of groups of links, and allocation parameters.
 
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
@@ -37,12 +37,13 @@ UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKi
 
 @dataclass(frozen=True, slots=True)
 class DesignParameter:
-    """One number that a design chooses, for a group of links or, as a policy, for none.
+    """One number that a design chooses, for a group of links or, on the allocation of the load, for none.
 
     Args:
-        kind: length multiplier [-], density [kg/m^3] or policy [-].
-        group: name of the group, unique among the parameters of its kind; of a policy, its own.
-        links: names of the links that share the value; none for a policy.
+        kind: length multiplier [-], density [kg/m^3] or allocation parameter [-].
+        group: name of the group, unique among the parameters of its kind; of an allocation parameter, its
+            own.
+        links: names of the links that share the value; none for an allocation parameter.
         lower, upper: bounds.
         materials: of which a density must be one's, the lightest first; none if every value within the
             bounds will do.
@@ -138,13 +139,13 @@ class DesignSpace:
         return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
-        """The policies among a design's values, by their own names."""
+        """The allocation parameters among a design's values, by their own names."""
         pairs = zip(self.parameters, values, strict=True)
         return {p.group: value for p, value in pairs if p.kind is ParameterKind.POLICY}
 
     @property
     def allocation_names(self) -> frozenset[str]:
-        """Names of the policies that a design chooses."""
+        """Names of the allocation parameters that a design chooses."""
         return frozenset(p.group for p in self.parameters if p.kind is ParameterKind.POLICY)
 
     @property
@@ -153,7 +154,7 @@ class DesignSpace:
         return tuple(len(parameter.materials) for parameter in self.parameters)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
-        """The file's robot as a design: multipliers one, densities averaged over groups, usual policies."""
+        """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation."""
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:

@@ -129,4 +129,4 @@ def largest_relative_torque(
     torques: Mapping[str, float], strengths: Mapping[str, JointStrength]
 ) -> RelativeTorque | None:
     """The joint that works hardest; None when no torque has a strength."""
-    return max(relative_torques(torques, strengths), key=lambda strain: strain.share, default=None)
+    return max(relative_torques(torques, strengths), key=lambda joint: joint.share, default=None)

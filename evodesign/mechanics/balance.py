@@ -10,7 +10,7 @@ with a_j the axis and n_j the moment of the part beyond joint j about the joint.
 tau = g_joint(q, pi) - J_joint^T f and 0 = g_base - J_base^T f without Jacobians or a mass matrix, and is
 linear in the wrenches.
 
-Source: DESIGN 2; equivalent to Sartore et al. 2022, Eq. 12, as docs/model.md shows.
+Source: equivalent to Sartore et al. 2022, Eq. 12, as docs/model.md, section 3, shows.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ class SoleSize:
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What the ground can bear.
+    """Limits of the contact between foot and ground.
 
     Args:
         friction: Coulomb coefficient mu [-].

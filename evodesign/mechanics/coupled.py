@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from evodesign.mechanics.floating_base import ROOT, Configuration, FloatingBody, Instant
+from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.model import Tree
 
@@ -126,19 +126,19 @@ class CoupledModel:
             configurations: by name: robot and person in their own frames, the load (`PAYLOAD`) in the world.
             velocities: parts of nu by name, shape (6 + joints,); what is left out stands still.
         """
-        instants = {
+        states = {
             name: body.at(configurations[name], velocities.get(name, np.zeros(body.size)))
             for name, body in self._bodies.items()
         }
-        rows = [self._rows(instants, agent, kind, side) for agent, kind, side in self._places()]
+        rows = [self._rows(states, agent, kind, side) for agent, kind, side in self._places()]
         ends = np.cumsum([len(drift) for _, drift in rows])
         contacts = tuple(
             Contact(agent.name, kind, side, slice(end - len(drift), end))
             for (agent, kind, side), (_, drift), end in zip(self._places(), rows, ends.tolist(), strict=True)
         )
         return CoupledSystem(
-            mass=block_diag(*[instant.mass for instant in instants.values()]),
-            bias=np.concatenate([instant.bias for instant in instants.values()]),
+            mass=block_diag(*[state.mass for state in states.values()]),
+            bias=np.concatenate([state.bias for state in states.values()]),
             selector=block_diag(*[_selector(body) for body in self._bodies.values()]),
             coupling=np.vstack([jacobian for jacobian, _ in rows]),
             drift=np.concatenate([drift for _, drift in rows]),
@@ -151,16 +151,16 @@ class CoupledModel:
         return [(agent, kind, side) for agent in self._agents for kind in ContactKind for side in SIDES]
 
     def _rows(
-        self, instants: Mapping[str, Instant], agent: Agent, kind: ContactKind, side: str
+        self, states: Mapping[str, BodyState], agent: Agent, kind: ContactKind, side: str
     ) -> tuple[Array, Array]:
         """A contact's rows of Q and of dQ/dt nu."""
         blocks = {name: np.zeros((ROOT, body.size)) for name, body in self._bodies.items()}
         if kind is ContactKind.FOOT:
-            blocks[agent.name], drift = instants[agent.name].twist_in_frame(agent.soles[side])
+            blocks[agent.name], drift = states[agent.name].twist_in_frame(agent.soles[side])
             return np.hstack(list(blocks.values())), drift
         agent_from_world = np.kron(np.eye(2), _world_from_agent(agent).T)[: self._hand_rows]
-        hand, hand_drift = instants[agent.name].twist_in_world(agent.hands[side])
-        grasp, grasp_drift = instants[PAYLOAD].twist_in_world(_grasp(agent, side))
+        hand, hand_drift = states[agent.name].twist_in_world(agent.hands[side])
+        grasp, grasp_drift = states[PAYLOAD].twist_in_world(_grasp(agent, side))
         blocks[agent.name], blocks[PAYLOAD] = hand, -grasp
         jacobian = agent_from_world @ np.hstack(list(blocks.values()))
         return np.asarray(jacobian), np.asarray(agent_from_world @ (hand_drift - grasp_drift))

@@ -1,7 +1,7 @@
-"""Disturbances: what a held load and those who hold it must bear beside their weights.
+"""Disturbances: loads that act beside the weights of robot, person and payload.
 
 A disturbance makes the load heavier or lighter, moves its centre of mass, and pushes. The posture stays;
-hands, feet and joints answer anew. All of it is proportional to the disturbance's size: one of size zero is
+wrenches and joint torques change. All of it is proportional to the disturbance's size: one of size zero is
 none.
 """
 

@@ -23,7 +23,7 @@ from evodesign.body.placement import Placement
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["ROOT", "Configuration", "FloatingBody", "Instant"]
+__all__ = ["ROOT", "BodyState", "Configuration", "FloatingBody"]
 
 Array = NDArray[np.float64]
 
@@ -111,7 +111,7 @@ class FloatingBody:
         places = np.array([model.joints[model.getJointId(name)].idx_q for name in joints], int)
         return cls(model, tuple(joints), np.array([*range(ROOT), *columns]), places, world_from_given)
 
-    def at(self, configuration: Configuration, velocity: Array) -> Instant:
+    def at(self, configuration: Configuration, velocity: Array) -> BodyState:
         """The body at a configuration, moving with a velocity of shape (6 + joints,).
 
         Raises:
@@ -124,7 +124,7 @@ class FloatingBody:
         pin.computeJointJacobians(model, data, q)
         pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))  # last: it leaves dJ/dt nu in `data`
         pin.updateFramePlacements(model, data)
-        return Instant(self, q, bias, data)
+        return BodyState(self, q, bias, data)
 
     def _coordinates(self, configuration: Configuration) -> Array:
         """The configuration vector of pinocchio, in the world."""
@@ -161,7 +161,7 @@ def _joint_model(joint: Joint) -> Any:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Instant:
+class BodyState:
     """A floating body at one configuration and velocity, v velocities.
 
     Args:

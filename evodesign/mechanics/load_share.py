@@ -1,10 +1,10 @@
 """Which shares of the load's weight its balance lets the robot carry.
 
     minimise, maximise    s = sum_robot f_z / m g        over the hands' forces and moments on the load
-    subject to            the load's balance, |push| <= its limit, every hand's moment within what it bears
+    subject to            the load's balance, |push| <= its limit, every hand's moment within its limit
 
 With point grasps at one height the lever rule leaves a single share; rigid grasps leave an interval, which
-grows with the moment that a hand may bear.
+grows with the moment that a hand may transmit.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def share_interval(scene: Scene) -> tuple[float, float]:
 
     payload = scene.payload
     weight = payload.mass * GRAVITY
-    bearable = 0.0 if payload.grasp is Grasp.POINT else payload.hand_moment
+    largest = 0.0 if payload.grasp is Grasp.POINT else payload.hand_moment
     hands = [(agent, side) for agent in (scene.robot, scene.human) for side in SIDES]
     balance = np.hstack([_on_load(scene, agent, side) for agent, side in hands])
     loaded = weight * np.array([0.0, 0.0, 1.0, *np.cross(payload.center_of_mass, [0.0, 0.0, 1.0])])
@@ -41,7 +41,7 @@ def share_interval(scene: Scene) -> tuple[float, float]:
             b_ub=[scene.stance.push, scene.stance.push, FAR * weight, FAR * weight],
             A_eq=balance,
             b_eq=loaded,
-            bounds=([(None, None)] * 3 + [(-bearable, bearable)] * 3) * len(hands),
+            bounds=([(None, None)] * 3 + [(-largest, largest)] * 3) * len(hands),
         )
         for sign in (1.0, -1.0)
     ]

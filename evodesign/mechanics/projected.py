@@ -1,4 +1,4 @@
-"""The paper's formulas for torques and wrenches: a witness of the posture solver that shares nothing with it.
+"""The paper's formulas for torques and wrenches: a reference implementation beside the posture solver.
 
     Lambda^-1 = Q M^-1 Q^T                         S = M^1/2, A = Q S^-1, so that Lambda^-1 = A A^T
     N = 1 - Q^T (Q M^-1 Q^T)^+ Q M^-1              projector, Eq. 11         = 1 - S A^+ A S^-1
@@ -13,9 +13,9 @@ What is unique. N x = 0 exactly when x lies in the range of Q^T, whatever the po
 is the least-norm tau (all joints of both agents weighted alike) for which wrenches with B tau + Q^T f = h
 exist, and does not depend on M. Given that tau, f is unique when the rows of Q are independent, as they are
 when legs and arms can move feet and hands independently. When they are not, wrenches in the null space of Q^T
-may be added freely (a squeeze that no joint feels), and Eq. 13 gives the f of least Euclidean norm over the
-rows of Q, newtons beside newton metres, again whatever M. When no wrenches hold the system, B tau + Q^T f
-misses h by the least amount in the norm of M^-1 (Gauss).
+may be added freely (an internal force that needs no joint torque), and Eq. 13 gives the f of least Euclidean
+norm over the rows of Q, newtons beside newton metres, again whatever M. When no wrenches hold the system, B
+tau + Q^T f misses h by the least amount in the norm of M^-1 (Gauss).
 
 Source: Sartore et al. 2022, Eq. 9 to 13; Rapetti et al. 2021 (minimum-torque wrenches).
 """
@@ -93,7 +93,7 @@ class _Constraint:
 
 
 def constraint_projector(mass: Array, coupling: Array) -> Array:
-    """N, which removes from generalised forces what the contacts can bear.
+    """N, which removes from generalised forces what the contacts can carry.
 
     Args:
         mass: M, shape (v, v), symmetric.
@@ -103,8 +103,8 @@ def constraint_projector(mass: Array, coupling: Array) -> Array:
     Source: Sartore et al. 2022, Eq. 7 and 11.
     """
     constraint = _Constraint.of(mass, coupling)
-    borne = constraint.right.T @ constraint.right
-    return np.asarray(np.eye(len(mass)) - constraint.root @ borne @ constraint.unroot)
+    carried = constraint.right.T @ constraint.right
+    return np.asarray(np.eye(len(mass)) - constraint.root @ carried @ constraint.unroot)
 
 
 def projected_torques(system: CoupledSystem) -> Array:

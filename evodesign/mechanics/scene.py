@@ -153,7 +153,7 @@ class Scene:
         payload: the load.
         ground: under all feet.
         stance: limits of postures.
-        disturbances: what they must bear besides.
+        disturbances: further load cases.
         robot_share: part of what the hands carry that the robot carries, disturbed or not; None where statics
             or the posture problem decides.
     """

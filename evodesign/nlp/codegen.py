@@ -23,10 +23,10 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.nlp.disk_cache import Cache, digest_of, user_cache
+from evodesign.identity import code_digest, digest
+from evodesign.nlp.disk_cache import Cache, user_cache
 
 __all__ = [
-    "RECIPE",
     "CompiledFunctions",
     "Compiler",
     "Library",
@@ -37,9 +37,6 @@ __all__ = [
 ]
 
 Expression = Any
-
-RECIPE = "1"
-"""To be raised whenever this module makes other C from the same program."""
 
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-O1", "-shared", "-fPIC", "-ffp-contract=off")
@@ -151,14 +148,13 @@ def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> 
 def _key(nlp: Mapping[str, Expression], compiler: Compiler) -> str:
     expressions = ca.Function("nlp", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]]).serialize()
     machine = " ".join(os.uname()[::4])  # system and processor
-    words = [RECIPE, ca.__version__, machine, *FLAGS, *compiler.command, compiler.version, expressions]
-    return digest_of(*(word.encode(errors="surrogateescape") for word in words))
+    return digest((code_digest(__name__), machine, compiler, expressions))
 
 
 def _c_text(nlp: Mapping[str, Expression]) -> str:
     """C of all functions that `nlpsol` looks for in a library, under the names that it gives them itself."""
-    quiet = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes"}}
-    solver = ca.nlpsol("solver", "ipopt", dict(nlp), quiet)
+    silent = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes"}}
+    solver = ca.nlpsol("solver", "ipopt", dict(nlp), silent)
     generator = ca.CodeGenerator("functions", {"verbose": False})
     for function in (solver.oracle(), *(solver.get_function(name) for name in solver.get_function())):
         generator.add(function)

@@ -21,28 +21,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["Cache", "digest_of", "open_cache", "user_cache"]
+__all__ = ["Cache", "open_cache", "user_cache"]
 
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
-
-
-def digest_of(*parts: bytes) -> str:
-    """SHA-256 of a sequence of parts, as hexadecimal digits: a key.
-
-    Each part is preceded by its length, so that no two different sequences run together.
-    """
-    digest = hashlib.sha256()
-    for part in parts:
-        digest.update(len(part).to_bytes(8, "big"))
-        digest.update(part)
-    return digest.hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
 class Cache:
     """A directory of the user's own, made by `open_cache` or `user_cache`.
 
-    A key stands for everything that its content depends on, so any undamaged entry of a key will do.
+    A key is a digest of everything that its content depends on, so any undamaged entry of a key will do.
 
     Args:
         directory: resolved, and writable by this user alone.

@@ -130,7 +130,7 @@ class Conditions:
 
 def _function(program: Program) -> Any:
     """A CasADi function of symbols, multipliers and parameters that gives the parts of `Derivatives`."""
-    x, p, rows = program.symbols, program.parameters, program.rows
+    x, p, rows = program.symbols, program.given, program.rows
     multipliers = ca.SX.sym("multipliers", rows.numel())
     lagrangian = program.cost + ca.dot(multipliers, rows)
     hessian, gradient = ca.hessian(lagrangian, x)

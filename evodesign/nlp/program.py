@@ -1,35 +1,19 @@
-"""Nonlinear programs: named variables and constraints, solved by IPOPT.
+"""Nonlinear programs: named variables, constraints and parameters.
 
-A program is assembled from blocks (an agent, a load) and does not know what they mean. Variables are scaled
-so that IPOPT sees numbers of order one; everything outside is in SI units.
+A program is assembled from blocks and does not know what they mean. Variables are scaled so that a solver
+sees numbers of order one; everything outside is in SI units.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping, Sequence
-from copy import copy
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_functions
-from evodesign.records import Status
-
-__all__ = [
-    "Constraint",
-    "IpoptOptions",
-    "Multipliers",
-    "Program",
-    "RawSolution",
-    "Solver",
-    "Start",
-    "Variable",
-    "values_under",
-]
+__all__ = ["Constraint", "Program", "Start", "Variable"]
 
 Array = Any
 Expression = Any
@@ -47,6 +31,9 @@ class Variable:
         symbol: SX column that the solver varies; the physical value is scale * symbol.
         scale: size of one unit of the symbol, in SI units.
         lower, upper, start: bounds and starting values in SI units, one per row.
+        labels: words for the rows; none: they are counted from zero.
+        drawn: whether a random start draws it from between its bounds.
+        key: by which those who assemble the program find it again.
     """
 
     name: str
@@ -55,6 +42,9 @@ class Variable:
     lower: Array
     upper: Array
     start: Array
+    labels: tuple[str, ...] = ()
+    drawn: bool = False
+    key: Hashable = None
 
     @property
     def value(self) -> Expression:
@@ -73,48 +63,43 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """A named block of constraints lower <= expression <= upper."""
+    """A named block of constraints lower <= expression <= upper; labels as for a variable."""
 
     name: str
     expression: Expression
     lower: float
     upper: float
-
-
-@dataclass(frozen=True, slots=True)
-class IpoptOptions:
-    """IPOPT's settings; the values are what measured best on posture problems (DESIGN 3).
-
-    Args:
-        tolerance: of the scaled optimality error; bounds are taken as wider by as much, at most 1e-8.
-        iterations: limit.
-        seconds: limit of wall time per solve [s].
-        compiled: whether the program's functions run as machine code; results are the same, sooner.
-        near: whether solves begin at a solution, to be found again more exactly: the barrier starts small,
-            and bounds are taken as they are.
-    """
-
-    tolerance: float = 1e-8
-    iterations: int = 300
-    seconds: float = 20.0
-    compiled: bool = False
-    near: bool = False
+    labels: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Minimise a cost over variables, subject to constraints, with numbers given as parameters."""
+    """Minimise a cost over variables, subject to constraints, with numbers given as parameters, by name."""
 
     name: str
     variables: tuple[Variable, ...]
     constraints: tuple[Constraint, ...]
     cost: Expression
-    parameters: Expression
+    parameters: Mapping[str, Expression]
 
     @property
     def symbols(self) -> Expression:
         """Everything that the solver varies, as one column."""
         return ca.vertcat(*[variable.symbol for variable in self.variables])
+
+    @property
+    def given(self) -> Expression:
+        """All parameters, as one column."""
+        return ca.vertcat(*self.parameters.values())
+
+    @property
+    def columns(self) -> Mapping[str, slice]:
+        """Where each parameter lies among the rows of `given`."""
+        found, first = {}, 0
+        for name, symbol in self.parameters.items():
+            found[name] = slice(first, first + symbol.numel())
+            first += symbol.numel()
+        return found
 
     @property
     def rows(self) -> Expression:
@@ -148,150 +133,14 @@ class Program:
             first = last
         return values
 
+    def packed_parameters(self, values: Mapping[str, Any]) -> Array:
+        """The column of `given` from a number or several for each parameter.
 
-@dataclass(frozen=True, slots=True)
-class Multipliers:
-    """What the bounds and constraints of a program cost at its solution, per unit of each row.
-
-    Positive at an upper bound, negative at a lower one: grad f + (grad g) constraints + bounds = 0.
-
-    Args:
-        bounds: of the variables (their symbols), one per row.
-        constraints: one per row.
-    """
-
-    bounds: Array
-    constraints: Array
-
-
-@dataclass(frozen=True, slots=True)
-class RawSolution:
-    """What IPOPT returned.
-
-    Args:
-        values: value by variable name, SI units.
-        status: solved, or why not.
-        reason: IPOPT's word for it.
-        iterations: number of iterations.
-        seconds: wall time [s].
-        cost: of the last iterate.
-        cost_slope: derivative of the optimal cost with respect to each parameter (envelope theorem; the
-            negative of CasADi's lam_p).
-        multipliers: of bounds and constraints.
-    """
-
-    values: Mapping[str, Array]
-    status: Status
-    reason: str
-    iterations: int
-    seconds: float
-    cost: float
-    cost_slope: Array
-    multipliers: Multipliers
-
-    def of(self, agent: str) -> dict[str, Array]:
-        """The values of one agent's variables, by their name without the agent's."""
-        return values_under(agent, self.values)
-
-
-def values_under(block: str, values: Mapping[str, Array]) -> dict[str, Array]:
-    """The values of an agent's (or other block's) variables, by their name without the block's."""
-    prefix = f"{block}."
-    return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
-
-
-_STATUS = {
-    "Solve_Succeeded": Status.SOLVED,
-    "Solved_To_Acceptable_Level": Status.SOLVED,
-    "Infeasible_Problem_Detected": Status.INFEASIBLE,
-    "Maximum_Iterations_Exceeded": Status.ITERATION_LIMIT,
-    "Maximum_CpuTime_Exceeded": Status.TIME_LIMIT,
-    "Maximum_WallTime_Exceeded": Status.TIME_LIMIT,
-}
-
-
-class Solver:
-    """A program made ready once; solved any number of times for other parameters and starts.
-
-    Attributes:
-        program: what is solved.
-        functions: the machine code that evaluates it, or why CasADi's virtual machine does.
-    """
-
-    def __init__(self, program: Program, options: IpoptOptions) -> None:
-        self.program = program
-        self._options = options
-        self._bounds, self._limits = program.bounds, program.limits
-        problem = {"x": program.symbols, "p": program.parameters, "f": program.cost, "g": program.rows}
-        self.functions: CompiledFunctions | NotCompiled = (
-            compiled_functions(problem) if options.compiled else NotCompiled("compiling is switched off")
-        )
-        self._oracle = problem if isinstance(self.functions, NotCompiled) else self.functions.oracle
-        self._solve = ca.nlpsol(program.name, "ipopt", self._oracle, _casadi_options(options))
-
-    @cached_property
-    def near(self) -> Solver:
-        """The same for solves that begin close to a solution: a third of the iterations."""
-        other = copy(self)
-        options = replace(self._options, near=True)
-        other._solve = ca.nlpsol(self.program.name, "ipopt", self._oracle, _casadi_options(options))
-        return other
-
-    @property
-    def start(self) -> dict[str, Array]:
-        """The program's own starting values, SI units."""
-        return {variable.name: variable.start for variable in self.program.variables}
-
-    def solve(self, parameters: Sequence[float], start: Mapping[str, Array]) -> RawSolution:
-        """Solve from a start (variables left out begin at the program's own values)."""
-        began = time.perf_counter()
-        result = self._solve(
-            x0=self.program.packed(start),
-            p=np.asarray(parameters, float),
-            lbx=self._bounds[0],
-            ubx=self._bounds[1],
-            lbg=self._limits[0],
-            ubg=self._limits[1],
-        )
-        seconds = time.perf_counter() - began
-        stats = self._solve.stats()
-        word = str(stats["return_status"])
-        return RawSolution(
-            values=self.program.unpacked(np.asarray(result["x"]).ravel()),
-            status=_STATUS.get(word, Status.NUMERICAL_FAILURE),
-            reason=word,
-            iterations=int(stats["iter_count"]),
-            seconds=seconds,
-            cost=float(result["f"]),
-            cost_slope=-np.asarray(result["lam_p"]).ravel(),
-            multipliers=Multipliers(np.asarray(result["lam_x"]).ravel(), np.asarray(result["lam_g"]).ravel()),
-        )
-
-
-def _casadi_options(options: IpoptOptions) -> dict[str, Any]:
-    return {
-        "print_time": False,
-        "error_on_fail": False,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "tol": options.tolerance,
-            "bound_relax_factor": min(options.tolerance, 1e-8),
-            "max_iter": options.iterations,
-            "max_wall_time": options.seconds,
-            "fast_step_computation": "yes",
-            "nlp_scaling_method": "none",
-            **(_NEAR if options.near else {}),
-        },
-    }
-
-
-_NEAR = {
-    "mu_init": 1e-8,
-    "bound_push": 1e-9,
-    "bound_frac": 1e-9,
-    "slack_bound_push": 1e-9,
-    "slack_bound_frac": 1e-9,
-    "bound_mult_init_method": "mu-based",
-    "bound_relax_factor": 0.0,
-}
+        Raises:
+            ValueError: other parameters than the program's are given.
+        """
+        if set(values) != set(self.parameters):
+            wanted, found = ", ".join(sorted(self.parameters)), ", ".join(sorted(values))
+            raise ValueError(f"program '{self.name}' wants parameters {wanted}; found {found}")
+        blocks = [np.atleast_1d(np.asarray(values[name], float)) for name in self.parameters]
+        return np.concatenate([[], *blocks])

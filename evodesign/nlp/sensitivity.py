@@ -2,8 +2,8 @@
 
 IPOPT finds the solution again with a tight tolerance; the active set is read from multipliers and slacks;
 Newton's method on it reaches rounding accuracy; and the implicit function theorem gives the derivative
-(`kkt`). Every active inequality must have a multiplier of the right sign and every other one must hold
-(strict complementarity). Where a condition fails the solution has a kink there, and a sentence says so.
+(`optimality`). Every active inequality must have a multiplier of the right sign and every other one must hold
+(strict complementarity). Where a condition fails the derivative does not exist, and a sentence says so.
 
 Source: Fiacco, Introduction to Sensitivity and Stability Analysis in Nonlinear Programming (1983), Theorem
 3.2.2; Nocedal and Wright, Numerical Optimization, ch. 12.
@@ -28,7 +28,8 @@ from evodesign.nlp.optimality import (
     error,
     moved,
 )
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.nlp.program import Program
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.records import Status
 
 __all__ = ["Limit", "Optimum", "SolutionSensitivity"]
@@ -67,6 +68,7 @@ class Optimum:
         cost: the least cost.
         cost_slope: its derivative with respect to each parameter.
         limits: every inequality.
+        columns: where each parameter lies among the columns of the derivatives.
     """
 
     values: Mapping[str, Array]
@@ -74,6 +76,25 @@ class Optimum:
     cost: float
     cost_slope: Array
     limits: tuple[Limit, ...]
+    columns: Mapping[str, slice]
+
+    def along(self, parameter: str, change: Array | None = None) -> Optimum:
+        """The optimum as a function of one parameter, or of what that parameter follows.
+
+        Args:
+            parameter: its name; the others stay as they are.
+            change: derivative of the parameter with respect to what it follows, shape (its rows, columns).
+        """
+        own = self.columns[parameter]
+        chain = np.eye(own.stop - own.start) if change is None else change
+        return Optimum(
+            values=self.values,
+            slopes={name: slope[:, own] @ chain for name, slope in self.slopes.items()},
+            cost=self.cost,
+            cost_slope=self.cost_slope[own] @ chain,
+            limits=tuple(replace(limit, slope=limit.slope[own] @ chain) for limit in self.limits),
+            columns={parameter: slice(0, chain.shape[1])},
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,30 +122,28 @@ class SolutionSensitivity:
     Args:
         program: with smooth functions.
         options: of the solver; its tolerance becomes a tighter one.
-        labels: words for the rows of variables and constraints, by name, to speak of them in kinks; rows
-            without one are counted from zero.
     """
 
-    def __init__(self, program: Program, options: IpoptOptions, labels: Mapping[str, Sequence[str]]) -> None:
+    def __init__(self, program: Program, options: IpoptOptions) -> None:
         self.program = program
-        self._names = _names(program, labels)
+        self._names = _names(program)
         few = replace(options, tolerance=NEAR_TOLERANCE, near=True, compiled=False)  # too few to compile for
         self._solver = Solver(program, few)
         self._conditions = Conditions(program)
 
-    def at(self, parameters: Sequence[float], start: Mapping[str, Any]) -> Optimum | NotDifferentiable:
+    def at(self, parameters: Mapping[str, Any], start: Mapping[str, Any]) -> Optimum | NotDifferentiable:
         """The local optimum at a solution that is known to the solver's accuracy, in SI units."""
         return self.of(parameters, self.solve(parameters, start))
 
-    def solve(self, parameters: Sequence[float], start: Mapping[str, Any]) -> RawSolution:
+    def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Any]) -> RawSolution:
         """The solver's most accurate solution from one that it knows less accurately, in SI units."""
         return self._solver.solve(parameters, start)
 
-    def of(self, parameters: Sequence[float], raw: RawSolution) -> Optimum | NotDifferentiable:
+    def of(self, parameters: Mapping[str, Any], raw: RawSolution) -> Optimum | NotDifferentiable:
         """The local optimum at a solution with multipliers."""
         if raw.status is not Status.SOLVED:
             return NotDifferentiable(f"the solution was not found again: {raw.reason}")
-        given = np.asarray(parameters, float)
+        given = self.program.packed_parameters(parameters)
         sides, point = self._begin(given, raw)
         for _ in range(NEWTON_STEPS):
             here = self._conditions.at(point, given)
@@ -181,16 +200,17 @@ class SolutionSensitivity:
             cost=here.cost,
             cost_slope=here.cost_slope,
             limits=limits,
+            columns=self.program.columns,
         )
 
 
-def _names(program: Program, labels: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
+def _names(program: Program) -> tuple[str, ...]:
     """A name for every symbol, then every constraint's row."""
-    blocks = [(v.name, v.symbol.numel()) for v in program.variables]  # a constraint may have the same name
-    blocks += [(c.name, c.expression.numel()) for c in program.constraints]
+    blocks = [(v.name, v.symbol.numel(), v.labels) for v in program.variables]
+    blocks += [(c.name, c.expression.numel(), c.labels) for c in program.constraints]
     names: list[str] = []
-    for name, count in blocks:
-        rows = labels.get(name, [str(row) for row in range(count)])
+    for name, count, labels in blocks:
+        rows = labels or [str(row) for row in range(count)]
         names += [f"{name} {row}" for row in rows] if count > 1 else [name]
     return tuple(names)
 

@@ -8,41 +8,27 @@ differ in the person share the robot's.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
-from evodesign.mechanics.scene import Agent, Scene
-from evodesign.nlp.program import IpoptOptions, Program, Solver
+from evodesign.nlp.program import Program
+from evodesign.nlp.solver import IpoptOptions, Solver
 
-__all__ = ["SolverCache", "program_key"]
+__all__ = ["SolverCache"]
 
 
 class SolverCache:
     """Solvers by what their programs follow from."""
 
     def __init__(self) -> None:
-        self._solvers: dict[tuple[str, ...], Solver] = {}
+        self._solvers: dict[tuple[str, IpoptOptions], Solver] = {}
 
-    def solver(self, key: tuple[str, ...], program: Callable[[], Program], options: IpoptOptions) -> Solver:
+    def solver(self, key: str, program: Callable[[], Program], options: IpoptOptions) -> Solver:
         """The solver of a program, built when it is first asked for.
 
         Args:
-            key: of everything that distinguishes the program from others on this shelf.
+            key: of everything that the program follows from.
             program: builds it.
             options: of the solver.
         """
-        whole_key = (*key, repr(options))
-        if whole_key not in self._solvers:
-            self._solvers[whole_key] = Solver(program(), options)
-        return self._solvers[whole_key]
-
-
-def program_key(scene: Scene, *agents: Agent) -> str:
-    """What the programs of a scene's agents follow from, beside the agents; the load's mass is none of it.
-
-    Args:
-        scene: load, ground and stance.
-        agents: those with a body in the program; the same object is the same agent.
-    """
-    load = replace(scene.payload, mass=0.0, label="")
-    limits = (scene.ground, scene.stance, scene.robot_share, scene.disturbances)
-    return repr((load, *limits, *(id(agent) for agent in agents)))
+        if (key, options) not in self._solvers:
+            self._solvers[key, options] = Solver(program(), options)
+        return self._solvers[key, options]

@@ -1,23 +1,25 @@
-"""Seeds against luck: a few starts that lead nearly every design to its best known optimum.
+"""A portfolio of starts: a few from which nearly every design converges to its best known optimum.
 
-The optima of quasi-random training designs are the candidates. A seed is worth as many designs as it leads
-close to the best that is known of them; the worthiest comes first, and seeds are added until all training
-designs are led well. Then fresh designs are held against the portfolio; those that it fails are trained with,
-and others are held against what has grown. The same landscape always gets the same portfolio.
+The optima of quasi-random training designs are the candidates. A start serves a design if it converges to
+within 1 % of the best that is known of it; the one that serves most comes first, and starts are added until
+all training designs are served. Then the portfolio is examined on fresh designs; it is trained with those
+that it fails, and examined again on others. The same landscape always gets the same portfolio.
 
-Source: DESIGN 3 (seeds); greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
+Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.nlp.program import RawSolution, Solver, Start
+from evodesign.nlp.program import Start
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.records import Status
 
 __all__ = [
@@ -45,16 +47,16 @@ class Training:
     Args:
         designs: for training, and as many fresh ones in each round.
         starts: random ones per design, beside the fixed ones, to find its best optimum.
-        candidates: tried for each seed.
-        seeds: the most that a portfolio holds.
+        candidates: tried for each start.
+        portfolio: the most starts that a portfolio holds.
         rounds: of fresh designs, at most.
-        share: of fresh designs led well, with which a portfolio is good enough.
+        share: of fresh designs served, with which a portfolio is good enough.
     """
 
     designs: int = 64
     starts: int = 10
     candidates: int = 8
-    seeds: int = 6
+    portfolio: int = 6
     rounds: int = 3
     share: float = 0.99
 
@@ -64,22 +66,22 @@ class Landscape:
     """A cost to be minimised, whatever the design.
 
     Args:
-        solver: of a program whose first parameters are the design's.
-        beside: its other parameters.
+        solver: of a program with a parameter `design`.
+        beside: its other parameters, by name.
         starts: fixed ones, for any design.
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
             and in the cost's unit.
     """
 
     solver: Solver
-    beside: tuple[float, ...]
+    beside: Mapping[str, Any]
     starts: tuple[Start, ...]
     relative: float
     absolute: float
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """Where a start leads."""
-        return self.solver.solve([*design, *self.beside], start)
+        return self.solver.solve({"design": design, **self.beside}, start)
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
         """Which costs are close enough to the best ones."""
@@ -88,11 +90,11 @@ class Landscape:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How well a portfolio leads designs that it was not made from.
+    """How well a portfolio serves designs that it was not made from.
 
     Args:
         designs: how many were tried.
-        good: how many of them it led close to their best known optimum.
+        good: how many of them converge close to their best known optimum.
         worst: largest distance from the best known optimum, in the cost's unit.
     """
 
@@ -102,20 +104,20 @@ class Coverage:
 
     @property
     def share(self) -> float:
-        """Share of the designs that were led well; 1 where none could be tried."""
+        """Share of the designs that are served; 1 where none could be tried."""
         return self.good / self.designs if self.designs else 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class StartPortfolio:
-    """Starts, the worthiest first, and how good they are; none where no training design has an optimum."""
+    """Starts, the one that serves most first, and how good they are; none where nothing could be trained."""
 
-    seeds: tuple[Start, ...]
+    starts: tuple[Start, ...]
     coverage: Coverage
 
 
 def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: Training) -> StartPortfolio:
-    """The seeds of a landscape.
+    """The portfolio of a landscape.
 
     Args:
         landscape: whose optima are sought.
@@ -130,25 +132,25 @@ def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: T
         return [study for study in found if study is not None]
 
     learned = studies(landscape.starts)
-    seeds = _grown(landscape, (), learned, training)
+    chosen = _grown(landscape, (), learned, training)
     coverage = Coverage(0, 0, 0.0)
     for _ in range(training.rounds):
-        fresh = studies(seeds)
-        led = _least_costs(landscape, seeds, fresh)
-        good = landscape.good(led, _best(fresh))
-        coverage = Coverage(len(fresh), int(good.sum()), float(np.max(led - _best(fresh), initial=0.0)))
-        if coverage.share >= training.share or len(seeds) == training.seeds:
+        fresh = studies(chosen)
+        least = _least_costs(landscape, chosen, fresh)
+        good = landscape.good(least, _best(fresh))
+        coverage = Coverage(len(fresh), int(good.sum()), float(np.max(least - _best(fresh), initial=0.0)))
+        if coverage.share >= training.share or len(chosen) == training.portfolio:
             break
         learned = [study for study, well in zip(fresh, good, strict=True) if not well]
-        seeds = _grown(landscape, seeds, learned, training)
-    return StartPortfolio(seeds, coverage)
+        chosen = _grown(landscape, chosen, learned, training)
+    return StartPortfolio(chosen, coverage)
 
 
 def random_start(landscape: Landscape, rng: np.random.Generator) -> Start:
-    """One of the fixed starts, with all joints anywhere in their ranges."""
+    """One of the fixed starts, with all that is drawn anywhere between its bounds."""
     start = dict(landscape.starts[int(rng.integers(len(landscape.starts)))])
     for variable in landscape.solver.program.variables:
-        if variable.name.endswith(".joints"):
+        if variable.drawn:
             start[variable.name] = rng.uniform(variable.lower, variable.upper)
     return start
 
@@ -182,7 +184,7 @@ class _Study:
 def _study(
     landscape: Landscape, design: Design, known: Sequence[Start], count: int, rng: np.random.Generator
 ) -> _Study | None:
-    """The best of some known and some random starts; None where none leads to an optimum."""
+    """The best of some known and some random starts; None where none converges."""
     starts = [*known, *(random_start(landscape, rng) for _ in range(count))]
     ends = [landscape.solve(design, start) for start in starts]
     solved = [end for end in ends if end.status is Status.SOLVED]
@@ -196,12 +198,12 @@ def _best(studies: Sequence[_Study]) -> Costs:
     return np.array([study.cost for study in studies])
 
 
-def _least_costs(landscape: Landscape, seeds: Sequence[Start], studies: Sequence[_Study]) -> Costs:
-    """The least cost to which seeds lead each design; infinite where they lead to none."""
-    costs = np.full((len(studies), 1 + len(seeds)), np.inf)
+def _least_costs(landscape: Landscape, chosen: Sequence[Start], studies: Sequence[_Study]) -> Costs:
+    """The least cost to which some starts lead each design; infinite where they lead to none."""
+    costs = np.full((len(studies), 1 + len(chosen)), np.inf)
     for row, study in enumerate(studies):
-        for column, seed in enumerate(seeds):
-            end = landscape.solve(study.design, seed)
+        for column, start in enumerate(chosen):
+            end = landscape.solve(study.design, start)
             if end.status is Status.SOLVED:
                 costs[row, column] = end.cost
     least: Costs = costs.min(axis=1)
@@ -209,12 +211,12 @@ def _least_costs(landscape: Landscape, seeds: Sequence[Start], studies: Sequence
 
 
 def _grown(
-    landscape: Landscape, seeds: tuple[Start, ...], studies: Sequence[_Study], training: Training
+    landscape: Landscape, chosen: tuple[Start, ...], studies: Sequence[_Study], training: Training
 ) -> tuple[Start, ...]:
-    """The seeds with others added until every study is led well, or there are as many as there may be."""
-    best, led = _best(studies), np.full(len(studies), np.inf)
-    while len(seeds) < training.seeds:
-        open_ones = np.flatnonzero(~landscape.good(led, best)).tolist()
+    """The starts with others added until every study is served, or there are as many as there may be."""
+    best, least = _best(studies), np.full(len(studies), np.inf)
+    while len(chosen) < training.portfolio:
+        open_ones = np.flatnonzero(~landscape.good(least, best)).tolist()
         if not open_ones:
             break
         left = [studies[index] for index in open_ones]
@@ -222,9 +224,9 @@ def _grown(
         costs = np.array([_least_costs(landscape, [study.optimum], left) for study in tried])
         best[open_ones] = np.minimum(best[open_ones], costs.min(axis=0))
         winner = int(np.argmax(landscape.good(costs, best[open_ones]).sum(axis=1)))
-        led[open_ones] = np.minimum(led[open_ones], costs[winner])
-        seeds = (*seeds, tried[winner].optimum)
-    return seeds
+        least[open_ones] = np.minimum(least[open_ones], costs[winner])
+        chosen = (*chosen, tried[winner].optimum)
+    return chosen
 
 
 def _spread(count: int, wanted: int) -> list[int]:

@@ -31,7 +31,7 @@ A = TypeVar("A")
 R = TypeVar("R")
 
 HANDED_OUT_PER_THREAD = 2
-"""One argument that runs and one that waits at the worker's door."""
+"""One argument that runs and one that is prefetched."""
 
 COUNT_EVERY = 1.0
 """Interval [s] at which workers are counted."""

@@ -1,6 +1,6 @@
 """What runs in a Dask worker: every thread of it keeps a worker process of its own for the evaluations.
 
-So whatever an evaluation does, the Dask worker lives on, knows the reason, and tells it. Its processes end
+So whatever an evaluation does, the Dask worker lives on and reports the reason. Its processes end
 with it.
 """
 
@@ -22,7 +22,7 @@ R = TypeVar("R")
 
 
 class _Thread(threading.local):
-    """The cell of each thread of this Dask worker."""
+    """The worker process of each thread of this Dask worker."""
 
     process: WorkerProcess[Any, Any] | None = None
 

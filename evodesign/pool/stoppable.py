@@ -1,4 +1,4 @@
-"""A gate before a pool: once it is shut, the pool is given no further argument, and finishes what it has."""
+"""Stopping a pool early: from some moment on it is given no further argument, and finishes what it has."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ R = TypeVar("R")
 
 
 def run_stoppable(
-    pool: Pool, factory: Factory[A, R], arguments: Iterable[A], shut: Callable[[], bool]
+    pool: Pool, factory: Factory[A, R], arguments: Iterable[A], stop: Callable[[], bool]
 ) -> Generator[Finished[R], None, None]:
-    """The ends of all arguments that a pool took before the gate was shut, as they come.
+    """The ends of all arguments that a pool took before the stop, as they come.
 
     Args:
         pool: where the task runs.
         factory: as in `Pool.run`.
         arguments: as in `Pool.run`.
-        shut: asked whenever an argument is about to be taken; True from some moment on.
+        stop: called whenever an argument is about to be taken; True from some moment on.
     """
-    results = pool.run(factory, _until(shut, arguments))
+    results = pool.run(factory, _until(stop, arguments))
     try:
         yield from results
     finally:
@@ -32,8 +32,8 @@ def run_stoppable(
             results.close()
 
 
-def _until(shut: Callable[[], bool], arguments: Iterable[A]) -> Iterator[A]:
+def _until(stop: Callable[[], bool], arguments: Iterable[A]) -> Iterator[A]:
     for argument in arguments:
-        if shut():
+        if stop():
             return
         yield argument

@@ -1,7 +1,7 @@
 """Worker processes of one machine, working side by side.
 
-Some arguments may wait at the door: a worker that is done takes the next one at once, without waiting until
-the caller has dealt with what is done (it may be writing to disk, or thinking).
+Some arguments are prefetched: a worker that is done takes the next one at once, without waiting until the
+caller has dealt with what is done (it may be writing to disk, or computing).
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ LOOK_EVERY = 0.2
 
 
 class WorkerGroup(Generic[A, R]):
-    """Cells that are free, those at work, and what waits at the door.
+    """Worker processes that are free, those at work, and prefetched arguments.
 
     Args:
-        cells: of one factory, all free.
-        door: arguments that may wait.
+        processes: of one factory, all free.
+        prefetch: arguments that may wait beside those at work.
     """
 
     def __init__(self, processes: Iterable[WorkerProcess[A, R]], prefetch: int = 0) -> None:
@@ -45,19 +45,19 @@ class WorkerGroup(Generic[A, R]):
         self._ended = False
 
     def free(self) -> int:
-        """Places for arguments, those at the door included."""
+        """Places for arguments, prefetched ones included."""
         with self._lock:
             return self._capacity - len(self._busy) - len(self._waiting)
 
     def begin(self, index: int, argument: A) -> None:
-        """Give an argument to a free cell, or let it wait for one."""
+        """Give an argument to a free process, or let it wait for one."""
         with self._lock:
             self._waiting.append((index, argument))
             if self._free:
                 self._start(self._free.pop())
 
     def more(self) -> bool:
-        """Whether another cell is done."""
+        """Whether another process is done."""
         with self._lock:
             return any(future in self._busy for future in self._done)
 
@@ -95,16 +95,16 @@ class WorkerGroup(Generic[A, R]):
             return next((future for future, (_, process) in self._busy.items() if process.due <= now), None)
 
     def _start(self, process: WorkerProcess[A, R]) -> None:
-        """Give a cell what has waited longest. The lock is held."""
+        """Give a process what has waited longest. The lock is held."""
         index, argument = self._waiting.popleft()
         future = process.begin(index, argument)
         self._busy[future] = index, process
         future.add_done_callback(self._pass_on)
 
     def _pass_on(self, future: Future[Finished[R]]) -> None:
-        """Give the cell of a future that is done its next argument and tell of it, in the executor's thread.
+        """Give the process of a done future its next argument and report it, in the executor's thread.
 
-        A cell that has lost its process, or whose end was taken already, is left to the caller's thread.
+        A worker that has lost its process, or whose end was taken already, is left to the caller's thread.
         """
         well = future.exception() is None
         with self._lock:

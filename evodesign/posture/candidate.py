@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
-from evodesign.nlp.program import RawSolution
-from evodesign.posture.check import TOLERANCE
-from evodesign.posture.results import AgentPosture, Attempt, HeightSolution
+from evodesign.nlp.solver import RawSolution
+from evodesign.posture.check import TOLERANCE, sizes
+from evodesign.posture.results import Attempt, HeightSolution, Instant
+from evodesign.posture.terms.base import Residual
 from evodesign.records import Status, worst_status
 
 __all__ = ["Candidate", "Trial", "cheapest", "checked", "height_solution"]
@@ -19,15 +20,13 @@ class Candidate:
 
     Args:
         attempt: how it ended; solved only if the check agrees.
-        postures: by agent name.
+        instants: its postures; none unless the solver succeeded.
         residuals: what the check found.
-        disturbed: what is borne under each disturbance, by its name and the agent's.
     """
 
     attempt: Attempt
-    postures: Mapping[str, AgentPosture]
-    residuals: Mapping[str, float]
-    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
+    instants: tuple[Instant, ...]
+    residuals: tuple[Residual, ...]
 
     @property
     def solved(self) -> bool:
@@ -43,27 +42,30 @@ class Trial:
     best: Candidate | None
 
 
-def checked(start: str, raw: RawSolution, residuals: Mapping[str, float]) -> Attempt:
+def checked(formulation: str, start: str, raw: RawSolution, residuals: Sequence[Residual]) -> Attempt:
     """How a solve ended in the light of its residuals (none for a solve that failed or was not looked at)."""
     status, reason = raw.status, raw.reason
     if residuals:
-        worst = max(residuals, key=lambda name: residuals[name])
-        if not residuals[worst] <= TOLERANCE:
+        worst = max(residuals, key=lambda residual: residual.size)
+        if not worst.size <= TOLERANCE:
             status = Status.NUMERICAL_FAILURE
-            reason = f"the check found {worst} {residuals[worst]:.1e} above {TOLERANCE:g}"
-    return Attempt(start, status, reason, raw.iterations, raw.seconds, raw.cost)
+            reason = f"the check found {worst.name} {worst.size:.1e} above {TOLERANCE:g}"
+    return Attempt(formulation, start, status, reason, raw.iterations, raw.seconds, raw.cost)
 
 
 def cheapest(
-    ends: Sequence[tuple[str, RawSolution]], finish: Callable[[str, RawSolution], Candidate]
+    formulation: str,
+    ends: Sequence[tuple[str, RawSolution]],
+    finish: Callable[[str, RawSolution], Candidate],
 ) -> Trial:
     """Finish and check solves from the cheapest on, until one holds.
 
     Args:
+        formulation: its name.
         ends: the name of each start, and where it led.
         finish: makes a candidate of a solve that succeeded.
     """
-    attempts = [checked(start, raw, {}) for start, raw in ends]
+    attempts = [checked(formulation, start, raw, ()) for start, raw in ends]
     solved = [place for place, (_, raw) in enumerate(ends) if raw.status is Status.SOLVED]
     for place in sorted(solved, key=lambda place: ends[place][1].cost):
         candidate = finish(*ends[place])
@@ -80,15 +82,16 @@ def height_solution(height: float, trials: Sequence[Trial]) -> HeightSolution:
     if not found:
         status = worst_status([attempt.status for attempt in attempts])
         reason = f"no posture found at {height:g} m: " + "; ".join(a.reason for a in attempts)
-        return HeightSolution(height, status, reason, {}, {}, attempts, "")
+        return HeightSolution(height, status, reason, {}, {}, attempts)
     best = min(found, key=lambda candidate: candidate.attempt.cost)
+    (instant,) = best.instants
     return HeightSolution(
         height=height,
         status=Status.SOLVED,
         reason="solved",
-        postures=best.postures,
-        residuals=best.residuals,
+        postures=instant.postures,
+        residuals=sizes(best.residuals),
         attempts=attempts,
-        start=best.attempt.start,
-        disturbed=best.disturbed,
+        attempt=best.attempt,
+        disturbed=instant.disturbed,
     )

@@ -1,22 +1,29 @@
-"""Which physical limits a joint problem enforces, and which it only hears of from the check.
+"""Groups of limits, which a setting enforces or only hears of from the check.
 
-The published code of the paper defines limits and applies none; this says, by the names that constraints and
-the check's residuals share, what such a setting leaves out.
+Every row, bound, cost and residual of a term belongs to a group. The published code of the paper defines
+limits and applies none: a setting like it leaves groups out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from enum import StrEnum
 
-import numpy as np
+__all__ = ["Enforced", "LimitGroup"]
 
-from evodesign.nlp.program import Variable
 
-__all__ = ["Enforced"]
+class LimitGroup(StrEnum):
+    """What a limit is about; the value is how a file and a sentence call it."""
 
-STANCE = ("feet_apart", "feet_stagger", "foot_yaw", "feet_yaw", "trunk_clear", "base_tilt", "push")
-"""Last words of the names of stance constraints, and of their residuals in the check."""
+    ALWAYS = "Eq. 14 a to g"
+    """The load level at its height, hands on it, feet on the ground and flat, statics, torque limits."""
+    JOINT_LIMITS = "joint limits"
+    CONTACT = "contact"
+    """Unilateral feet, friction, the centre of pressure within the sole, and any bound of a wrench."""
+    STANCE = "stance"
+    """Trunk clear of the load, feet apart and not turned, base tilt, internal force."""
+    UPRIGHT = "upright feet"
+    """Where joint limits do not hold, a foot can be flat upside down, which Eq. 14 f and g exclude."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,9 +31,7 @@ class Enforced:
     """Which limits hold beside Eq. 14 a to g.
 
     Args:
-        joint_limits: of both agents' joints.
-        contact: unilateral feet, friction, the centre of pressure within the sole, and any bound of a wrench.
-        stance: trunk clear of the load, feet apart and not turned, base tilt, push between the agents.
+        joint_limits, contact, stance: the groups of these names.
         lengths: the bounds of the length multipliers; those of densities always hold.
     """
 
@@ -35,32 +40,12 @@ class Enforced:
     stance: bool = True
     lengths: bool = True
 
-    def covers(self, name: str) -> bool:
-        """Whether a constraint, or a residual of the check, is enforced."""
-        word = name.rsplit(".", 1)[1]
-        if word.endswith(("foot_contact", "hand_moment")):
-            return self.contact
-        if word == "joint_limits":
-            return self.joint_limits
-        return self.stance or not word.endswith(STANCE)
-
-    def variable(self, variable: Variable) -> Variable:
-        """A posture's variable, without the bounds that are not enforced."""
-        word = variable.name.rsplit(".", 1)[1]
-        bounded = {"joints": self.joint_limits, "base_angles": self.stance}
-        if bounded.get(word, self.contact or not word.endswith(("_hand", "_foot"))):
-            return variable
-        held = variable.lower == variable.upper  # what a symmetric posture does not have
-        return replace(
-            variable,
-            lower=np.where(held, variable.lower, -np.inf),
-            upper=np.where(held, variable.upper, np.inf),
-        )
-
-    def missed(self, residuals: Mapping[str, float]) -> dict[str, float]:
-        """The residuals of limits that are not enforced."""
-        return {name: size for name, size in residuals.items() if not self.covers(name)}
-
-    def kept(self, residuals: Mapping[str, float]) -> dict[str, float]:
-        """The residuals of limits that are enforced, and of everything that always holds."""
-        return {name: size for name, size in residuals.items() if self.covers(name)}
+    def covers(self, group: LimitGroup) -> bool:
+        """Whether the limits of a group are enforced."""
+        return {
+            LimitGroup.ALWAYS: True,
+            LimitGroup.JOINT_LIMITS: self.joint_limits,
+            LimitGroup.CONTACT: self.contact,
+            LimitGroup.STANCE: self.stance,
+            LimitGroup.UPRIGHT: not self.joint_limits,
+        }[group]

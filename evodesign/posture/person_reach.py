@@ -7,11 +7,9 @@ and everyone can hold the load.
 
 from __future__ import annotations
 
-import casadi as ca
-
 from evodesign.mechanics.scene import Scene
-from evodesign.nlp.program import IpoptOptions, Solver
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, reach_program
+from evodesign.nlp.solver import IpoptOptions, Solver
+from evodesign.posture.formulations.reach import HEIGHT, HIGHEST, LOWEST, reach_program
 from evodesign.posture.precompute.precomputed import PersonReach
 from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import symmetric_forms, whole
@@ -26,15 +24,15 @@ HEIGHTS = (1.0, 0.6)
 def person_reach(scene: Scene, options: IpoptOptions, *, symmetric: bool) -> PersonReach | None:
     """The interval of a scene's person; None when no posture was found."""
     form = symmetric_forms(scene)[1] if symmetric else whole(scene.human)
-    solver = Solver(reach_program(form, form.agent.tree, scene, ca.SX.zeros(0)), options)
+    solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}
     for sense in (LOWEST, HIGHEST):
         solves = [
-            solver.solve([scene.payload.mass, sense], {**start, "height": [height]})
+            solver.solve({"mass": scene.payload.mass, "sense": sense}, {**start, HEIGHT: [height]})
             for height in HEIGHTS
-            for start in person_starts(solver)
+            for start in person_starts(solver.program)
         ]
-        heights = [float(raw.values["height"][0]) for raw in solves if raw.status is Status.SOLVED]
+        heights = [float(raw.values[HEIGHT][0]) for raw in solves if raw.status is Status.SOLVED]
         if not heights:
             return None
         ends[sense] = min(heights) if sense == LOWEST else max(heights)

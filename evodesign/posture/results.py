@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from evodesign.records import Status
 
-__all__ = ["AgentPosture", "Attempt", "HeightSolution", "Neighbour"]
+__all__ = ["AgentPosture", "Attempt", "HeightSolution", "Instant", "Neighbour"]
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class AgentPosture:
-    """How one agent stands, and what it bears. The agent's frame looks along +x at the load.
+    """How one agent stands, and what it carries. The agent's frame looks along +x at the load.
 
     Args:
         base_position: origin of the root link in the agent's frame [m], shape (3,).
@@ -43,11 +43,28 @@ class AgentPosture:
 
 
 @dataclass(frozen=True, slots=True)
+class Instant:
+    """A moment of a task; a hold has one.
+
+    Args:
+        time: since the task began [s].
+        postures: by agent name.
+        disturbed: by disturbance and agent name, the same base and joints with what is carried then; empty
+            without disturbances.
+    """
+
+    time: float
+    postures: Mapping[str, AgentPosture]
+    disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class Attempt:
     """One start of a posture problem and how it ended.
 
     Args:
-        start: its name: the program, and the seed or fixed start.
+        formulation: name of the formulation that was solved.
+        start: name of the start within it.
         status: solved, or why not.
         reason: IPOPT's word, or what the check found.
         iterations: of the solve.
@@ -55,12 +72,18 @@ class Attempt:
         cost: of the last iterate.
     """
 
+    formulation: str
     start: str
     status: Status
     reason: str
     iterations: int
     seconds: float
     cost: float
+
+    @property
+    def name(self) -> str:
+        """Formulation and start, such as `decoupled: start 2`."""
+        return f"{self.formulation}: {self.start}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +97,8 @@ class HeightSolution:
         postures: by agent name; empty unless solved.
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
-        start: name of the start that led to the postures; empty unless solved.
-        disturbed: by disturbance and agent name, the same base and joints with what is borne then; empty
+        attempt: that led to the postures; None unless solved.
+        disturbed: by disturbance and agent name, the same base and joints with what is carried then; empty
             without disturbances.
         scene: which of the problem's scenes it is in, from zero.
     """
@@ -86,7 +109,7 @@ class HeightSolution:
     postures: Mapping[str, AgentPosture]
     residuals: Mapping[str, float]
     attempts: tuple[Attempt, ...]
-    start: str
+    attempt: Attempt | None = None
     scene: int = 0
     disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
 

@@ -80,14 +80,9 @@ class Form:
             foot_wrenches=feet,
         )
 
-    def start(self, posture: AgentPosture, rows: Mapping[str, int]) -> dict[str, Array]:
-        """Starting values of a program from a posture, by full name; what `expand` takes, given back.
-
-        Args:
-            posture: of the whole agent.
-            rows: how many rows each variable has (a point grasp passes three).
-        """
-        values = {
+    def parts(self, posture: AgentPosture) -> dict[str, Array]:
+        """What `expand` takes, from a posture of the whole agent; hands pass six numbers."""
+        return {
             "base_position": posture.base_position,
             "base_angles": posture.base_angles,
             "joints": np.array([posture.joints[name] for name in self.joints]),
@@ -95,8 +90,6 @@ class Form:
             **{f"{side}_hand": posture.hand_wrenches[side] for side in self.sides},
             **{f"{side}_foot": posture.foot_wrenches[side] for side in self.sides},
         }
-        full = {f"{self.agent.name}.{name}": value for name, value in values.items()}
-        return {name: value[: rows[name]] for name, value in full.items()}
 
 
 def _both_sides(known: Mapping[str, float], agent: Agent, mirror: Mirror) -> dict[str, float]:

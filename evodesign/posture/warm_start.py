@@ -1,59 +1,77 @@
-"""Known postures as starting values of a program."""
+"""Between programs and postures: values of variables as whole postures, and known postures as starts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
+from dataclasses import replace
 from typing import Any
 
-from evodesign.nlp.program import Program
-from evodesign.posture.load_cases import prefix_of
-from evodesign.posture.results import AgentPosture
+from evodesign.mechanics.scene import Scene
+from evodesign.nlp.program import Program, Start
+from evodesign.posture.assemble import Slot
+from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.symmetry import Form
 
-__all__ = ["start_from"]
+__all__ = ["Layout", "filled", "instant_of", "layout_of", "start_from"]
+
+Array = Any
+
+Layout = Mapping[Slot, str]
+"""Names of variables by where they belong."""
 
 
-NOTHING: Mapping[str, Mapping[str, AgentPosture]] = MappingProxyType({})
-"""What is borne under disturbances where there are none."""
+def layout_of(program: Program, *parties: str) -> Layout:
+    """Where the variables of an assembled program belong: those of some parties, or all."""
+    slots = {v.key: v.name for v in program.variables if isinstance(v.key, Slot)}
+    return {slot: name for slot, name in slots.items() if not parties or slot.party in parties}
 
 
-def start_from(
-    forms: Sequence[Form],
-    program: Program,
-    postures: Mapping[str, AgentPosture],
-    disturbed: Mapping[str, Mapping[str, AgentPosture]] = NOTHING,
-) -> dict[str, Any]:
-    """Whole postures as values of a program's variables; hands of an absent agent are the partner's.
+def instant_of(
+    layout: Layout, forms: Sequence[Form], scene: Scene, values: Mapping[str, Array], number: int = 0
+) -> Instant:
+    """Whole postures from a solution, with what is carried under each of the scene's disturbances.
 
     Args:
-        forms: of robot and person.
-        program: over both or one of them.
-        postures: by agent name.
-        disturbed: what is borne under each disturbance, in their order, by its name and the agent's.
+        layout: of both agents' variables.
+        forms: of both agents.
+        scene: whose disturbances they are.
+        values: of a solution, by variable name, SI units.
+        number: of the instant.
     """
+
+    def postures(load_case: int) -> dict[str, AgentPosture]:
+        return {form.agent.name: form.expand(parts(form.agent.name, load_case)) for form in forms}
+
+    def parts(party: str, load_case: int) -> dict[str, Array]:
+        own = {slot: name for slot, name in layout.items() if (slot.party, slot.instant) == (party, number)}
+        found = {slot.part: values[name] for slot, name in own.items() if slot.load_case == 0}
+        return found | {slot.part: values[name] for slot, name in own.items() if slot.load_case == load_case}
+
+    disturbances = enumerate(scene.disturbances.cases, 1)
+    return Instant(0.0, postures(0), {each.name: postures(case) for case, each in disturbances})
+
+
+def start_from(program: Program, forms: Sequence[Form], instants: Sequence[Instant]) -> Start:
+    """Known postures as values of a program's variables; free hands pass what their agent's do.
+
+    Args:
+        program: assembled.
+        forms: of robot and person.
+        instants: one for each of the program's.
+    """
+    by_name = {form.agent.name: form for form in forms}
     counts = {variable.name: variable.symbol.numel() for variable in program.variables}
     known: dict[str, Any] = {}
-    for form in forms:
-        posture, agent = postures[form.agent.name], form.agent.name
-        known |= _borne(form, posture, counts, "")
-        for number, borne in enumerate(disturbed.values()):
-            known |= _borne(form, borne[agent], counts, prefix_of(number))
-        if f"{agent}.joints" in counts:
-            known[f"{agent}.base_position"] = posture.base_position
-            known[f"{agent}.base_angles"] = posture.base_angles
-            known[f"{agent}.joints"] = [posture.joints[name] for name in form.joints]
+    for slot, name in layout_of(program).items():
+        cases = [instants[slot.instant].postures, *instants[slot.instant].disturbed.values()]
+        if slot.load_case < len(cases):
+            parts = by_name[slot.party].parts(cases[slot.load_case][slot.party])
+            known[name] = parts[slot.part][: counts[name]]
     return known
 
 
-def _borne(form: Form, posture: AgentPosture, counts: Mapping[str, int], prefix: str) -> dict[str, Any]:
-    """An agent's wrenches and torques in a case whose variables begin with a prefix."""
-    agent = f"{prefix}{form.agent.name}"
-    present = f"{agent}.torques" in counts
-    hand = agent if present else f"{prefix}partner"
-    hands = {f"{hand}.{side}_hand": posture.hand_wrenches[side] for side in form.sides}
-    known: dict[str, Any] = {name: wrench[: counts[name]] for name, wrench in hands.items()}
-    if present:
-        known |= {f"{agent}.{side}_foot": posture.foot_wrenches[side] for side in form.sides}
-        known[f"{agent}.torques"] = [posture.torques[name] for name in form.joints]
-    return known
+def filled(start: Start, program: Program) -> Start:
+    """A start in which each disturbed load case begins as the undisturbed one, unless it says otherwise."""
+    layout = layout_of(program)
+    twins = {name: layout[replace(slot, load_case=0)] for slot, name in layout.items() if slot.load_case}
+    return {**{name: start[twin] for name, twin in twins.items() if twin in start}, **start}

@@ -65,7 +65,7 @@ def values_over_cases(value: CaseValue, result: DesignResult) -> list[float] | N
 
 
 def undisturbed(result: DesignResult) -> DesignResult:
-    """A design's results without what is borne under disturbances."""
+    """A design's results without the load cases of disturbances."""
     return replace(result, heights=tuple(replace(height, disturbed={}) for height in result.heights))
 
 

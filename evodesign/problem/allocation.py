@@ -20,10 +20,10 @@ SAME = 1e-6
 
 
 def check_allocations(tables: ProblemFile, source: ProblemSource) -> None:
-    """Refuse policies that do not exist, reach beyond their meaning, or are fixed as well.
+    """Refuse allocation parameters that do not exist, exceed their range, or are fixed as well.
 
     Raises:
-        InputError: naming the policy.
+        InputError: naming the allocation parameter.
     """
     fixed = {ROBOT_SHARE: tables.task.robot_share, EFFORT_RATIO: tables.task.effort_weights}
     keys = {ROBOT_SHARE: "task.robot_share", EFFORT_RATIO: "task.effort_weights"}
@@ -52,7 +52,7 @@ def robot_share(tables: ProblemFile, source: ProblemSource, scene: Scene) -> flo
     """The share that the scene's programs must be given; None where statics, the solver or a design decides.
 
     Args:
-        tables: the problem file; its policies are sound.
+        tables: the problem file; its allocation parameters are sound.
         source: the problem, for messages.
         scene: agents and load.
     Raises:

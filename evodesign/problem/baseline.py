@@ -7,7 +7,7 @@ that fails leaves an assessment without objectives, with its status and reason.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from evodesign.design.allocation import EFFORT_RATIO
@@ -17,6 +17,8 @@ from evodesign.posture.check import TOLERANCE
 from evodesign.posture.formulations.codesign import JointProblem, JointSolution
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import HeightSolution
+from evodesign.posture.solution_derivative import known_instant
+from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import detail_of, height_outcome, reach_of
 from evodesign.problem.materials import refuse_choices
@@ -66,7 +68,7 @@ class Baseline:
         self._joint = JointProblem(problem.scene, problem.space, problem.heights, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
-        """Where a start leads; named designs begin with standard postures, others with drawn ones."""
+        """The result of a start; named designs begin with standard postures, others with drawn ones."""
         return self._joint.solve(start, drawn=start not in self._problem.joint_start)
 
     def polish(self, result: DesignResult) -> JointSolution:
@@ -76,10 +78,10 @@ class Baseline:
             result: of an evaluation; all its heights are solved.
         """
         genome = self._problem.space.genome(result.values)
-        return self._joint.polish(genome, [height.postures for height in result.heights])
+        return self._joint.polish(genome, [known_instant(height) for height in result.heights])
 
     def assess(self, start: Genome) -> Assessed:
-        """What the design in which a start ended is worth, with its postures."""
+        """The results of the design in which a start ended, with its postures."""
         solution = self.solve(start)
         result = self.result(solution)
         heights = tuple(detail_of(height, self._problem.scene) for height in result.heights if height.solved)
@@ -120,9 +122,9 @@ def _reach(solution: JointSolution) -> Reach:
     return Reach(min(heights), max(heights), Status.SOLVED, reason)
 
 
-def _reason(height: HeightSolution, violations: Mapping[str, float]) -> str:
+def _reason(height: HeightSolution, violations: Sequence[Residual]) -> str:
     """A solved height's reason, with every limit that is not enforced and does not hold."""
-    beyond = [f"{name} by {size:.3g}" for name, size in violations.items() if size > TOLERANCE]
+    beyond = [f"{r.name} by {r.size:.3g}" for r in violations if r.size > TOLERANCE]
     return (
         f"{height.reason}; limits not enforced and exceeded: {', '.join(beyond)}" if beyond else height.reason
     )
@@ -143,5 +145,5 @@ class BaselineFactory:
     limits: Limits = field(default=Limits(), compare=False)
 
     def __call__(self) -> Callable[[Genome], Assessed]:
-        """Build the joint problem and return the function from start to what it leads to."""
+        """Build the joint problem and return the function from start to its result."""
         return Baseline(build_problem(self.source)).assess

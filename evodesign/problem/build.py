@@ -11,11 +11,11 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene, StanceLimits
-from evodesign.nlp.program import IpoptOptions
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
-from evodesign.posture.formulations.joint import Symmetry
+from evodesign.posture.postures import Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
 from evodesign.problem.allocation import check_allocations, effort_weights, robot_share
@@ -53,7 +53,7 @@ class Problem:
         options: of the inner solver.
         limits: of one evaluation.
         symmetry: which postures are looked for.
-        seeds: whether solves begin at the problem's seeds.
+        seeds: whether solves begin at the problem's start portfolios.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
         joint: the paper's joint problem.

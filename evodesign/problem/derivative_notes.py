@@ -12,16 +12,15 @@ import numpy as np
 
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
-from evodesign.posture.reach_derivative import ReachDerivative
 from evodesign.posture.results import HeightSolution
-from evodesign.posture.solution_derivative import PostureDerivative
+from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.records import Status
 
 __all__ = ["posture_notes", "reach_notes"]
 
 NEAR = 0.01
-"""Share of a parameter's range within which a change of limits is worth a sentence."""
+"""Share of a parameter's range within which a change of limits gets a sentence."""
 
 DISTINCT = 1e-5
 """Relative difference of costs above which two optima are not the same."""
@@ -59,11 +58,11 @@ def reach_notes(
 
 def _winner(height: HeightSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
     """Which start won, and how far behind the next best optimum of the same program is."""
-    won = f"{height.start} won"
-    if isinstance(derivative, NotDifferentiable):
+    best = height.attempt
+    won = f"{best.name if best else 'no start'} won"
+    if best is None or isinstance(derivative, NotDifferentiable):
         return won
-    program = height.start.partition(":")[0]
-    others = [a for a in height.attempts if a.start.partition(":")[0] == program and a.start != height.start]
+    others = [a for a in height.attempts if a.formulation == best.formulation and a.start != best.start]
     behind = [a.cost / derivative.compared - 1.0 for a in others if a.status is Status.SOLVED]
     distinct = [share for share in behind if share > DISTINCT]
     if not others:

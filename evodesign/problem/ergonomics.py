@@ -8,7 +8,7 @@ Information, not objectives (`human_effort` is one): both follow from a posture 
 An ankle is the origin of the link that carries the sole, which its joint to the leg gives. Straight ahead is
 the way that the person looks at the load.
 
-Source: see `posture.lifting` and `tree.strength`; docs/people.md says what the figures mean.
+Source: see `human.niosh` and `human.strength`; docs/people.md says what the figures mean.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One design's worth: reach first, then a posture per height, then the objectives.
+"""The evaluation of one design: reach first, then a posture per height, then the objectives.
 
 An evaluation depends on problem and design alone: no state is carried from one to the next.
 """
@@ -13,8 +13,9 @@ from evodesign.nlp.solver_cache import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import Reach, ReachProblem, common_reach
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, HeightSolution, Neighbour
 from evodesign.problem.build import Problem
@@ -51,13 +52,18 @@ class Evaluator:
         space, options, symmetry = problem.space, problem.options, problem.symmetry
         solvers = SolverCache()
         self._postures = [
-            PostureProblem(scene, space, problem.weights, options, symmetry, known.of_scene(number), solvers)
+            PostureProblem(
+                Setting(scene, space, problem.weights, options), symmetry, known.of_scene(number), solvers
+            )
             for number, scene in enumerate(problem.scenes)
         ]
         symmetric = symmetry is not Symmetry.OFF
         self._reaches = {
             id(scene.payload): ReachProblem(
-                scene, space, options, symmetric=symmetric, known=known, solvers=solvers
+                Setting(scene, space, problem.weights, options),
+                symmetric=symmetric,
+                known=known,
+                solvers=solvers,
             )
             for scene in problem.scenes
         }
@@ -102,11 +108,11 @@ class Evaluator:
         return best
 
     def assess(self, genome: Genome) -> Assessed:
-        """What a genome is worth, with its postures."""
+        """The results of a genome, with its postures."""
         return self.assess_values(self.problem.space.values(genome))
 
     def assess_values(self, values: Sequence[float]) -> Assessed:
-        """What a design given as one number per parameter is worth, with its postures."""
+        """The results of a design given as one number per parameter, with its postures."""
         result = self.solve(values)
         heights = tuple(detail_of(height, self._scene(height)) for height in result.heights if height.solved)
         return Assessed(assessment=self.assessment(values, result), heights=heights)
@@ -136,10 +142,10 @@ class Evaluator:
     ) -> HeightSolution:
         distance = reach.distance(height)
         if distance is None:
-            return HeightSolution(height, reach.status, reach.reason, {}, {}, (), "")
+            return HeightSolution(height, reach.status, reach.reason, {}, {}, ())
         if distance > 0.0:
             reason = f"{height:g} m is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, (), "")
+            return HeightSolution(height, Status.INFEASIBLE, reason, {}, {}, ())
         neighbour = self._neighbour(before, scene, height)
         return self._postures[scene].solve(values, height, checker, neighbour)
 
@@ -246,5 +252,5 @@ class AssessmentFactory:
         return self.problem.limits
 
     def __call__(self) -> Callable[[Genome], Assessed]:
-        """Build the inner problems and return the function from genome to what it is worth."""
+        """Build the inner problems and return the function from genome to results."""
         return Evaluator(self.problem, self.known).assess

@@ -1,9 +1,9 @@
 """Evaluations kept between runs: the same design of the same problem is never solved twice.
 
-What is kept stands under a digest of everything that it follows from: the problem's tables but for its name,
-its search and what an evaluation may cost; the texts of robot and person; the genome; the versions of the
-solver's packages; and the source of the rooms that evaluate. A change of any of these is another key. Each
-machine keeps its own, in its user's cache; where that is shared, so is what is kept.
+What is kept stands under a digest of everything that it follows from: the problem's tables but for named
+exceptions, the texts of the files that they name, the genome, and the code that evaluates with what it stands
+on. A change of any of these is another key. Each machine keeps its own, in its user's cache; where that is
+shared, so is what is kept.
 
 A result that another machine or another day might not give (a time limit) is not kept.
 """
@@ -15,25 +15,30 @@ import os
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from importlib.metadata import version
-from pathlib import Path
 
 import msgspec
 
-from evodesign.nlp.disk_cache import Cache, digest_of, user_cache
+from evodesign.identity import Exceptions, code_digest, digest
+from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Limits
 from evodesign.problem.decode import decode_toml
 from evodesign.problem.evaluate import AssessmentFactory
-from evodesign.problem.file import ProblemFile, SearchTable, SolverTable
+from evodesign.problem.file import ProblemFile, SolverTable
 from evodesign.records import Assessed, Genome, ProblemSource, Status
 
 __all__ = ["Remembering", "problem_digest"]
 
-PACKAGES = ("casadi", "numpy", "pin")
-"""What an evaluation computes with."""
+NO_PART_OF_EVALUATIONS: Exceptions = {
+    ProblemFile: {"name": "is a word for results", "search": "says which designs are evaluated, and when"},
+    SolverTable: {
+        "evaluation_seconds": "what such a limit ended is not kept",
+        "evaluation_memory_gb": "what such a limit ended is not kept",
+    },
+    ProblemSource: {"path": "is for messages", "text": "counts as the tables that it holds"},
+}
 
-ROOMS = ("body", "tree", "human", "design", "mechanics", "nlp", "posture", "problem", "records.py")
-"""Where the source of an evaluation lies."""
+EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
+"""The modules that evaluate, and that work out what is known beforehand."""
 
 PASSING = frozenset({Status.TIME_LIMIT, Status.WORKER_LOST})
 """What another try might not give."""
@@ -63,40 +68,19 @@ class Remembering:
 
 
 def problem_digest(source: ProblemSource) -> str:
-    """Digest of everything but the genome that an evaluation follows from."""
+    """Digest of everything but the genome that an evaluation follows from.
+
+    The designs that a search starts from are no part of it, although the problem names their file.
+    """
     tables = decode_toml(source.text, source.path, ProblemFile)
-    limitless = msgspec.structs.replace(
-        tables.solver,
-        evaluation_seconds=SolverTable().evaluation_seconds,
-        evaluation_memory_gb=SolverTable().evaluation_memory_gb,
-    )
-    tables = msgspec.structs.replace(tables, name="-", search=SearchTable(), solver=limitless)
-    texts = {
-        name: source.files[name]
-        for name in (tables.robot.urdf, *(t.urdf for t in tables.people.values()))
-        if name
-    }
-    return digest_of(
-        msgspec.json.encode(tables, order="deterministic"),
-        msgspec.json.encode(texts, order="deterministic"),
-        msgspec.json.encode(source.symmetry),
-        *(f"{name} {version(name)}".encode() for name in PACKAGES),
-        _source_digest().encode(),
-    )
-
-
-@functools.cache
-def _source_digest() -> str:
-    """Digest of the code and tables that evaluate."""
-    package = Path(__file__).parents[1]
-    files = [path for room in ROOMS for path in (package / room, *(package / room).rglob("*"))]
-    sources = sorted(path for path in files if path.suffix in {".py", ".toml"})
-    return digest_of(*(part for path in sources for part in (path.name.encode(), path.read_bytes())))
+    files = {name: text for name, text in source.files.items() if name != tables.search.start}
+    named = msgspec.structs.replace(source, files=files)
+    return digest((tables, named, code_digest(*EVALUATING)), without=NO_PART_OF_EVALUATIONS)
 
 
 def _remembered(task: Callable[[], Task], shelf: str, genome: Genome) -> Assessed:
     """What a genome is worth: as kept, or worked out by one process while others wait for it."""
-    key = digest_of(msgspec.json.encode(genome))
+    key = digest(genome)
     cache = _cache(f"{shelf}/{key[:2]}")
     if cache is None:
         return task()(genome)

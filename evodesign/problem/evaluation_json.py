@@ -18,7 +18,7 @@ of the same posture under each. Residuals of such a case carry its name.
 
 `sensitivities` holds, for each objective that exists, how it moves with the design:
 
-    {objective: {"gradient": {parameter: value} or null, "kinks": [sentences]}}
+    {objective: {"gradient": {parameter: value} or null, "notes": [sentences]}}
 
 in the objective's unit per unit of the parameter (a length multiplier has none, a density is in kg/m^3). The
 gradient is that of the optimum that won; the sentences say which start won at each height and how far behind
@@ -82,7 +82,7 @@ def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
         **{name: label for name, label in labels.items() if label},
         "status": str(height.status),
         "reason": height.reason,
-        "start": height.start,
+        "start": height.attempt.name if height.attempt else "",
         "solver": _solver(height),
     }
     if height.solved:
@@ -97,7 +97,7 @@ def _height(height: HeightSolution, scene: Scene) -> dict[str, Any]:
 
 
 def _borne(postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
-    """What agents bear in a posture that is shown elsewhere."""
+    """Torques and wrenches of agents in a posture that is shown elsewhere."""
     strained = {
         name: {"torque_norm": posture.torque_norm, "torques": dict(posture.torques)}
         for name, posture in postures.items()
@@ -137,7 +137,7 @@ def _solver(height: HeightSolution) -> dict[str, Any]:
         "seconds": sum(attempt.seconds for attempt in height.attempts),
         "attempts": [
             {
-                "start": attempt.start,
+                "start": attempt.name,
                 "status": str(attempt.status),
                 "reason": attempt.reason,
                 "iterations": attempt.iterations,

@@ -7,12 +7,10 @@ changes a result.
 from __future__ import annotations
 
 import os
-from importlib.metadata import version
 
-import msgspec
-
-from evodesign.nlp.codegen import RECIPE, Compiler, NotCompiled, find_compiler
-from evodesign.nlp.disk_cache import Cache, digest_of, user_cache
+from evodesign.identity import code_digest, digest
+from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
+from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -21,7 +19,7 @@ from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
-from evodesign.records import ProblemSource, RunHeader
+from evodesign.records import RunHeader
 from evodesign.search.base import JOINT_STARTS
 
 __all__ = ["cached_precomputed", "evaluation_factory", "evaluator_of"]
@@ -37,13 +35,13 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
         pool: where what no cache holds is worked out.
         progress: is shown what is worked out.
     """
-    problem, digest = build_problem(header.problem), _digest(header.problem)
+    problem, name = build_problem(header.problem), digest(header.problem)
     factory: Evaluations
     if header.search.algorithm == JOINT_STARTS:
-        factory = BaselineFactory(f"{digest}-{JOINT_STARTS}", header.problem, problem.limits)
+        factory = BaselineFactory(f"{name}-{JOINT_STARTS}", header.problem, problem.limits)
         compiled = problem.joint.options.compiled
     else:
-        factory = AssessmentFactory(digest, problem, cached_precomputed(problem, pool, progress))
+        factory = AssessmentFactory(name, problem, cached_precomputed(problem, pool, progress))
         compiled = problem.options.compiled
     if compiled:
         _compile(factory, progress)
@@ -60,10 +58,6 @@ def evaluator_of(problem: Problem, jobs: int, progress: PrecomputeProgress = SIL
 def cached_precomputed(problem: Problem, pool: Pool, progress: PrecomputeProgress = SILENT) -> Precomputed:
     """What is known of a problem before any robot is evaluated, worked out where it is missing."""
     return precomputed(problem, _cache("precomputed", progress), pool, progress)
-
-
-def _digest(source: ProblemSource) -> str:
-    return digest_of(msgspec.json.encode(source, order="deterministic"))
 
 
 def _compile(factory: Evaluations, progress: PrecomputeProgress) -> None:
@@ -86,8 +80,7 @@ def _compile(factory: Evaluations, progress: PrecomputeProgress) -> None:
 
 def _mark(factory: Evaluations, compiler: Compiler) -> str:
     """Key of the mark that a problem's functions are compiled."""
-    parts = (factory.digest, RECIPE, version("casadi"), *compiler.command, compiler.version)
-    return digest_of(*(part.encode() for part in parts))
+    return digest((factory.digest, code_digest(type(factory).__module__), compiler))
 
 
 def _cache(subject: str, progress: PrecomputeProgress) -> Cache | None:

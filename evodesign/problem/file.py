@@ -16,7 +16,7 @@ from evodesign.human.anthropometry import Sex
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
 from evodesign.mechanics.scene import Grasp
-from evodesign.posture.formulations.joint import Symmetry
+from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 
@@ -137,7 +137,7 @@ class WeightsTable(Table, frozen=True):
 class TaskTable(Table, frozen=True):
     """`[task]`: the heights at which the load must be held, and how robot and person divide the work.
 
-    `robot_share` is the part of the load's weight that the robot carries; left out: whatever strains least.
+    `robot_share` is the part of the load's weight that the robot carries; left out: the share of least cost.
     """
 
     heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)]
@@ -147,7 +147,7 @@ class TaskTable(Table, frozen=True):
 
 
 class DisturbanceTable(Table, frozen=True):
-    """`[[disturbance]]`: what a posture must bear besides, with wrenches and torques of its own.
+    """`[[disturbance]]`: a further load case of a posture, with wrenches and torques of its own.
 
     `load_mass_share` adds to the load's mass, `center_of_mass_m` to its centre of mass; `push_n` is a force
     in the world's axes (x from the robot to the person, z up) on the load's centre or on the last frame of
@@ -203,7 +203,7 @@ class MaterialTable(Table, frozen=True):
 
 
 class AllocationTable(Table, frozen=True):
-    """`[[design.policy]]`: how a design divides the work; see `design.policy` for the names."""
+    """`[[design.policy]]`: how a design shares the load; see `design.policy` for the names."""
 
     name: Name
     lower: float

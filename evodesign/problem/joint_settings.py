@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
-from evodesign.nlp.program import IpoptOptions
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
-from evodesign.posture.formulations.joint import Symmetry
 from evodesign.posture.limit_groups import Enforced
+from evodesign.posture.postures import Symmetry
 from evodesign.posture.terms.paper_tasks import Tasks, TaskWeights
 from evodesign.problem.file import ProblemFile
 from evodesign.records import Genome, ProblemSource

@@ -47,7 +47,7 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
 
 
 def _hand_moment(key: str, table: PayloadTable, source: ProblemSource) -> float:
-    """What a rigid hand can bear [N m]; without a bound, infinite."""
+    """Largest moment of a rigid hand [N m]; without a bound, infinite."""
     if table.hand_moment_n_m is None:
         return math.inf
     if table.grasp is Grasp.POINT:

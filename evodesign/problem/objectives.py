@@ -16,8 +16,8 @@ from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.balance import standing_height_of_mass
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
-from evodesign.posture.terms.torque import TORQUE_UNIT
 from evodesign.problem.aggregate import (
     WORST,
     CaseQuantity,
@@ -51,7 +51,7 @@ def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
 
 
 def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The robot's largest |tau| over its limit, over the joints: 1 for a joint that bears all that it can."""
+    """The robot's largest |tau| over its limit, over the joints: 1 for a joint at its limit."""
     torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
     return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
 

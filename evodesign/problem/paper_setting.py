@@ -1,12 +1,12 @@
-"""The published setting of the paper: solved, held against its torque formula, and its broken limits.
+"""The published setting of the paper: solved, compared with its torque formula, and its broken limits.
 
 Source: Sartore et al. 2022, Eq. 12 and 14.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -44,30 +44,12 @@ def torque_difference(problem: Problem, solution: JointSolution) -> float:
     return worst
 
 
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """A kind of limit: how its residuals' names end, and how to say it."""
-
-    ending: str
-    words: str
-
-
-_KINDS = (
-    _Kind(".joint_limits", "joint limits by up to {:.2g} rad"),
-    _Kind(".foot_contact", "the contact of a foot with the ground by up to {:.2g} N"),
-    _Kind(".trunk_clear", "the trunk's distance from the load by up to {:.2g} m"),
-    _Kind(".feet_apart", "the feet's distance by up to {:.2g} m"),
-)
-
-
 def broken_limits(solutions: Sequence[JointSolution]) -> str:
     """In words, the limits that the check found broken; empty for none."""
-    found: Mapping[str, float] = {}
-    every = [of.items() for solution in solutions for of in solution.violations]
-    found = {
-        kind.words: max(
-            (x for items in every for name, x in items if name.endswith(kind.ending)), default=0.0
-        )
-        for kind in _KINDS
-    }
-    return ", ".join(words.format(size) for words, size in found.items() if size > TOLERANCE)
+    found: dict[tuple[str, str], float] = {}
+    for residual in (r for solution in solutions for of in solution.violations for r in of):
+        kind = (residual.words, residual.unit)
+        found[kind] = max(found.get(kind, 0.0), residual.size)
+    return ", ".join(
+        f"{words} by up to {size:.2g} {unit}" for (words, unit), size in found.items() if size > TOLERANCE
+    )

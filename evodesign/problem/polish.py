@@ -16,7 +16,7 @@ import numpy as np
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.nlp.optimality import Array, NotDifferentiable
-from evodesign.posture.reach_derivative import ReachDerivative
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
@@ -77,7 +77,7 @@ class Polished:
     """A design before and after.
 
     Args:
-        before, after: what the design was worth and is worth.
+        before, after: results of the design before and after.
         values: of the polished design, one number per parameter.
         evaluations: how many designs were evaluated, the first one included.
         reason: why it ended, in a sentence.
@@ -132,8 +132,8 @@ class _Slope:
     """The landscape that a polish descends; it remembers what it was shown.
 
     Attributes:
-        first: what the design to be polished is worth.
-        last: what the design looked at last is worth.
+        first: results of the design to be polished.
+        last: results of the design looked at last.
         start: where the descent begins.
         known: designs that exist, by position.
     """
@@ -219,7 +219,7 @@ def _within_reach(found: Assessment, heights: Sequence[float]) -> list[float] | 
 
 
 def _turned(derivative: ReachDerivative | NotDifferentiable, ranges: Array) -> Array:
-    """The slope of an end of reach per range; none at a kink, where the evaluations guard it alone."""
+    """The slope of an end of reach per range; none where it does not exist: evaluations alone guard it."""
     return np.zeros(len(ranges)) if isinstance(derivative, NotDifferentiable) else derivative.slope * ranges
 
 

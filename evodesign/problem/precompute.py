@@ -47,7 +47,8 @@ def precomputed(
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = precompute_setting(problem), Precomputed()
-    for stage in stages(setting, problem.heights, seeds=problem.seeds, person_reaches=problem.person_reaches):
+    heights, people = problem.heights, problem.person_reaches
+    for stage in stages(setting, heights, portfolios=problem.seeds, person_reaches=people):
         missing = []
         for piece in stage:
             content = cache.read(key_of(setting, piece)) if cache else None
@@ -104,7 +105,8 @@ def _worked_out(
 
 
 LIMITS = Limits(seconds=3600.0)
-"""What a piece may cost: seeds are thousands of solves, and rigid grasps or a busy machine make them long."""
+"""What a piece may cost: a portfolio takes thousands of solves, long ones with rigid grasps or a busy
+machine."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ which for formulas of a few operations agree with the exact derivative to about 
 nothing beyond its function to have a gradient.
 
 What an objective depends on shows when it is taken away: an objective that does not exist without a height's
-posture has that height's kinks.
+posture gets that height's notes.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ import numpy as np
 
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.solver_cache import SolverCache
-from evodesign.posture.formulations.joint import Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.reach_derivative import ReachDerivative, ReachDerivatives
 from evodesign.posture.results import HeightSolution
-from evodesign.posture.solution_derivative import PostureDerivative, PostureDerivatives
+from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.derivative_notes import posture_notes, reach_notes
 from evodesign.problem.objectives import objective_value
@@ -48,7 +48,7 @@ class ObjectiveSensitivity:
     Args:
         gradient: derivative by parameter name, in the objective's unit per unit of the parameter; None where
             the objective has none.
-        kinks: sentences on where, how near and why it does not move smoothly.
+        notes: sentences on where, how near and why the derivative does not exist.
     """
 
     gradient: Mapping[str, float] | None
@@ -63,7 +63,7 @@ class DesignDerivative:
         problem: whose design it is.
         values: of the design, one number per parameter.
         result: what was computed of it.
-        heights: one tangent per required height; a kink where there is none.
+        heights: one tangent per required height; a reason where there is none.
         highest, lowest: tangents of the reach.
     """
 
@@ -79,13 +79,7 @@ class DesignDerivative:
         tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
         heights = tuple(
-            replace(
-                height,
-                postures=derivative.postures(step),
-                disturbed=derivative.disturbed(self.result.scenes[height.scene], step),
-            )
-            if isinstance(derivative, PostureDerivative)
-            else _without(height)
+            _moved(height, derivative, step)
             for height, derivative in zip(self.result.heights, self.heights, strict=True)
         )
         return replace(self.result, tree=tree, reach=reach, heights=heights)
@@ -141,18 +135,19 @@ class Sensitivities:
 
     def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self._problem = problem
-        space, options = problem.space, problem.options
         symmetric = problem.symmetry is not Symmetry.OFF
-        loads = {id(scene.payload): scene for scene in problem.scenes}
+        loads = {id(scene.payload): number for number, scene in enumerate(problem.scenes)}
         solvers = SolverCache()
-        reaches = [
-            ReachProblem(scene, space, options, symmetric=symmetric, known=known, solvers=solvers)
-            for scene in loads.values()
+        settings = [
+            Setting(scene, problem.space, problem.weights, problem.options) for scene in problem.scenes
         ]
-        self._reaches = [ReachDerivatives(reach, options) for reach in reaches]
+        self._reaches = [
+            ReachProblem(settings[number], symmetric=symmetric, known=known, solvers=solvers)
+            for number in loads.values()
+        ]
         self._postures = [
-            PostureDerivatives(each, space, problem.weights, options, known.of_scene(number).values)
-            for number, each in enumerate(problem.scenes)
+            PostureProblem(setting, problem.symmetry, known.of_scene(number), solvers)
+            for number, setting in enumerate(settings)
         ]
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
@@ -162,10 +157,7 @@ class Sensitivities:
             values=tuple(values),
             result=result,
             heights=tuple(
-                self._postures[height.scene].at(values, height)
-                if height.solved
-                else NotDifferentiable(height.reason)
-                for height in result.heights
+                self._postures[height.scene].derivative(values, height) for height in result.heights
             ),
             highest=self._end(values, HIGHEST),
             lowest=self._end(values, LOWEST),
@@ -173,7 +165,7 @@ class Sensitivities:
 
     def _end(self, values: Sequence[float], sense: float) -> ReachDerivative | NotDifferentiable:
         """The extreme height of the load that binds: the least of the highest, the largest of the lowest."""
-        found = [reach.at(values, sense) for reach in self._reaches]
+        found = [reach.derivative(values, sense) for reach in self._reaches]
         notes = [derivative for derivative in found if isinstance(derivative, NotDifferentiable)]
         ends = [derivative for derivative in found if isinstance(derivative, ReachDerivative)]
         return notes[0] if notes else max(ends, key=lambda derivative: sense * derivative.height)
@@ -187,6 +179,15 @@ def _end(derivative: ReachDerivative | NotDifferentiable, step: Array) -> float 
     )
 
 
+def _moved(
+    height: HeightSolution, derivative: PostureDerivative | NotDifferentiable, step: Array
+) -> HeightSolution:
+    if isinstance(derivative, NotDifferentiable):
+        return _without(height)
+    instant = derivative.moved(step)
+    return replace(height, postures=instant.postures, disturbed=instant.disturbed)
+
+
 def _without(height: HeightSolution) -> HeightSolution:
     """A height without its posture."""
     return replace(height, status=Status.NUMERICAL_FAILURE, postures={}, residuals={}, disturbed={})
@@ -198,6 +199,6 @@ def _slope(values: Sequence[float], step: float) -> float:
 
 
 def _not_smooth(values: Sequence[float]) -> bool:
-    """Whether second differences grow with the step, as at a kink, and not with its square."""
+    """Whether second differences grow with the step, as without a derivative, and not with its square."""
     near, far = (abs(values[2 - k] - 2.0 * values[2] + values[2 + k]) for k in (1, 2))
     return near > 1e-9 * max(1.0, abs(values[2])) and far < 3.0 * near

@@ -1,4 +1,4 @@
-"""Which joints bear most: what a card, a plot or a layout shows where there is no room for all."""
+"""The joints of largest torque: what a card, a plot or a layout shows where there is no space for all."""
 
 from __future__ import annotations
 

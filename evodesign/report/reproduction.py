@@ -47,7 +47,7 @@ class ReproducedRobot:
     Args:
         name: short, of letters and underscores; it names files and figures.
         title: of its figure of postures.
-        cast: the robot, the person and the load.
+        models: the robot, the person and the load.
         heights: postures at the heights that were solved.
     """
 

@@ -28,7 +28,7 @@ LOAD = "load"
 """Name of the load beside those of the agents."""
 
 LEAST_FORCE = 1e-6
-"""A foot that bears less [N] has no centre of pressure."""
+"""A foot with less normal force [N] has no centre of pressure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class SceneModels:
 
     @classmethod
     def of(cls, scene: Scene, robot_tree: Tree) -> SceneModels:
-        """The cast of a scene with the robot of a design."""
+        """The models of a scene with the robot of a design."""
         trees = {ROBOT: robot_tree, HUMAN: scene.human.tree}
         return cls((scene.robot, scene.human), trees, scene.payload)
 
@@ -92,7 +92,7 @@ class PlacedScene:
 
     Args:
         height: of the load's centre [m].
-        cast: who stands there.
+        models: robot, person and load.
         frames: world_from_link by agent and link name.
         world_from_load: of the load's box.
         wrenches: on robot and person.

@@ -46,7 +46,7 @@ AGENTS: Final = ("robot", "human")
 """Names of the agents, as fields of the schema."""
 
 HEADER_COPY: Final = "run.json.zst"
-"""Attachment that repeats the header, compressed: without a header a log is worth nothing."""
+"""Attachment that repeats the header, compressed: without a header a log cannot be interpreted."""
 
 MESSAGE_ENCODING: Final = "json"
 SCHEMA_ENCODING: Final = "jsonschema"

@@ -1,7 +1,7 @@
 """What differs between two headers: the reason why a log cannot be continued, in words.
 
 Problem and search must be the same for a log to be one run. Versions of packages may differ; those that
-decide which designs are asked for, or what a design is worth, are told apart from the others.
+decide which designs are asked for, or the results of a design, are distinguished from the others.
 """
 
 from __future__ import annotations

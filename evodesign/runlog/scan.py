@@ -182,7 +182,7 @@ def _next_sound(content: bytes, place: int) -> int:
 def _next(
     content: bytes, place: int, opcode: int, mark: bytes, mark_at: int, read: Callable[[bytes], object]
 ) -> int:
-    """Where the next sound record of a kind begins, found by a mark that it bears; the end if none does."""
+    """Where the next sound record of a kind begins, found by a mark in it; the end if none does."""
     found = content.find(mark, place + mark_at)
     while found >= 0:
         start = found - mark_at

@@ -9,7 +9,7 @@ worst. Improvements are compared within one instance and batch only, as ranks, f
 ever made up for an infeasible design.
 
 There are as many instances as leave each pycma's default population, but two at least, since one alone finds
-one point. They begin at those outcomes that together conquer most, chosen one after another. One that pycma
+one point. They begin at those outcomes that together dominate most, chosen one after another. One that pycma
 declares finished (converged, ill-conditioned, flat) leaves its incumbent behind for the others to reckon with
 and starts again from the next quasi-random point.
 

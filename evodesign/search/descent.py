@@ -8,7 +8,7 @@ with linear models of margins that must not become negative:
 B gathers curvature by Powell's damped BFGS update. The reserve, a share of what the margin can change within
 the radius, leaves room for curvature; what of it cannot be had costs. The point that the model proposes is
 looked at as it is, and taken only if it is better: where it is worse, or does not exist, the radius shrinks.
-So neither kinks nor forbidden regions lead astray, and no point is ever worse than the start.
+So points without a derivative and forbidden regions do no harm, and no point is ever worse than the start.
 
 Source: Nocedal and Wright, Numerical Optimization, ch. 4 and 18 (Procedure 18.2: damped BFGS).
 """
@@ -76,7 +76,7 @@ class DescentProblem(Protocol):
         """The point at a position, or None where there is none."""
 
     def slopes(self, point: Iterate) -> Slopes | None:
-        """The derivatives at a point that was looked at, or None at a kink."""
+        """The derivatives at a point that was looked at, or None where they do not exist."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ def descend(
             best, slopes = found, after
         values.append(best.value)
     if slopes is None:
-        reason = "it stands at a kink"
+        reason = "its derivative does not exist"
     elif radius < SMALLEST_RADIUS or _stalls(values):
         reason = "no step improves it much any more"
     else:

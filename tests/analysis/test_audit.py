@@ -50,7 +50,7 @@ def better(run: Run) -> Run:
         (lambda run: changed(run, "evaluations", 3, genome=(0.5, 0.5)), "3: its design is not that of its"),
         (lambda run: changed(run, "evaluations", 3, genome=(0.5, 1.5)), "3: its genome lies outside"),
         (lambda run: changed(run, "evaluations", 3, genome=(0.5,)), "3: wanted 2 coordinates, found 1"),
-        (lambda run: reassessed(run, 3, objectives={"luck": 1.0}), "3: it has unknown objectives: luck"),
+        (lambda run: reassessed(run, 3, objectives={"speed": 1.0}), "3: it has unknown objectives: speed"),
         (lambda run: reassessed(run, 3, violation=-1.0), "3: its violation is negative"),
         (lambda run: replace(run, evaluations=run.evaluations[1:]), "missing evaluations: 0"),
         (lambda run: changed(run, "generations", 2, hypervolume=0.1), "2: its hypervolume is not that"),

@@ -29,23 +29,23 @@ def run_of(objectives, points):
     return [evaluation(i, **dict(zip(names, point, strict=True))) for i, point in enumerate(points)]
 
 
-def test_one_design_conquers_a_rectangle():
+def test_one_design_dominates_a_rectangle():
     run = [evaluation(0, torque=30.0, reach=1.4)]
     assert hypervolume(BOTH, run, {"torque": 50.0, "reach": 1.0}) == pytest.approx(20.0 * 0.4)
 
 
-def test_two_designs_conquer_two_rectangles_less_their_overlap():
+def test_two_designs_dominate_two_rectangles_less_their_overlap():
     run = [evaluation(0, torque=30.0, reach=1.4), evaluation(1, torque=20.0, reach=1.2)]
     volume = hypervolume(BOTH, run, {"torque": 50.0, "reach": 1.0})
     assert volume == pytest.approx(20.0 * 0.4 + 30.0 * 0.2 - 20.0 * 0.2)
 
 
-def test_one_objective_conquers_a_length():
+def test_one_objective_dominates_a_length():
     run = run_of([REACH], [(1.2,), (1.5,), (1.1,)])
     assert hypervolume([REACH], run, {"reach": 1.0}) == pytest.approx(0.5)
 
 
-def test_a_plane_front_of_three_objectives_conquers_its_staircase():
+def test_a_plane_front_of_three_objectives_dominates_its_staircase():
     """Unit cubes below the diagonal plane i + j + k <= n - 1: n (n + 1) (n + 2) / 6 of them."""
     n = 6
     points = [(i, j, n - 1 - i - j) for i in range(n) for j in range(n - i)]

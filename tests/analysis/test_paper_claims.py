@@ -15,7 +15,7 @@ from evodesign.analysis.paper_claims import (
 )
 
 
-def test_the_papers_own_figures_bear_out_all_its_claims() -> None:
+def test_the_papers_own_figures_confirm_all_its_claims() -> None:
     """Its 33 % is the ratio of 90.4 to 144.3, which is 37 % less."""
     own = (PAPER_ORIGINAL, PAPER_OPTIMISED)
     assert reach_claim("paper", *own).reproduced
@@ -67,7 +67,7 @@ def test_a_smaller_fall_is_not_the_third_and_the_best_of_all_is_named() -> None:
     assert reduction_claim("ours", {}, {}, 1.0, 0).reason == "the original robot has no posture at 1 m"
 
 
-def test_a_person_who_strains_more_is_not_preserved() -> None:
+def test_higher_human_torque_is_not_preserved() -> None:
     before = {0.8: TorqueNorms(1.0, 10.0), 1.0: TorqueNorms(1.0, 10.0)}
     assert human_claim("ours", before, {0.8: TorqueNorms(1.0, 5.0), 1.0: TorqueNorms(1.0, 10.9)}).reproduced
     claim = human_claim("ours", before, {0.8: TorqueNorms(1.0, 5.0), 1.0: TorqueNorms(1.0, 11.1)})

@@ -38,7 +38,7 @@ def genome(problem: Problem) -> tuple[float, ...]:
     return tuple(0.3 + 0.02 * place for place in range(len(problem.space.parameters)))
 
 
-def test_design_is_worth_what_a_search_logs(
+def test_design_has_the_results_that_a_search_logs(
     opened: OpenedProblem, evaluator: Evaluator, genome: tuple[float, ...]
 ) -> None:
     expected = evaluator.assess(genome)

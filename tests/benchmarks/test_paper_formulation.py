@@ -15,11 +15,10 @@ from benchmarks.projected_graph import agent_matrices
 from evodesign.mechanics.coupled import CoupledModel
 from evodesign.mechanics.projected import contact_wrenches, projected_torques
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.nlp.program import RawSolution
+from evodesign.nlp.solver import RawSolution
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.terms.floating_base import COMFORT
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.base import REGULARISATION, TORQUE_UNIT
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
@@ -49,7 +48,7 @@ def solved(problem: Problem, design: tuple[float, ...]) -> RawSolution:
     for variable in solver.program.variables:
         if variable.name.endswith(".joints"):
             start[variable.name] = (variable.lower + variable.upper) / 4.0
-    raw = solver.solve([*design, HEIGHT], start)
+    raw = solver.solve({"design": design, "height": HEIGHT}, start)
     assert raw.status is Status.SOLVED, raw.reason
     return raw
 
@@ -115,7 +114,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
     program = paper.program
     symbols = [variable.symbol for variable in program.variables]
     rows = [constraint.expression for constraint in program.constraints]
-    function = ca.Function("program", [*symbols, program.parameters], [program.cost, *rows])
+    function = ca.Function("program", [*symbols, program.given], [program.cost, *rows])
     values = [solved.values[variable.name] for variable in program.variables]
     cost, *found = function(*values, [*design, HEIGHT])
     expected = sum(np.sum(solved.values[f"{name}.torques"] ** 2) for name in (ROBOT, HUMAN)) / TORQUE_UNIT**2
@@ -123,7 +122,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
         joints = [agent.tree.joint_by_name[name] for name in agent.joints]
         ranges = [min(joint.upper, math.pi) - max(joint.lower, -math.pi) for joint in joints]
         bent = np.sum((solved.values[f"{agent.name}.joints"] / ranges) ** 2)
-        expected += COMFORT * (bent + np.sum(solved.values[f"{agent.name}.base_angles"] ** 2))
+        expected += REGULARISATION * (bent + np.sum(solved.values[f"{agent.name}.base_angles"] ** 2))
     assert float(cost) == pytest.approx(expected, rel=1e-5)
     names = [constraint.name for constraint in program.constraints]
     assert len(names) == 23

@@ -6,12 +6,29 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import pytest
 
+from evodesign.cli import main
+
 
 def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """What a command does, without a process of its own: to start one takes longer than to refuse."""
+    command = ["evodesign", *map(str, arguments)]
+    output, errors = StringIO(), StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(errors):
+        patch.setattr(sys, "argv", command)
+        with pytest.raises(SystemExit) as left:
+            main()
+    code = left.value.code
+    return subprocess.CompletedProcess(command, int(code or 0), output.getvalue(), errors.getvalue())
+
+
+def evodesign_alone(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """A command in a process of its own."""
     command = [sys.executable, "-c", "from evodesign.cli import main; main()", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
@@ -108,7 +125,8 @@ def test_hand_frame_missing_from_the_urdf_names_key_and_nearest(place: Path) -> 
     path = place / ROBOT
     path.write_text(path.read_text().replace("l_hand_frame", "l_hand_grasp"))
     words = ["robot.hands.left", "icub_shapes", "'l_hand_frame'", "did you mean"]
-    assert_explained(evodesign("check", place / PROBLEM), words)
+    for command in (evodesign, evodesign_alone):
+        assert_explained(command("check", place / PROBLEM), words)
 
 
 @pytest.mark.parametrize(
@@ -133,7 +151,7 @@ def test_bad_arguments_are_explained(
 
 
 def test_misspelt_option_is_exit_code_two() -> None:
-    done = evodesign("search", "x.toml", "--evaluation", "3")
+    done = evodesign_alone("search", "x.toml", "--evaluation", "3")
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
 

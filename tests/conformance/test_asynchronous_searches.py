@@ -123,9 +123,9 @@ class TestEveryAsynchronousSearch:
 
     def test_it_begins_as_with_generations(self, algorithm):
         start = ((0.5,) * 5, (0.0,) * 5, (0.5,) * 5, (0.1, 0.2, 0.3, 0.4, 0.5))
-        steady = make_asynchronous_search(settings(algorithm, start=start))
+        asynchronous = make_asynchronous_search(settings(algorithm, start=start))
         first = make_search(settings(algorithm, start=start)).ask()
-        assert tuple(steady.ask(turn) for turn in range(12)) == first
+        assert tuple(asynchronous.ask(turn) for turn in range(12)) == first
 
     def test_global_random_state_is_neither_read_nor_changed(self, algorithm):
         np.random.seed(1)  # noqa: NPY002
@@ -188,17 +188,17 @@ class TestEveryAsynchronousSearchThatLearns:
 
     @pytest.mark.parametrize("workers", [1, 12])
     def test_finds_about_as_much_as_with_generations(self, algorithm, workers):
-        steady = run(make_asynchronous_search(settings(algorithm, population=24)), 600, workers=workers)
+        asynchronous = run(make_asynchronous_search(settings(algorithm, population=24)), 600, workers=workers)
         search, generational = make_search(settings(algorithm, population=24)), []
         for _ in range(25):
             genomes = search.ask()
             generational += genomes
             search.tell([bowls(genome, 2) for genome in genomes])
-        ratio = conquered([genome for *_, genome in steady]) / conquered(generational)
+        ratio = dominated([genome for *_, genome in asynchronous]) / dominated(generational)
         assert ratio > 0.97
 
 
-def conquered(genomes):
+def dominated(genomes):
     """Hypervolume of the feasible ones."""
     values = [bowls(genome, 2).objectives for genome in genomes]
     return moocore.hypervolume(np.array([each for each in values if each is not None]), ref=(2.0, 2.0))

@@ -23,7 +23,7 @@ from tests.cli.test_bad_input import assert_explained, evodesign
 from tests.fuzz.mutations import ANY, TOML, XML
 
 SEED = 20260101
-CASES = 2000
+CASES, QUICK_CASES = 2000, 400
 SECONDS = 10.0
 """After which a case counts as hanging [s]; the slowest takes a fraction of one."""
 PROBLEM, ROBOT, PERSON, POPULATION = "problem.toml", "robot.urdf", "person.urdf", "designs.toml"
@@ -235,9 +235,14 @@ def test_the_files_that_are_spoilt_are_a_problem(folder: Path) -> None:
     assert sound(build_problem(read_source(folder / PROBLEM)))
 
 
-def test_whatever_the_files_hold_they_load_or_one_sentence_names_the_fault(folder: Path) -> None:
+@pytest.mark.parametrize(
+    "numbers", [range(QUICK_CASES), pytest.param(range(QUICK_CASES, CASES), marks=pytest.mark.slow)], ids=str
+)
+def test_whatever_the_files_hold_they_load_or_one_sentence_names_the_fault(
+    numbers: range, folder: Path
+) -> None:
     loaded, refused, wrong = 0, 0, []
-    for number in range(CASES):
+    for number in numbers:
         case = spoilt_files(number)
         (folder / case.target).write_bytes(case.content)
         read, complaints = complaint(folder, case)
@@ -245,9 +250,9 @@ def test_whatever_the_files_hold_they_load_or_one_sentence_names_the_fault(folde
         loaded, refused = loaded + read, refused + (not read)
         if complaints:
             wrong.append(f"case {number}, {case.target} ({', '.join(case.mutations)}): {complaints}")
-    assert not wrong, "\n".join([f"{len(wrong)} of {CASES}", *wrong[:40]])
-    assert loaded > CASES / 20, "not all damage does harm"
-    assert refused > CASES / 2, "most damage is noticed"
+    assert not wrong, "\n".join([f"{len(wrong)} of {len(numbers)}", *wrong[:40]])
+    assert loaded > len(numbers) / 20, "not all damage does harm"
+    assert refused > len(numbers) / 2, "most damage is noticed"
 
 
 def replaced(name: str, old: str, new: str) -> str:

@@ -96,18 +96,18 @@ def test_the_muscles_that_hold_a_weight_are_those_that_would_lift_it(side: str) 
         ({f"j{side}Hip_roty": -1.5}, f"j{side}Knee_roty", "extension"),
     ):
         torques = holding_torques(positions)
-        (strain,) = relative_torques({joint: torques[joint]}, strengths)
-        assert strain.movement == movement, joint
+        (found,) = relative_torques({joint: torques[joint]}, strengths)
+        assert found.movement == movement, joint
     arm_forward = holding_torques({f"j{side}Shoulder_rotx": -1.5 * sign, **raised})
-    (strain,) = relative_torques({f"j{side}Shoulder_rotz": arm_forward[f"j{side}Shoulder_rotz"]}, strengths)
-    assert strain.movement == "flexion"
+    (found,) = relative_torques({f"j{side}Shoulder_rotz": arm_forward[f"j{side}Shoulder_rotz"]}, strengths)
+    assert found.movement == "flexion"
 
 
 def test_a_stooping_back_is_held_by_its_extensors() -> None:
     torques = holding_torques(ARMS_DOWN, tilt=1.0)
     for level in ("jL5S1_roty", "jL4L3_roty", "jL1T12_roty", "jT9T8_roty"):
-        (strain,) = relative_torques({level: torques[level]}, joint_strengths(MAN))
-        assert strain.movement == "extension"
+        (found,) = relative_torques({level: torques[level]}, joint_strengths(MAN))
+        assert found.movement == "extension"
 
 
 def test_strengths_are_those_worked_out_by_hand() -> None:
@@ -150,7 +150,7 @@ def test_every_figure_has_a_source_that_is_used_and_a_sensible_size() -> None:
 @settings(max_examples=25)
 @given(st.lists(st.floats(-2.0, 2.0), min_size=5, max_size=5))
 def test_the_elbows_y_axis_is_the_upper_arms_whatever_the_posture(angles: list[float]) -> None:
-    """Why a moment about it is borne by the shoulder's rotators, not by those of the forearm."""
+    """Why a moment about it is carried by the shoulder's rotators, not by those of the forearm."""
     names = [f"jLeftShoulder_rot{axis}" for axis in "xyz"] + [f"jLeftElbow_rot{axis}" for axis in "yz"]
     at = link_frames(human_tree(MAN), Placement(), dict(zip(names, angles, strict=True)))
     elbow, shoulder = (np.array(at[link].translation) for link in ("LeftForeArm", "LeftUpperArm"))
@@ -170,9 +170,7 @@ def test_the_hardest_joint_is_found_by_its_own_strength_in_the_torques_direction
     assert worst is not None
     assert (worst.joint, worst.movement) == ("jRightElbow_rotz", "extension")
     assert worst.share == pytest.approx(40.0 / 46.0)
-    assert {strain.joint for strain in relative_torques(torques, strengths)} == set(torques) - {
-        "jLeftHip_rotz"
-    }
+    assert {found.joint for found in relative_torques(torques, strengths)} == set(torques) - {"jLeftHip_rotz"}
 
 
 def test_without_a_rated_torque_there_is_no_hardest_joint() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -118,24 +119,22 @@ def oracle(case: Case) -> tuple[pin.Model, pin.Data, np.ndarray]:
     return model, data, rows
 
 
-@pytest.mark.parametrize("cases", [robots, persons, published, cranes])
-def test_frames_stand_where_pinocchio_puts_them(cases, problem: Problem) -> None:
-    for case in cases(problem):
-        poses = ours(case)[0]
-        model, data, _ = oracle(case)
+@pytest.fixture(scope="module", params=[robots, persons, published, cranes])
+def both(request: pytest.FixtureRequest, problem: Problem) -> list[tuple[Case, Any, Any]]:
+    """Each case with what we and the oracle find."""
+    return [(case, ours(case), oracle(case)) for case in request.param(problem)]
+
+
+def test_frames_stand_where_pinocchio_puts_them(both) -> None:
+    for case, (poses, *_), (model, data, _) in both:
         for frame in case.tree.link_by_name:
             placed = data.oMf[model.getFrameId(frame)]
             assert np.allclose(np.array(poses[frame].position).ravel(), placed.translation, atol=RELATIVE)
             assert np.allclose(np.array(poses[frame].rotation), placed.rotation, atol=RELATIVE)
 
 
-@pytest.mark.parametrize("cases", [robots, persons, published, cranes])
-def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches(
-    cases, problem: Problem
-) -> None:
-    for case in cases(problem):
-        _, torques, force, moment, _ = ours(case)
-        model, _, rows = oracle(case)
+def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches(both) -> None:
+    for case, (_, torques, force, moment, _), (model, _, rows) in both:
         columns = [model.joints[model.getJointId(name)].idx_v for name in case.tree.actuated]
         scale = np.abs(rows).max()
         assert np.allclose(torques, rows[columns], atol=RELATIVE * scale)
@@ -144,11 +143,8 @@ def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches
         assert np.allclose(base_in_world.T @ moment, -rows[3:6], atol=RELATIVE * scale)
 
 
-@pytest.mark.parametrize("cases", [robots, persons, published, cranes])
-def test_mass_and_centre_of_mass_agree(cases, problem: Problem) -> None:
-    for case in cases(problem):
-        center = ours(case)[-1]
-        model, data, _ = oracle(case)
+def test_mass_and_centre_of_mass_agree(both) -> None:
+    for case, (*_, center), (model, data, _) in both:
         mass = sum(link.inertia.mass for link in case.tree.links)
         assert mass == pytest.approx(pin.computeTotalMass(model), rel=RELATIVE)
         assert np.allclose(center, data.com[0], atol=RELATIVE)

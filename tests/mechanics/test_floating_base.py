@@ -35,7 +35,7 @@ def test_mass_matrix_bias_and_frames_are_those_of_the_urdf(name: str, problem: P
     positions = dict(zip(moving, rng.uniform(-0.6, 0.6, len(moving)), strict=True))
     configuration = Configuration(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3), positions)
     velocity = rng.uniform(-1, 1, body.size)
-    instant = body.at(configuration, velocity)
+    state = body.at(configuration, velocity)
 
     model = floating_model(urdf_text(tree))
     model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
@@ -54,9 +54,9 @@ def test_mass_matrix_bias_and_frames_are_those_of_the_urdf(name: str, problem: P
     mass = np.array(pin.crba(model, data, q))
     bias = np.array(pin.nonLinearEffects(model, data, q, v))
     pin.framesForwardKinematics(model, data, q)
-    assert np.allclose(instant.mass, mass[np.ix_(rows, rows)], rtol=1e-10, atol=1e-10)
-    assert np.allclose(instant.bias, bias[rows], rtol=1e-10, atol=1e-9)
+    assert np.allclose(state.mass, mass[np.ix_(rows, rows)], rtol=1e-10, atol=1e-10)
+    assert np.allclose(state.bias, bias[rows], rtol=1e-10, atol=1e-9)
     for link in tree.links:
         placement = data.oMf[model.getFrameId(link.name, pin.FrameType.BODY)]
-        assert np.allclose(instant.pose(link.name)[1], placement.translation, atol=1e-10)
-        assert np.allclose(instant.pose(link.name)[0], placement.rotation, atol=1e-10)
+        assert np.allclose(state.pose(link.name)[1], placement.translation, atol=1e-10)
+        assert np.allclose(state.pose(link.name)[0], placement.rotation, atol=1e-10)

@@ -58,14 +58,14 @@ def test_shares_are_those_of_the_lever_rule(
     assert found == pytest.approx(lever_rule(scene, payload, moment), abs=1e-6)
 
 
-def test_hands_that_bear_any_moment_leave_every_share(scene: Scene) -> None:
+def test_hands_that_transmit_any_moment_leave_every_share(scene: Scene) -> None:
     low, high = share_interval(replace(scene, payload=Payload(BOX, 5.0, grasp=Grasp.RIGID)))
     assert low < 0.0
     assert high > 1.0
 
 
 def test_loads_that_no_hands_can_balance_have_no_share(scene: Scene) -> None:
-    """Four points on one line bear no moment about it."""
+    """Four points on one line transmit no moment about it."""
     points = {
         (agent, side): (0.0, y, 0.0)
         for agent in (ROBOT, HUMAN)

@@ -28,12 +28,12 @@ from evodesign.mechanics.projected import (
     projected_torques,
 )
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Scene
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Solver
+from evodesign.nlp.program import Program
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.load import load_constraints
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
@@ -93,7 +93,7 @@ def random_case(problem: Problem, seed: int) -> Case:
 
 
 def without_legs(case: Case) -> Case:
-    """The same scene with all leg joints welded: whatever feet squeeze between them, no joint feels it."""
+    """The same scene with all leg joints welded: an internal force between the feet needs no torque."""
     agents, places = {}, dict(case.places)
     for agent in case.agents:
         leg = ("hip", "knee", "ankle")
@@ -195,21 +195,21 @@ def test_torques_and_wrenches_do_not_depend_on_the_mass_matrix(problem: Problem,
 
 @pytest.mark.parametrize("seed", range(4))
 def test_of_wrenches_that_no_joint_feels_the_formula_takes_none(problem: Problem, seed: int) -> None:
-    """With stiff legs feet may squeeze freely: solutions differ in the null space of Q^T, f avoids it."""
+    """With stiff legs an internal force is free: solutions differ in the null space of Q^T, f avoids it."""
     case = without_legs(random_case(problem, seed))
     system = case.system()
     left, gains, _ = np.linalg.svd(system.coupling)
-    squeeze = left[:, np.count_nonzero(gains > 1e-10 * gains[0]) :]
-    assert squeeze.shape[1] == 12  # six for each agent's pair of feet
+    internal = left[:, np.count_nonzero(gains > 1e-10 * gains[0]) :]
+    assert internal.shape[1] == 12  # six for each agent's pair of feet
     torques, wrenches = least_norm(case, system)
     found_torques = projected_torques(system)
     found = contact_wrenches(system, found_torques)
     scale = np.abs(wrenches).max()
     assert np.allclose(found_torques, torques, rtol=0.0, atol=1e-8 * np.abs(torques).max())
-    assert np.allclose(squeeze.T @ found, 0.0, atol=1e-8 * scale)
-    difference = wrenches + squeeze @ np.ones(12) * 100.0 - found
+    assert np.allclose(internal.T @ found, 0.0, atol=1e-8 * scale)
+    difference = wrenches + internal @ np.ones(12) * 100.0 - found
     assert np.abs(difference).max() > 10.0
-    assert np.allclose(difference, squeeze @ (squeeze.T @ difference), rtol=0.0, atol=1e-8 * scale)
+    assert np.allclose(difference, internal @ (internal.T @ difference), rtol=0.0, atol=1e-8 * scale)
 
 
 def boundless(problem: Problem) -> tuple[Solver, Scene]:
@@ -217,19 +217,17 @@ def boundless(problem: Problem) -> tuple[Solver, Scene]:
     scene, space = problem.scene, problem.space
     design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
     tree = space.resized(scene.robot.tree, ca.vertsplit(design))
-    robot = agent_block(whole(scene.robot), tree, scene, height)
-    human = agent_block(whole(scene.human), scene.human.tree, scene, height)
-    hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}
-    load = load_constraints(scene, hands, symmetric=False)
-    every = (*robot.constraints, *human.constraints, *load)
+    parties = (Embodied(whole(scene.robot), tree), Embodied(whole(scene.human), scene.human.tree))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    every = assembly.constraints
     kept = tuple(c for c in every if not c.name.endswith(("_foot_contact", ".push")))
-    assert len(every) - len(kept) == 5  # four feet and the push
+    assert len(every) - len(kept) == 5  # four feet and the internal force
     program = Program(
         name="boundless",
-        variables=(*robot.variables, *human.variables),
+        variables=assembly.variables,
         constraints=kept,
-        cost=(robot.effort + human.effort) / TORQUE_UNIT**2,
-        parameters=ca.vertcat(design, height),
+        cost=assembly.undisturbed.effort({ROBOT: 1.0, HUMAN: 1.0}),
+        parameters={"design": design, "height": height},
     )
     return Solver(program, IpoptOptions()), scene
 
@@ -271,10 +269,10 @@ def test_the_solvers_torques_and_wrenches_are_the_papers(problem: Problem) -> No
         if variable.name.endswith(".joints"):
             start[variable.name] = (variable.lower + variable.upper) / 4.0
     rng = np.random.default_rng(5)
-    strained = []
+    norms = []
     for _ in range(DESIGNS):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
-        raw = solver.solve([*values, 1.0], start)
+        raw = solver.solve({"design": values, "height": 1.0}, start)
         assert raw.status is Status.SOLVED, raw.reason
         postures = postures_of(scene, raw)
         model = CoupledModel(scene, problem.space.resized(scene.robot.tree, values))
@@ -282,15 +280,15 @@ def test_the_solvers_torques_and_wrenches_are_the_papers(problem: Problem) -> No
         torques = np.array([postures[agent].torques[joint] for agent, joint in system.joints])
         found = projected_torques(system)
         assert np.abs(found - torques).max() < TORQUE
-        strained.append(np.linalg.norm(found))
+        norms.append(np.linalg.norm(found))
         assert np.linalg.matrix_rank(system.coupling) == len(system.drift)
         wrenches = wrenches_of(postures, system)
         assert np.abs(contact_wrenches(system, found) - wrenches).max() < FORCE
-    assert np.median(strained) > 5.0  # [N m]: zeros would agree with anything
+    assert np.median(norms) > 5.0  # [N m]: zeros would agree with anything
 
 
 def test_limits_of_the_ground_cost_torque(problem: Problem, evaluator: Evaluator) -> None:
-    """With friction, soles and push enforced, no posture strains less than Eq. 12 says; none much more."""
+    """With friction, soles and push enforced, no posture needs less torque than Eq. 12; none much more."""
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     model = CoupledModel(problem.scene, result.tree)
     for height in result.heights:

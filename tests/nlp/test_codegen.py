@@ -25,7 +25,9 @@ from evodesign.nlp.codegen import (
     library,
 )
 from evodesign.nlp.disk_cache import Cache, open_cache
-from evodesign.nlp.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.problem.build import Problem
 from evodesign.records import Status
@@ -79,17 +81,19 @@ def program(radius: float) -> Program:
     turn = ca.sin(0.3 * x.value[0])
     a, b = x.value[0], x.value[1] + turn
     cost = (1.0 - a) ** 2 + weight * (b - a**2) ** 2
-    return Program("valley", (x,), (Constraint("disc", ca.norm_2(x.value), 0.1, radius),), cost, weight)
+    return Program(
+        "valley", (x,), (Constraint("disc", ca.norm_2(x.value), 0.1, radius),), cost, {"weight": weight}
+    )
 
 
 def nlp(radius: float) -> Mapping[str, Any]:
     made = program(radius)
     (block,), (disc,) = made.variables, made.constraints
-    return {"x": block.symbol, "p": made.parameters, "f": made.cost + radius, "g": disc.expression}
+    return {"x": block.symbol, "p": made.given, "f": made.cost + radius, "g": disc.expression}
 
 
 def solved(solver: Solver) -> RawSolution:
-    return solver.solve([100.0], solver.start)
+    return solver.solve({"weight": 100.0}, solver.start)
 
 
 def same(one: RawSolution, other: RawSolution) -> bool:
@@ -103,6 +107,7 @@ def fresh(found: Library | NotCompiled) -> bool:
     return found.fresh
 
 
+@pytest.mark.needs_compiler
 @pytest.mark.usefixtures("home")
 def test_compiled_and_virtual_machine_solve_alike_to_the_last_bit() -> None:
     compiled = Solver(program(1.3), COMPILED)
@@ -110,6 +115,7 @@ def test_compiled_and_virtual_machine_solve_alike_to_the_last_bit() -> None:
     assert same(solved(compiled), solved(Solver(program(1.3), IpoptOptions())))
 
 
+@pytest.mark.needs_compiler
 def test_library_holds_the_exact_derivatives(cache: Cache, compiler: Compiler) -> None:
     """Closed forms for f = p x0^3 x1, g = x0^2 + x1^4."""
     x, p = ca.SX.sym("x", 2), ca.SX.sym("p")
@@ -128,11 +134,12 @@ def test_library_holds_the_exact_derivatives(cache: Cache, compiler: Compiler) -
     assert float(by_weight) == pytest.approx(cost * 24.0)
 
 
+@pytest.mark.needs_compiler
 @pytest.mark.usefixtures("home")
 def test_compiled_reach_of_the_default_problem_is_the_same(problem: Problem) -> None:
     """One real compilation: about six seconds."""
     reaches = [
-        ReachProblem(problem.scene, problem.space, options, symmetric=True)
+        ReachProblem(Setting(problem.scene, problem.space, problem.weights, options), symmetric=True)
         for options in (IpoptOptions(), COMPILED)
     ]
     assert isinstance(reaches[1]._solver.functions, CompiledFunctions)
@@ -143,6 +150,7 @@ def test_compiled_reach_of_the_default_problem_is_the_same(problem: Problem) -> 
         assert compiled == virtual
 
 
+@pytest.mark.needs_compiler
 @pytest.mark.usefixtures("home")
 def test_second_process_start_does_not_compile(count: Path) -> None:
     first, second = Solver(program(1.3), COMPILED), Solver(program(1.3), COMPILED)
@@ -153,6 +161,7 @@ def test_second_process_start_does_not_compile(count: Path) -> None:
     assert same(solved(first), solved(second))
 
 
+@pytest.mark.needs_compiler
 def test_other_program_or_compiler_is_another_library(cache: Cache, compiler: Compiler) -> None:
     newer = Compiler(compiler.command, compiler.version + " and a bit")
     slower = Compiler((*compiler.command, "-g"), compiler.version)
@@ -182,6 +191,7 @@ def give_away(path: Path) -> None:
     os.chown(path, 12345, 12345)
 
 
+@pytest.mark.needs_compiler
 @pytest.mark.parametrize("harm", [damage, open_to_others, give_away])
 def test_damaged_or_foreign_library_is_built_again(harm: Any, cache: Cache, compiler: Compiler) -> None:
     first = library(nlp(1.0), compiler, cache)
@@ -197,12 +207,14 @@ def test_damaged_or_foreign_library_is_built_again(harm: Any, cache: Cache, comp
     assert not fresh(library(nlp(1.0), compiler, cache))
 
 
+@pytest.mark.needs_compiler
 def test_nothing_but_libraries_and_locks_is_left(cache: Cache, compiler: Compiler) -> None:
     found = library(nlp(1.0), compiler, cache)
     assert isinstance(found, Library)
     assert {path.suffix == ".lock" or path == found.path for path in cache.directory.iterdir()} == {True}
 
 
+@pytest.mark.needs_compiler
 def test_what_cannot_be_loaded_is_a_reason(home: Path, compiler: Compiler) -> None:
     key = codegen._key(nlp(1.0), compiler)
     open_cache(home).store(key, b"not a library")
@@ -262,6 +274,7 @@ def solve_compiled(radius: float) -> tuple[bool, float]:
     return isinstance(solver.functions, CompiledFunctions), solved(solver).cost
 
 
+@pytest.mark.needs_compiler
 @pytest.mark.usefixtures("home")
 def test_processes_that_start_together_compile_once(count: Path) -> None:
     with ProcessPoolExecutor(3, mp_context=get_context("spawn")) as pool:
@@ -270,6 +283,7 @@ def test_processes_that_start_together_compile_once(count: Path) -> None:
     assert calls(count) == 1
 
 
+@pytest.mark.needs_compiler
 def test_without_locks_processes_still_succeed(
     cache: Cache, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -279,6 +293,7 @@ def test_without_locks_processes_still_succeed(
     assert library(nlp(1.0), compiler, cache) == first
 
 
+@pytest.mark.needs_compiler
 def test_whoever_waited_for_a_failure_does_not_repeat_it(
     cache: Cache, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -6,7 +6,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.program import Constraint, IpoptOptions, Program, Solver, Variable
+from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.solver import IpoptOptions, Solver
 from evodesign.records import Status
 
 
@@ -19,31 +20,31 @@ def rosenbrock(scale: float, bound: float) -> Program:
         (x,),
         (Constraint("disc", ca.sumsqr(x.value), -np.inf, bound),),
         (1.0 - a) ** 2 + weight * (b - a**2) ** 2,
-        weight,
+        {"weight": weight},
     )
 
 
 @pytest.mark.parametrize("scale", [1.0, 10.0])
 def test_minimum_does_not_depend_on_the_scale(scale: float) -> None:
     solver = Solver(rosenbrock(scale, 10.0), IpoptOptions())
-    solution = solver.solve([100.0], solver.start)
+    solution = solver.solve({"weight": 100.0}, solver.start)
     assert solution.status is Status.SOLVED
     assert np.allclose(solution.values["x"], 1.0, atol=1e-5)
 
 
 def test_iteration_limit_is_a_status() -> None:
     solver = Solver(rosenbrock(1.0, 10.0), IpoptOptions(iterations=2))
-    assert solver.solve([100.0], solver.start).status is Status.ITERATION_LIMIT
+    assert solver.solve({"weight": 100.0}, solver.start).status is Status.ITERATION_LIMIT
 
 
 def test_contradiction_is_infeasible() -> None:
     solver = Solver(rosenbrock(1.0, -1.0), IpoptOptions())
-    assert solver.solve([100.0], solver.start).status is Status.INFEASIBLE
+    assert solver.solve({"weight": 100.0}, solver.start).status is Status.INFEASIBLE
 
 
 def test_time_limit_is_a_status() -> None:
     solver = Solver(rosenbrock(1.0, 10.0), IpoptOptions(seconds=1e-9))
-    assert solver.solve([100.0], solver.start).status is Status.TIME_LIMIT
+    assert solver.solve({"weight": 100.0}, solver.start).status is Status.TIME_LIMIT
 
 
 def test_starts_outside_the_bounds_are_moved_inside() -> None:

@@ -21,7 +21,7 @@ def fault(genome: Genome) -> int:
     return int(genome[0] * 1e6) % 10
 
 
-def worth(parameters: tuple[Parameter, ...], genome: Genome) -> Assessment:
+def results(parameters: tuple[Parameter, ...], genome: Genome) -> Assessment:
     """Of two objectives, both smooth; every design is feasible."""
     torque = 30.0 + sum((coordinate - 0.3) ** 2 for coordinate in genome)
     return Assessment(
@@ -47,7 +47,7 @@ class Faulty:
     def assess(self, genome: Genome) -> Assessed:
         with Path(self.calls).open("a") as file:
             file.write(f"{genome}\n")
-        good = worth(self.parameters, genome)
+        good = results(self.parameters, genome)
         match fault(genome):
             case 0:
                 os.kill(os.getpid(), signal.SIGKILL)
@@ -70,4 +70,4 @@ class Slow:
 
     def assess(self, genome: Genome) -> Assessed:
         time.sleep(self.seconds * (8 if fault(genome) == 0 else 1))
-        return Assessed(assessment=worth(self.parameters, genome))
+        return Assessed(assessment=results(self.parameters, genome))

@@ -15,7 +15,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.pool.serial import SerialPool
 from evodesign.records import Evaluation, RunHeader, Status
 from tests.pool.cluster import Cluster
-from tests.pool.faulty import HANGS, KILLS, NOT_A_NUMBER, Faulty, Slow, fault, worth
+from tests.pool.faulty import HANGS, KILLS, NOT_A_NUMBER, Faulty, Slow, fault, results
 from tests.runlog.toys import essence, toy_header
 
 REASONS = {
@@ -59,7 +59,7 @@ def test_every_tenth_design_kills_every_tenth_hangs_every_tenth_is_not_a_number(
         if kind in REASONS:
             assert evaluation.assessment.reason == REASONS[kind]
         else:
-            assert evaluation.assessment == worth(header.parameters, evaluation.genome)
+            assert evaluation.assessment == results(header.parameters, evaluation.genome)
 
 
 class Trouble(Silent):

@@ -170,7 +170,7 @@ def test_arguments_are_taken_when_a_worker_is_free_and_not_before() -> None:
     with JoblibPool(3) as pool:
         for end in pool.run(process, arguments()):
             given.append(end)  # noqa: PERF402 - one by one is the point
-    assert taken == [0] * 6 + [0, 1, 2, 3, 4, 5], "three at work, three at the door"
+    assert taken == [0] * 6 + [0, 1, 2, 3, 4, 5], "three at work, three prefetched"
 
 
 def test_an_argument_that_takes_too_long_is_ended_and_costs_no_other_its_worker() -> None:
@@ -255,7 +255,11 @@ def test_no_worker_outlives_its_parent(how: signal.Signals, pause: float) -> Non
             os.killpg(parent.pid, how)  # as a terminal does
         else:
             parent.send_signal(how)
-        wait_until_all_end(pids)
+        try:
+            wait_until_all_end(pids)
+        except AssertionError:
+            parent.kill()  # one that goes on would be waited for without end
+            raise
         if how is signal.SIGINT:
             assert parent.stderr is not None
             assert parent.stderr.read().count("Traceback") == 1  # the parent's own

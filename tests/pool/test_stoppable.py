@@ -22,8 +22,8 @@ def test_a_pool_behind_a_shut_gate_finishes_what_is_in_flight_and_ends(name: str
     ends: list[Finished[int]] = []
     with make_pool(name, 2) as pool:
         for finished in run_stoppable(pool, squares, range(200), lambda: len(ends) >= 5):
-            ends.append(finished)  # noqa: PERF402 - the gate looks at what has come so far
+            ends.append(finished)  # noqa: PERF402 - the stop depends on what has come so far
         assert [each.value for each in ends] == [each.index**2 for each in ends]
         assert all(each.failure is None for each in ends)
-        assert 5 <= len(ends) <= 5 + 2 + 2, "two at work and two at the door when the fifth came"
+        assert 5 <= len(ends) <= 5 + 2 + 2, "two at work and two prefetched when the fifth came"
         assert len(list(pool.run(squares, range(3)))) == 3, "the pool goes on"

@@ -1,4 +1,4 @@
-"""Who carries how much: rigid grasps, the moments that a hand bears, fixed and chosen shares and weights."""
+"""Who carries how much: rigid grasps, moments of a hand, fixed and chosen shares and weights."""
 
 from __future__ import annotations
 
@@ -15,16 +15,21 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
-from evodesign.nlp.program import Solver
+from evodesign.nlp.solver import Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.codesign import JointProblem
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry, posture_program
+from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.formulations.reach import ReachProblem
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.results import AgentPosture, HeightSolution, Instant
+from evodesign.posture.solution_derivative import known_instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.warm_start import instant_of, layout_of, start_from
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
+from tests.posture.violations import violations
 
 NO_POLICY = DesignSpace(())
 MASS = 10.0
@@ -32,7 +37,7 @@ EQUAL = EffortWeights()
 Postures = Mapping[str, AgentPosture]
 
 
-def policy(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
+def allocation(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace:
     return DesignSpace((DesignParameter(ParameterKind.POLICY, name, (), lower, upper),))
 
 
@@ -52,7 +57,7 @@ def solve(
 ) -> HeightSolution:
     """The unscaled robot's posture; everything that is checked holds."""
     options = replace(problem.options, tolerance=1e-10)
-    posture = PostureProblem(scene, space, weights, options, symmetry)
+    posture = PostureProblem(Setting(scene, space, weights, options), symmetry)
     found = posture.solve(values, height, checker(shared_scene(scene, space, values)))
     assert found.solved, found.reason
     assert max(found.residuals.values()) <= TOLERANCE
@@ -117,13 +122,12 @@ def end(
 ) -> Postures:
     """The optimum next to some postures; it passes the check."""
     options = replace(problem.options, tolerance=1e-10, near=True)
-    solver = Solver(posture_program(forms, scene, NO_POLICY, EQUAL), options)
-    rows = {variable.name: variable.symbol.numel() for variable in solver.program.variables}
-    start = {k: v for form in forms for k, v in form.start(postures[form.agent.name], rows).items()}
-    raw = solver.solve([height, MASS], start)
+    solver = Solver(posture_program(forms, Setting(scene, NO_POLICY, EQUAL, options)), options)
+    start = start_from(solver.program, forms, [Instant(0.0, postures)])
+    raw = solver.solve({"design": [], "height": height, "mass": MASS}, start)
     assert raw.status is Status.SOLVED, raw.reason
-    found = {form.agent.name: form.expand(raw.of(form.agent.name)) for form in forms}
-    assert max(checker(scene).residuals(found, height).values()) <= TOLERANCE
+    found = instant_of(layout_of(solver.program), forms, scene, raw.values).postures
+    assert max(violations(checker(scene), found, height).values()) <= TOLERANCE
     return found
 
 
@@ -135,7 +139,7 @@ def test_the_robot_carries_the_share_that_it_is_given(symmetry: Symmetry, proble
         assert found.residuals["load.share"] <= TOLERANCE
 
 
-def test_no_hand_passes_more_than_it_bears(problem: Problem) -> None:
+def test_no_hand_transmits_more_than_its_limit(problem: Problem) -> None:
     free, bounded = solve(problem, rigid(problem)), solve(problem, rigid(problem, moment=4.0))
     assert moments(free) > 10.0
     assert moments(bounded) == pytest.approx(4.0, abs=1e-6)
@@ -144,7 +148,7 @@ def test_no_hand_passes_more_than_it_bears(problem: Problem) -> None:
 
 def test_the_check_sees_shares_and_moments_that_were_not_asked_for(problem: Problem) -> None:
     postures = solve(problem, rigid(problem, share=0.7)).postures
-    other = checker(rigid(problem, moment=3.0, share=0.4)).residuals(postures, 1.0)
+    other = violations(checker(rigid(problem, moment=3.0, share=0.4)), postures, 1.0)
     assert other["load.share"] == pytest.approx(0.3 * MASS * GRAVITY, rel=1e-6)
     wrenches = [p.hand_wrenches[side][3:] for p in postures.values() for side in SIDES]
     assert other["load.hand_moment"] == pytest.approx(np.abs(wrenches).max() - 3.0)
@@ -158,20 +162,22 @@ def test_no_agent_lifts_the_other_by_the_load(problem: Problem) -> None:
         name: replace(p, hand_wrenches={s: 1.5 * w for s, w in p.hand_wrenches.items()})
         for name, p in found.postures.items()
     }
-    residuals = checker(rigid(problem)).residuals(lifted, 0.6)
+    residuals = violations(checker(rigid(problem)), lifted, 0.6)
     assert residuals["load.share"] == pytest.approx(0.5 * MASS * GRAVITY, rel=1e-5)
 
 
 def test_a_share_chosen_by_the_design_is_the_same_share_fixed(problem: Problem) -> None:
     fixed = solve(problem, rigid(problem, moment=7.0, share=0.3))
-    chosen = solve(problem, rigid(problem, moment=7.0), space=policy(ROBOT_SHARE), values=(0.3,))
+    chosen = solve(problem, rigid(problem, moment=7.0), space=allocation(ROBOT_SHARE), values=(0.3,))
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
 def test_a_ratio_chosen_by_the_design_is_the_same_weights_fixed(problem: Problem) -> None:
     weights = EffortWeights(2.0 * 10.0 / 11.0, 2.0 / 11.0)
     fixed = solve(problem, rigid(problem, moment=7.0), weights=weights)
-    chosen = solve(problem, rigid(problem, moment=7.0), space=policy(EFFORT_RATIO, -2.0, 2.0), values=(1.0,))
+    chosen = solve(
+        problem, rigid(problem, moment=7.0), space=allocation(EFFORT_RATIO, -2.0, 2.0), values=(1.0,)
+    )
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
@@ -182,9 +188,9 @@ def test_weights_add_up_to_two_and_have_their_ratio() -> None:
         assert math.log10(weights.robot / weights.human) == pytest.approx(exponent, abs=1e-9)
 
 
-def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> None:
+def test_robot_torque_falls_with_the_weight_of_its_effort(problem: Problem) -> None:
     """An optimum of a weighted sum: the robot's part falls as its weight grows, the person's rises."""
-    space, scene = policy(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
+    space, scene = allocation(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
     found = [norms(solve(problem, scene, 0.8, space=space, values=(e,))) for e in (-2.0, 0.0, 2.0)]
     robot, human = zip(*found, strict=True)
     assert robot[0] > 2.0 * robot[1] > 4.0 * robot[2]
@@ -192,21 +198,20 @@ def test_the_robot_strains_less_the_more_its_strain_weighs(problem: Problem) -> 
 
 
 def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
-    options = problem.options
-    space = policy(ROBOT_SHARE)
-    reach = ReachProblem(rigid(problem, moment=7.0), space, options, symmetric=True)
+    setting = Setting(rigid(problem, moment=7.0), allocation(ROBOT_SHARE), EQUAL, problem.options)
+    reach = ReachProblem(setting, symmetric=True)
     highest = [reach.solve((given,)).highest or 0.0 for given in (0.0, 1.0)]
     assert 1.0 < highest[1] <= highest[0] + 1e-6
 
 
 def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> None:
     """Held at a share, one height: the optimum of the posture problem."""
-    scene, space = rigid(problem, moment=7.0), policy(ROBOT_SHARE)
+    scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene, space=space, values=(0.3,))
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True)), (0.3,)
     )
-    together = joint.polish((0.3,), [alone.postures])
+    together = joint.polish((0.3,), [known_instant(alone)])
     assert together.solved, together.attempt.reason
     assert share(together.heights[0]) == pytest.approx(0.3, abs=1e-6)
     assert norms(together.heights[0]) == pytest.approx(norms(alone), abs=1e-3)
@@ -214,12 +219,12 @@ def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> Non
 
 def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     """Free to choose, it does no worse than the posture problem whose share is free."""
-    scene, space = rigid(problem, moment=7.0), policy(ROBOT_SHARE)
+    scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene)
     joint = JointProblem(
         scene, space, (1.0,), replace(problem.joint, options=replace(problem.options, near=True))
     )
-    together = joint.polish((share(alone),), [alone.postures])
+    together = joint.polish((share(alone),), [known_instant(alone)])
     assert together.solved, together.attempt.reason
     assert together.design[0] == pytest.approx(share(alone), abs=1e-3)
     cost = min(attempt.cost for attempt in alone.attempts if attempt.status is Status.SOLVED)

@@ -80,7 +80,7 @@ def pieces(problem: Problem, scene: Scene) -> list[Subject]:
     setting = replace(precompute_setting(problem), scenes=(scene,))
     return [
         piece.subject
-        for stage in stages(setting, (1.0,), seeds=False, person_reaches=False)
+        for stage in stages(setting, (1.0,), portfolios=False, person_reaches=False)
         for piece in stage
     ]
 

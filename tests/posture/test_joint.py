@@ -16,6 +16,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.records import Status
+from tests.posture.violations import violations
 
 
 @pytest.fixture(scope="module")
@@ -92,10 +93,10 @@ def test_the_check_sees_what_is_wrong(
 ) -> None:
     height = unscaled.heights[1]
     postures = {**height.postures, agent: shifted(height.postures[agent], part)}
-    found = checker.residuals(postures, height.height)
+    found = violations(checker, postures, height.height)
     large = {name.split(".")[1] for name, value in found.items() if value > TOLERANCE}
     assert residuals & large
-    assert all(value <= TOLERANCE for value in checker.residuals(height.postures, height.height).values())
+    assert all(value <= TOLERANCE for value in violations(checker, height.postures, height.height).values())
 
 
 def test_an_evaluation_does_not_depend_on_what_was_evaluated_before(
@@ -114,7 +115,7 @@ def test_mirrored_wrenches_and_joints_are_as_good(
     """Robot, person and load are mirror-symmetric, so the mirror image of a posture holds too."""
     height = unscaled.heights[0]
     images = {name: mirrored(posture) for name, posture in height.postures.items()}
-    assert max(checker.residuals(images, height.height).values()) <= TOLERANCE
+    assert max(violations(checker, images, height.height).values()) <= TOLERANCE
     for name, image in images.items():
         assert image.torque_norm == pytest.approx(height.postures[name].torque_norm)
 

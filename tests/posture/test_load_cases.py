@@ -15,15 +15,17 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
 from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution
+from evodesign.posture.results import AgentPosture, HeightSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import Problem
 from evodesign.records import Status
+from tests.posture.violations import violations
 
 HEAVIER = Disturbance("heavier", mass_share=0.2)
 AWAY = Disturbance("pushed away", push=(20.0, 0.0, 0.0))
@@ -44,14 +46,15 @@ def postures_in(
     scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: Postures | None = None
 ) -> PostureProblem:
     """A scene's posture problem, which begins at its own starts or at other postures."""
-    solvers, ingredients = SolverCache(), (scene, problem.space, problem.weights, problem.options, symmetry)
-    bare = PostureProblem(*ingredients, solvers=solvers)
+    solvers, setting = SolverCache(), Setting(scene, problem.space, problem.weights, problem.options)
+    bare = PostureProblem(setting, symmetry, solvers=solvers)
     if like is None:
         return bare
     landscape = bare.landscape(HEIGHT)
     forms = symmetric_forms(scene) if symmetry is Symmetry.ON else (whole(scene.robot), whole(scene.human))
-    seeds = StartPortfolio((start_from(forms, landscape.solver.program, like),), Coverage(0, 0, 0.0))
-    return PostureProblem(*ingredients, Precomputed(postures={HEIGHT: seeds}), solvers)
+    start = start_from(landscape.solver.program, forms, [Instant(0.0, like)])
+    portfolio = StartPortfolio((start,), Coverage(0, 0, 0.0))
+    return PostureProblem(setting, symmetry, Precomputed(postures={HEIGHT: portfolio}), solvers)
 
 
 def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Checker:
@@ -113,7 +116,7 @@ def test_the_posture_is_the_same_in_every_case(borne: HeightSolution) -> None:
             assert posture.torques != borne.postures[agent].torques
 
 
-def test_hands_and_feet_bear_weight_and_push(borne: HeightSolution, problem: Problem) -> None:
+def test_hands_and_feet_carry_weight_and_push(borne: HeightSolution, problem: Problem) -> None:
     """Closed forms: forces on the load, and vertical ones on the agents (soles are flat)."""
     scene = problem.scene
     for case in EVERY:
@@ -204,7 +207,7 @@ def test_the_check_sees_what_is_wrong_under_a_disturbance(
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
     name = AWAY.name
     wrong = {**borne.disturbed[name], agent: changed(borne.disturbed[name][agent], part)}
-    found = checker.residuals(borne.postures, HEIGHT, {**borne.disturbed, name: wrong})
+    found = violations(checker, borne.postures, HEIGHT, {**borne.disturbed, name: wrong})
     assert found[f"{name}: {agent}.{residual}"] > TOLERANCE
     assert all(size <= TOLERANCE for key, size in found.items() if not key.startswith(name))
 
@@ -222,7 +225,7 @@ def test_the_check_sees_a_disturbance_of_another_size(
     others = tuple(stronger if other is case else other for other in EVERY)
     scene = disturbed(problem, *others)
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
-    found = checker.residuals(borne.postures, HEIGHT, borne.disturbed)
+    found = violations(checker, borne.postures, HEIGHT, borne.disturbed)
     assert max(size for key, size in found.items() if key.startswith(case.name)) > 0.1
 
 
@@ -239,7 +242,7 @@ def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(
         symmetric_forms(beside)
 
 
-def test_free_postures_bear_a_sideways_push(problem: Problem, undisturbed: HeightSolution) -> None:
+def test_free_postures_resist_a_sideways_push(problem: Problem, undisturbed: HeightSolution) -> None:
     aside = Disturbance("gust", push=(0.0, 10.0, 0.0))
     solution = solved(disturbed(problem, aside), problem, Symmetry.OFF, like=undisturbed)
     hands = solution.disturbed["gust"]
@@ -252,28 +255,35 @@ def test_free_postures_bear_a_sideways_push(problem: Problem, undisturbed: Heigh
     assert sideways == pytest.approx(-10.0, abs=1e-4)
 
 
-def test_rigid_grasps_hide_in_a_quiet_posture_what_a_push_shows(problem: Problem) -> None:
-    """Joints stacked on the line of gravity bear hardly anything, until somebody pushes."""
+def test_with_rigid_grasps_a_push_needs_torques_that_the_undisturbed_posture_does_not(
+    problem: Problem,
+) -> None:
+    """Joints stacked on the line of gravity need hardly any torque, until somebody pushes."""
     payload = replace(problem.scene.payload, grasp=Grasp.RIGID)
-    quiet = solved(replace(problem.scene, payload=payload), problem)
-    assert quiet.postures[ROBOT].torque_norm < 1.5
-    pushed = solved(replace(disturbed(problem, AWAY), payload=payload), problem, like=quiet)
-    assert pushed.disturbed[AWAY.name][ROBOT].torque_norm > quiet.postures[ROBOT].torque_norm + 1.0
+    undisturbed = solved(replace(problem.scene, payload=payload), problem)
+    assert undisturbed.postures[ROBOT].torque_norm < 1.5
+    pushed = solved(replace(disturbed(problem, AWAY), payload=payload), problem, like=undisturbed)
+    assert pushed.disturbed[AWAY.name][ROBOT].torque_norm > undisturbed.postures[ROBOT].torque_norm + 1.0
 
 
-def test_a_reach_with_disturbances_is_one_that_postures_bear(problem: Problem) -> None:
+def test_postures_at_the_reach_with_disturbances_are_in_balance(problem: Problem) -> None:
     """Pushes on the chest from both sides ask for a low stand and the middle of the soles."""
     values = problem.space.unscaled(problem.scene.robot.tree)
     pushes = tuple(replace(ROBOT_BACK, name=f"{x:g} N", push=(x, 0.0, 0.0)) for x in (-110.0, 110.0))
     scenes = [disturbed(problem, *cases) for cases in ((), (HUMAN_BACK,), pushes)]
-    quiet, beside, shaken = (
-        ReachProblem(scene, problem.space, problem.options, symmetric=True).solve(values) for scene in scenes
+    undisturbed, beside, shaken = (
+        ReachProblem(Setting(scene, problem.space, problem.weights, problem.options), symmetric=True).solve(
+            values
+        )
+        for scene in scenes
     )
-    assert (beside.lowest, beside.highest) == (quiet.lowest, quiet.highest), "it is the person who is pushed"
-    assert quiet.lowest is not None
-    assert quiet.highest is not None
+    assert (beside.lowest, beside.highest) == (undisturbed.lowest, undisturbed.highest), (
+        "it is the person who is pushed"
+    )
+    assert undisturbed.lowest is not None
+    assert undisturbed.highest is not None
     assert shaken.lowest is not None
     assert shaken.highest is not None
-    assert quiet.lowest + 0.05 < shaken.lowest < shaken.highest < quiet.highest - 0.01
+    assert undisturbed.lowest + 0.05 < shaken.lowest < shaken.highest < undisturbed.highest - 0.01
     postures, checker = postures_in(scenes[2], problem), checker_of(scenes[2], problem, values)
     assert postures.solve(values, shaken.lowest + 0.01, checker).solved

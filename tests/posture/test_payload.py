@@ -11,7 +11,8 @@ from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import HeightSolution
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Status
@@ -22,7 +23,7 @@ BOX = (0.5, 0.5, 0.025)
 def solve(problem: Problem, payload: Payload, height: float = 1.0) -> HeightSolution:
     scene = replace(problem.scene, payload=payload)
     values = problem.space.unscaled(scene.robot.tree)
-    posture = PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
+    posture = PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
     tree = problem.space.resized(scene.robot.tree, values)
     checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
     return posture.solve(values, height, checker)

@@ -22,7 +22,7 @@ from evodesign.records import Objective, Sense
 
 
 @pytest.fixture(scope="module")
-def stretch(problem: Problem) -> PersonReach:
+def reach(problem: Problem) -> PersonReach:
     found = person_reach(problem.scene, problem.options, symmetric=True)
     assert found is not None
     return found
@@ -34,35 +34,37 @@ def holds(problem: Problem, height: float) -> bool:
     return person.value(height) is not None
 
 
-def test_the_person_holds_the_load_up_to_there_and_no_further(problem: Problem, stretch: PersonReach) -> None:
-    assert holds(problem, stretch.highest - 0.005)
-    assert not holds(problem, stretch.highest + 0.02)
+def test_the_person_holds_the_load_up_to_there_and_no_further(problem: Problem, reach: PersonReach) -> None:
+    assert holds(problem, reach.highest - 0.005)
+    assert not holds(problem, reach.highest + 0.02)
 
 
-def test_a_shorter_person_reaches_less_high(problem: Problem, stretch: PersonReach) -> None:
+def test_a_shorter_person_reaches_less_high(problem: Problem, reach: PersonReach) -> None:
     """Proportions are those of stature, so the highest load is, but for the box's thickness."""
     tree = human_tree(Person(1.6, 60.0, Sex.MALE))
     scene = replace(problem.scene, human=replace(problem.scene.human, tree=tree))
     shorter = person_reach(scene, problem.options, symmetric=True)
     assert shorter is not None
-    assert shorter.highest / stretch.highest == pytest.approx(1.6 / 1.82, abs=0.03)
+    assert shorter.highest / reach.highest == pytest.approx(1.6 / 1.82, abs=0.03)
 
 
-def test_a_kept_reach_is_the_one_that_was_worked_out(problem: Problem, stretch: PersonReach) -> None:
+def test_a_kept_reach_is_the_one_that_was_worked_out(problem: Problem, reach: PersonReach) -> None:
     setting, piece = precompute_setting(problem), Piece(Subject.PERSON_REACH)
     known = with_piece(NOTHING_PRECOMPUTED, piece, compute_piece(setting, piece, NOTHING_PRECOMPUTED))
     assert known is not None
-    assert known.person_reaches == (stretch,)
+    assert known.person_reaches == (reach,)
     other = replace(setting, space=replace(setting.space, parameters=setting.space.parameters[:1]))
     assert key_of(other, piece) == key_of(setting, piece), "it does not depend on the robot's hardware"
-    asked = [piece.subject for s in stages(setting, (1.0,), seeds=False, person_reaches=True) for piece in s]
+    asked = [
+        piece.subject for s in stages(setting, (1.0,), portfolios=False, person_reaches=True) for piece in s
+    ]
     assert Subject.PERSON_REACH in asked
 
 
 def test_the_shared_reach_ends_where_the_first_can_go_no_higher(
-    problem: Problem, stretch: PersonReach, evaluator: Evaluator
+    problem: Problem, reach: PersonReach, evaluator: Evaluator
 ) -> None:
-    low = replace(NOTHING_PRECOMPUTED, person_reaches=(stretch, PersonReach(0.1, 1.3, 1)))
+    low = replace(NOTHING_PRECOMPUTED, person_reaches=(reach, PersonReach(0.1, 1.3, 1)))
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     assert objective_value("shared_reach_height", result) is None, "nobody asked for the people's reach"
     assert result.reach.highest is not None

@@ -1,28 +1,32 @@
-"""Derivatives of solutions against closed forms, and the refusal of kinks."""
+"""Derivatives of solutions against closed forms, and the refusal where they do not exist."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 import pytest
 
 from evodesign.nlp.optimality import NotDifferentiable
-from evodesign.nlp.program import Constraint, IpoptOptions, Program, Solver, Variable
+from evodesign.nlp.program import Constraint, Program, Variable
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
+from evodesign.nlp.solver import IpoptOptions, Solver
 
 
 def nearest_point() -> Program:
     """The point of the half-plane x + y <= 2 with x >= 0 that is nearest to (p, q)."""
-    point = Variable.column("point", [0.0, -9.0], [9.0, 9.0], [0.5, 0.5], 2.0)
+    point = replace(Variable.column("point", [0.0, -9.0], [9.0, 9.0], [0.5, 0.5], 2.0), labels=("x", "y"))
     wanted = ca.SX.sym("wanted", 2)
     plane = Constraint("plane", point.value[0] + point.value[1], -np.inf, 2.0)
-    return Program("nearest", (point,), (plane,), ca.sumsqr(point.value - wanted) / 2.0, wanted)
+    return Program("nearest", (point,), (plane,), ca.sumsqr(point.value - wanted) / 2.0, {"wanted": wanted})
 
 
 def optimum(program: Program, parameters: list[float]) -> Optimum | NotDifferentiable:
     options = IpoptOptions()
-    found = Solver(program, options).solve(parameters, {})
-    return SolutionSensitivity(program, options, {"point": ("x", "y")}).at(parameters, found.values)
+    given = {"wanted": parameters}
+    found = Solver(program, options).solve(given, {})
+    return SolutionSensitivity(program, options).at(given, found.values)
 
 
 @pytest.mark.parametrize(
@@ -45,12 +49,12 @@ def test_nearest_point_follows_as_geometry_says(
 
 
 def test_multipliers_of_the_parameters_are_the_gradient_of_the_optimal_cost() -> None:
-    raw = Solver(nearest_point(), IpoptOptions()).solve([2.0, 1.0], {})
+    raw = Solver(nearest_point(), IpoptOptions()).solve({"wanted": [2.0, 1.0]}, {})
     assert raw.cost_slope == pytest.approx([0.5, 0.5], abs=1e-6)
 
 
 @pytest.mark.parametrize("wanted", [[0.0, 0.5], [1.5, 0.5]])
-def test_point_just_at_a_limit_is_a_kink(wanted: list[float]) -> None:
+def test_there_is_no_derivative_just_at_a_limit(wanted: list[float]) -> None:
     found = optimum(nearest_point(), wanted)
     assert isinstance(found, NotDifferentiable)
     assert "just about to reach or to leave its limit" in found.reason
@@ -73,7 +77,9 @@ def test_what_has_no_cost_has_no_slope() -> None:
     pair = Variable.column("pair", [-9.0, -9.0], [9.0, 9.0], [0.1, 0.2], 1.0)
     wanted = ca.SX.sym("wanted")
     both = Constraint("both", pair.value[0] - 1.0, 0.0, 0.0)
-    found = optimum(Program("flat", (pair,), (both,), (pair.value[0] - wanted) ** 2, wanted), [0.5])
+    found = optimum(
+        Program("flat", (pair,), (both,), (pair.value[0] - wanted) ** 2, {"wanted": wanted}), [0.5]
+    )
     assert isinstance(found, Optimum)
     assert found.slopes["pair"][0] == pytest.approx([0.0])
     assert np.isnan(found.slopes["pair"][1]).all()
@@ -83,6 +89,6 @@ def test_limit_that_is_written_twice_has_no_unique_multipliers() -> None:
     x = Variable.column("x", [-9.0], [9.0], [0.0], 1.0)
     wanted = ca.SX.sym("wanted")
     twice = [Constraint(name, x.value, -np.inf, 1.0) for name in ("once", "again")]
-    found = optimum(Program("twice", (x,), tuple(twice), (x.value - wanted) ** 2, wanted), [3.0])
+    found = optimum(Program("twice", (x,), tuple(twice), (x.value - wanted) ** 2, {"wanted": wanted}), [3.0])
     assert isinstance(found, NotDifferentiable)
     assert "twice" in found.reason

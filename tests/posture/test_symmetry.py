@@ -11,8 +11,9 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import HeightSolution
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import Problem
@@ -25,7 +26,7 @@ def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> HeightSo
     checker = Checker(
         scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
     )
-    return PostureProblem(scene, space, problem.weights, problem.options, symmetry).solve(
+    return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry).solve(
         values, height, checker
     )
 
@@ -46,7 +47,7 @@ def test_cost_of_a_half_is_that_of_the_whole_at_the_same_posture(problem: Proble
     """The paired torques count twice: recomputed here from the expanded posture."""
     solution = solve(problem, Symmetry.ON)
     effort = sum(posture.torque_norm**2 for posture in solution.postures.values()) / 100.0
-    assert effort <= cost(solution) <= effort * 1.1, "comfort is a small part of the cost"
+    assert effort <= cost(solution) <= effort * 1.1, "the regularisation is a small part of the cost"
 
 
 def test_right_side_mirrors_the_left(problem: Problem) -> None:
@@ -64,7 +65,11 @@ def test_symmetric_reach_is_the_whole_reach(problem: Problem) -> None:
     """What can be reached at the top with two hands is reached symmetrically."""
     values = problem.space.unscaled(problem.scene.robot.tree)
     highest = [
-        ReachProblem(problem.scene, problem.space, problem.options, symmetric=symmetric).solve(values).highest
+        ReachProblem(
+            Setting(problem.scene, problem.space, problem.weights, problem.options), symmetric=symmetric
+        )
+        .solve(values)
+        .highest
         for symmetric in (True, False)
     ]
     assert highest[0] == pytest.approx(highest[1], abs=1e-3)
@@ -83,7 +88,7 @@ def test_half_holds_the_left_and_the_middle(problem: Problem) -> None:
 def test_payload_off_the_middle_is_refused(problem: Problem) -> None:
     scene = replace(problem.scene, payload=Payload((0.5, 0.5, 0.025), 5.0, (0.0, 0.1, 0.0)))
     with pytest.raises(ModelError, match=r"center_of_mass_m: wanted y = 0 .*, found y = 0.1 m"):
-        PostureProblem(scene, problem.space, problem.weights, problem.options, Symmetry.ON)
+        PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
 
 
 def test_pair_of_links_that_differ_is_named(problem: Problem) -> None:
@@ -104,7 +109,7 @@ def test_pair_of_links_that_differ_is_named(problem: Problem) -> None:
 def test_parameter_of_one_side_alone_is_refused(problem: Problem) -> None:
     space = DesignSpace((DesignParameter(ParameterKind.LENGTH, "arm", ("l_upper_arm",), 0.6, 1.8),))
     with pytest.raises(ModelError, match="'l_upper_arm' without 'r_upper_arm'"):
-        PostureProblem(problem.scene, space, problem.weights, problem.options, Symmetry.ON)
+        PostureProblem(Setting(problem.scene, space, problem.weights, problem.options), Symmetry.ON)
 
 
 def test_joint_without_its_partner_is_refused(problem: Problem) -> None:

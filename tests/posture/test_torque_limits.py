@@ -15,12 +15,13 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
+from tests.posture.violations import violations
 
 HEIGHT = 1.2
 
 
 def limited(problem: Problem, limits: Mapping[str, float], height: float = HEIGHT) -> Problem:
-    """The default problem at one height, with a robot whose joints bear no more than this [N m]."""
+    """The default problem at one height, with a robot whose joint torques are no more than this [N m]."""
     robot = replace(problem.scene.robot, torque_limits=limits, limits_torques=bool(limits))
     scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
     return replace(problem, scenes=scenes, heights=(height,))
@@ -32,7 +33,7 @@ def unscaled(problem: Problem) -> tuple[float, ...]:
 
 @pytest.fixture(scope="module")
 def free(problem: Problem) -> DesignResult:
-    """Without limits: the shoulders bear 4.4 N m."""
+    """Without limits: the shoulders need 4.4 N m."""
     return Evaluator(limited(problem, {})).solve(unscaled(problem))
 
 
@@ -44,7 +45,7 @@ def held(problem: Problem) -> DesignResult:
     return Evaluator(limited(problem, SHOULDERS)).solve(unscaled(problem))
 
 
-def test_no_torque_is_beyond_its_limit_and_the_posture_strains_more(
+def test_no_torque_is_beyond_its_limit_and_the_posture_costs_more(
     free: DesignResult, held: DesignResult
 ) -> None:
     before, after = (result.heights[0].postures[ROBOT] for result in (free, held))
@@ -63,12 +64,12 @@ def test_the_check_measures_how_far_a_torque_is_beyond_its_limit(
     assert "human.torque_limits" not in held.heights[0].residuals
     scene = limited(problem, SHOULDERS).scene
     human = AgentModel.of(scene.human, scene.human.tree)
-    found = Checker(scene, free.tree, human).residuals(free.heights[0].postures, HEIGHT)
+    found = violations(Checker(scene, free.tree, human), free.heights[0].postures, HEIGHT)
     torques = free.heights[0].postures[ROBOT].torques
     assert found["robot.torque_limits"] == pytest.approx(abs(torques["l_shoulder_pitch"]) - 1.5)
 
 
-def test_a_pair_bears_what_its_weaker_joint_does(problem: Problem, held: DesignResult) -> None:
+def test_a_pair_has_the_limit_of_its_weaker_joint(problem: Problem, held: DesignResult) -> None:
     unequal = {"l_shoulder_pitch": 30.0, "r_shoulder_pitch": 1.5}
     found = Evaluator(limited(problem, unequal)).solve(unscaled(problem)).heights[0].postures
     assert found[ROBOT].torque_norm == pytest.approx(held.heights[0].postures[ROBOT].torque_norm, rel=1e-6)
@@ -90,7 +91,7 @@ def test_reach_is_what_the_joints_can_hold(problem: Problem, free: DesignResult)
     assert found.lowest is not None
     assert found.highest is not None
     assert free.reach.lowest is not None
-    assert found.lowest > free.reach.lowest + 0.1, "a robot that squats bears more than 5 N m in its legs"
+    assert found.lowest > free.reach.lowest + 0.1, "a robot that squats needs more than 5 N m in its legs"
 
 
 def test_gradients_know_a_limit_that_is_met(problem: Problem) -> None:
@@ -118,8 +119,8 @@ def test_limits_hold_under_a_heavier_load_too(problem: Problem) -> None:
     scenes = tuple(replace(scene, disturbances=heavier) for scene in chosen.scenes)
     result = Evaluator(replace(chosen, scenes=scenes)).solve(unscaled(problem)).heights[0]
     assert result.solved
-    borne = [postures[ROBOT] for postures in (result.postures, *result.disturbed.values())]
-    assert len(borne) == 2
-    for posture in borne:
+    loaded = [postures[ROBOT] for postures in (result.postures, *result.disturbed.values())]
+    assert len(loaded) == 2
+    for posture in loaded:
         assert abs(posture.torques["l_shoulder_pitch"]) <= 1.5 + 1e-5
     assert result.residuals["heavier: robot.torque_limits"] < 1e-6

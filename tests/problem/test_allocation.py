@@ -1,4 +1,4 @@
-"""What a problem file may say about who carries how much, and how that moves what a design is worth."""
+"""What a problem file may say about who carries how much, and how that changes the objectives."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ RATIO = "\n[[design.policy]]\nname = 'effort_ratio'\nlower = -1.0\nupper = 2.0\n
 
 
 def changed(problem: Problem, grasp: str = RIGID, task: str = "", allocations: str = "") -> Problem:
-    """The default problem with 10 kg, another grasp, more in its task, and policies."""
+    """The default problem with 10 kg, another grasp, more in its task, and allocation parameters."""
     text = problem.source.text.replace('grasp = "point"', grasp).replace("mass_kg = 5.0", "mass_kg = 10.0")
     text = text.replace("heights_m = [0.8, 1.0, 1.2]", f"heights_m = [0.8]\n{task}") + allocations
     built = build_problem(msgspec.structs.replace(problem.source, text=text))
@@ -96,7 +96,7 @@ def test_weights_are_the_files_or_equal(problem: Problem) -> None:
     assert changed(problem, task="effort_weights = { human = 3.0 }").weights == EffortWeights(1.0, 3.0)
 
 
-def test_policies_are_parameters_without_links(shared: Problem) -> None:
+def test_allocations_are_parameters_without_links(shared: Problem) -> None:
     assert shared.space.records[-2:] == (
         Parameter(name="policy.robot_share", lower=0.1, upper=0.9, unit="1"),
         Parameter(name="policy.effort_ratio", lower=-1.0, upper=2.0, unit="1"),
@@ -108,7 +108,7 @@ def test_policies_are_parameters_without_links(shared: Problem) -> None:
     assert [p["links"] for p in model_json(shared)["parameters"][-2:]] == [[], []]
 
 
-def test_population_files_carry_policies(shared: Problem) -> None:
+def test_population_files_hold_allocations(shared: Problem) -> None:
     tree = shared.scene.robot.tree
     values = (*shared.space.unscaled(tree)[:-2], 0.25, -0.75)
     text = designs_text("some", {"one": values}, shared.space, "a remark")
@@ -120,7 +120,7 @@ def test_population_files_carry_policies(shared: Problem) -> None:
         read_designs(text.replace('"robot_share"', '"hape"'), "some.toml", shared.space, tree)
 
 
-def test_notebooks_take_policies_of_any_sign(shared: Problem) -> None:
+def test_notebooks_take_allocations_of_any_sign(shared: Problem) -> None:
     text = shared.source.text + "\n[solver]\nseeds = false\ncompile = false\n"
     opened = OpenedProblem(msgspec.structs.replace(shared.source, text=text))
     found = opened.evaluate({"policy.effort_ratio": -0.5, "policy.robot_share": 0.3})
@@ -135,7 +135,7 @@ def gradients(problem: Problem, values: tuple[float, ...]) -> Mapping[str, Mappi
     return {name: moves.gradient or {} for name, moves in found.items()}
 
 
-def test_objectives_move_with_policies_as_differences_say(shared: Problem) -> None:
+def test_objectives_move_with_allocations_as_differences_say(shared: Problem) -> None:
     """Central differences of evaluations, which begin at the same starts."""
     exact = replace(shared, options=replace(shared.options, tolerance=1e-11))
     evaluator = Evaluator(exact)
@@ -144,18 +144,18 @@ def test_objectives_move_with_policies_as_differences_say(shared: Problem) -> No
     names = [parameter.name for parameter in exact.space.parameters]
     for name in ("policy.robot_share", "policy.effort_ratio", "length.forearm"):
         step = np.where(np.array(names) == name, 1e-4, 0.0)
-        worth = [
+        both = [
             evaluator.assess_values(tuple(np.array(values) + sign * step)).assessment.objectives
             for sign in (1.0, -1.0)
         ]
         for objective in ("robot_torque", "human_torque", "reach_height"):
-            slope = (worth[0][objective] - worth[1][objective]) / 2e-4
+            slope = (both[0][objective] - both[1][objective]) / 2e-4
             assert found[objective][name] == pytest.approx(slope, rel=1e-4, abs=1e-4), (objective, name)
     assert abs(found["robot_torque"]["policy.robot_share"]) > 1.0
     assert found["reach_height"]["policy.effort_ratio"] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_polishing_moves_policies(shared: Problem) -> None:
+def test_polishing_moves_allocations(shared: Problem) -> None:
     begun = (*shared.space.unscaled(shared.scene.robot.tree)[:-2], 0.45, 0.1)
     aim = aim_of(shared, {"robot_torque": 1.0}, "")
     done = polish(Evaluator(shared), shared.space.genome(begun), aim, 4, lambda step: None)
@@ -169,7 +169,7 @@ def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem) -> None
 
 
 def test_reach_with_rigid_grasps_has_a_gradient(problem: Problem) -> None:
-    """Moments of the person's hands cost nothing there, and a little comfort decides between them."""
+    """Moments of the person's hands cost nothing there, and a little regularisation decides between them."""
     rigid = changed(problem, allocations=SHARE)
     rigid = replace(rigid, options=replace(rigid.options, tolerance=1e-11))
     values = np.array((*rigid.space.unscaled(rigid.scene.robot.tree)[:-1], 0.3))
@@ -177,9 +177,9 @@ def test_reach_with_rigid_grasps_has_a_gradient(problem: Problem) -> None:
     evaluator = Evaluator(rigid)
     place = [parameter.name for parameter in rigid.space.parameters].index("length.forearm")
     step = 1e-4 * np.eye(len(values))[place]
-    worth = [
+    both = [
         evaluator.assess_values(tuple(v)).assessment.objectives["reach_height"]
         for v in (values + step, values - step)
     ]
-    assert found["length.forearm"] == pytest.approx((worth[0] - worth[1]) / 2e-4, rel=1e-4)
+    assert found["length.forearm"] == pytest.approx((both[0] - both[1]) / 2e-4, rel=1e-4)
     assert found["length.forearm"] > 0.1

@@ -74,10 +74,10 @@ def test_the_logged_cost_is_that_of_equation_14(source: ProblemSource) -> None:
     tree = problem.space.resized(problem.scene.robot.tree, values)
     assert height.robot_torque_norm is not None
     assert height.human_torque_norm is not None
-    strain = (height.robot_torque_norm**2 + height.human_torque_norm**2) / 100.0
+    squared = (height.robot_torque_norm**2 + height.human_torque_norm**2) / 100.0
     density = float(density_task(problem.space, values, (1405.0, 4000.0)))
     stand = float(mass_height_task(problem.scene.robot, tree))
-    assert assessment.objectives["paper_cost"] == pytest.approx(strain + 0.01 * density + 0.1 * stand)
+    assert assessment.objectives["paper_cost"] == pytest.approx(squared + 0.01 * density + 0.1 * stand)
     assert height.residual is not None
     assert height.residual < 1e-5
 

@@ -123,13 +123,13 @@ def test_disturbed_cases_count_as_cases(result: DesignResult) -> None:
     assert objective_value("robot_torque", result) == pytest.approx(sum(norms[ROBOT]) / 3.0)
     assert objective_value("worst_human_torque", result) == max(norms[HUMAN])
     assert objective_value("q50_robot_torque", result) == pytest.approx(sorted(norms[ROBOT])[1])
-    quiet = norms[ROBOT][0] ** 2 + norms[HUMAN][0] ** 2
-    assert objective_value("paper_cost", result) == pytest.approx(quiet / 100.0), (
+    undisturbed = norms[ROBOT][0] ** 2 + norms[HUMAN][0] ** 2
+    assert objective_value("paper_cost", result) == pytest.approx(undisturbed / 100.0), (
         "the paper knows no disturbances"
     )
 
 
-def test_records_hold_what_is_borne_and_nothing_where_nothing_is(result: DesignResult) -> None:
+def test_records_hold_the_load_cases_and_nothing_where_there_are_none(result: DesignResult) -> None:
     (height,) = result.heights
     scene = result.scenes[0]
     outcome, detail = height_outcome(height, scene), detail_of(height, scene)
@@ -138,12 +138,12 @@ def test_records_hold_what_is_borne_and_nothing_where_nothing_is(result: DesignR
     assert detail.disturbed["heavier"][ROBOT].torques_n_m == posture.torques
     for record, kind in ((outcome, HeightOutcome), (detail, HeightDetail)):
         assert msgspec.json.decode(msgspec.json.encode(record), type=kind) == record
-    quiet = replace(height, disturbed={})
-    for record in (height_outcome(quiet, scene), detail_of(quiet, scene)):
+    undisturbed = replace(height, disturbed={})
+    for record in (height_outcome(undisturbed, scene), detail_of(undisturbed, scene)):
         assert b"disturbed" not in msgspec.json.encode(record)
 
 
-def test_the_answer_shows_torques_and_wrenches_of_every_case(
+def test_the_result_shows_torques_and_wrenches_of_every_case(
     shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
     (told,) = evaluation_json(shaken, values, result, exact.assessment(values, result), {})["heights"]
@@ -184,12 +184,12 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
 ) -> None:
     subjects = {
         piece.subject
-        for stage in stages(precompute_setting(shaken), (1.0,), seeds=True, person_reaches=False)
+        for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False)
         for piece in stage
     }
     assert Subject.PERSON not in subjects
-    quiet = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
-    for stage in stages(precompute_setting(shaken), (1.0,), seeds=True, person_reaches=False):
+    undisturbed = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
+    for stage in stages(precompute_setting(shaken), (1.0,), portfolios=True, person_reaches=False):
         for piece in stage:
-            same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(quiet), piece)
-            assert same is (piece.subject is not Subject.POSTURE), "quiet seeds of reach do"
+            same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
+            assert same is (piece.subject is not Subject.POSTURE), "start portfolios of undisturbed reach do"

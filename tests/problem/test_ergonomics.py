@@ -57,9 +57,9 @@ def middles(detail: AgentDetail) -> tuple[np.ndarray, np.ndarray]:
     solved = AgentPosture(
         np.array(detail.base_position_m), np.array(detail.base_rpy_rad), detail.joints_rad, {}, {}, {}
     )
-    instant = AgentModel.of(PERSON, PERSON.tree).at(solved)
-    hands = np.mean([instant.pose(name)[1] for name in HANDS.values()], axis=0)
-    ankles = np.mean([instant.pose(name)[1] for name in ("LeftFoot", "RightFoot")], axis=0)
+    state = AgentModel.of(PERSON, PERSON.tree).at(solved)
+    hands = np.mean([state.pose(name)[1] for name in HANDS.values()], axis=0)
+    ankles = np.mean([state.pose(name)[1] for name in ("LeftFoot", "RightFoot")], axis=0)
     return hands, ankles
 
 
@@ -110,7 +110,7 @@ def test_the_lifting_index_is_the_held_part_of_the_load_over_what_is_recommended
     assert found.lifting_index == pytest.approx(24.5 / 9.81 / found.recommended_weight)
 
 
-def test_the_strain_is_that_of_the_weakest_way_of_a_joint() -> None:
+def test_the_relative_torque_is_that_of_the_weakest_direction_of_a_joint() -> None:
     """One newton metre everywhere, so the weakest of all positive directions works hardest."""
     strain = ergonomics(PERSON, posture({})).strain
     assert strain is not None
@@ -118,7 +118,7 @@ def test_the_strain_is_that_of_the_weakest_way_of_a_joint() -> None:
     assert strain.share == pytest.approx(1.0 / weakest)
 
 
-def test_a_person_without_strengths_has_no_strain_but_a_lifting_index() -> None:
+def test_a_person_without_strengths_has_no_relative_torque_but_a_lifting_index() -> None:
     found = ergonomics(replace(PERSON, strengths={}), posture({"jLeftElbow_rotz": -1.5}))
     assert found.strain is None
     assert found.recommended_weight >= 0.0

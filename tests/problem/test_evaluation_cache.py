@@ -1,13 +1,15 @@
 from __future__ import annotations
 
+import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import msgspec
 import pytest
 
+from evodesign import identity
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.problem import evaluation_cache
@@ -95,18 +97,44 @@ def test_only_what_an_evaluation_follows_from_makes_another_problem(
     assert (problem_digest(source) == problem_digest(changed(source, old, new))) is same
 
 
-def test_another_robot_or_another_program_is_another_problem(
-    source: ProblemSource, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = problem_digest(source)
+def test_another_robot_is_another_problem(source: ProblemSource) -> None:
     robot = next(name for name in source.files if name.endswith(".urdf"))
     other = msgspec.structs.replace(source, files={**source.files, robot: source.files[robot] + " "})
-    assert problem_digest(other) != before
-    monkeypatch.setattr(evaluation_cache, "version", lambda name: "0")
-    assert problem_digest(source) != before
-    monkeypatch.undo()
-    monkeypatch.setattr(evaluation_cache, "_source_digest", lambda: "other code")
-    assert problem_digest(source) != before
+    assert problem_digest(other) != problem_digest(source)
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A copy of evodesign, of which the code's digest is taken."""
+    copy = shutil.copytree(identity.PACKAGE, tmp_path / "evodesign", ignore=shutil.ignore_patterns("*.pyc"))
+    monkeypatch.setattr(identity, "PACKAGE", copy)
+    identity.code_digest.cache_clear()
+    yield copy
+    identity.code_digest.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("changed", "solved_again"),
+    [
+        ("posture/terms/load.py", True),
+        ("posture/precompute/pieces.py", True),
+        ("human/data/strength.toml", True),
+        ("identity.py", True),
+        ("cli/main.py", False),
+        ("report/page/content.py", False),
+        ("search/nsga2.py", False),
+    ],
+)
+def test_what_other_code_found_is_not_given_back(
+    changed: str, solved_again: bool, package: Path, source: ProblemSource, tmp_path: Path
+) -> None:
+    factory = Counting(source, str(tmp_path / "calls"))
+    Remembering(factory)()((0.1,))
+    path = package / changed
+    path.write_text(path.read_text().replace("\n", " \n", 1))
+    identity.code_digest.cache_clear()
+    Remembering(factory)()((0.1,))
+    assert calls(tmp_path / "calls") == (2 if solved_again else 1)
 
 
 @pytest.mark.parametrize(

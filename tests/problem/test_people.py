@@ -64,9 +64,9 @@ def test_a_population_of_one_is_that_person_alone(problem: Problem) -> None:
 
 
 def test_a_population_stands_beside_single_people_under_its_name(problem: Problem) -> None:
-    lists = f'[[human]]\nname = "porter"\n{PERSON}\n\n[[human]]\nname = "crew"\n{population("[25]")}'
+    lists = f'[[human]]\nname = "porter"\n{PERSON}\n\n[[human]]\nname = "team"\n{population("[25]")}'
     built = build_problem(changed(problem.source, (f"[human]\n{PERSON}", lists)))
-    assert [scene.human.label for scene in built.scenes] == ["porter", "crew female P25", "crew male P25"]
+    assert [scene.human.label for scene in built.scenes] == ["porter", "team female P25", "team male P25"]
 
 
 def test_a_population_that_is_also_a_person_is_refused(problem: Problem) -> None:

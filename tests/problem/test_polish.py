@@ -34,7 +34,7 @@ def test_one_objective_gets_better_and_every_height_is_held(
 
 
 def test_height_at_the_edge_of_reach_stays_within(problem: Problem, unscaled: Genome) -> None:
-    """Shorter arms and legs would bear less, but the unscaled robot only just reaches this height."""
+    """Shorter arms and legs would need less torque, but the unscaled robot only just reaches this height."""
     edge = replace(problem, heights=(1.277,))
     seen: list[Step] = []
     done = polish(Evaluator(edge), unscaled, aim_of(edge, {"robot_torque": 1.0}, ""), 8, seen.append)
@@ -46,7 +46,7 @@ def test_height_at_the_edge_of_reach_stays_within(problem: Problem, unscaled: Ge
     assert len(missed) <= 2, "the descent knows where reach ends"
 
 
-def test_polished_design_is_worth_what_was_said(
+def test_polished_design_has_the_results_that_were_reported(
     problem: Problem, evaluator: Evaluator, unscaled: Genome
 ) -> None:
     """Also after a way through a file of designs, whose numbers are exact."""

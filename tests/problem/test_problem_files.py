@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from evodesign.mechanics.scene import Grasp
-from evodesign.posture.formulations.joint import Symmetry
+from evodesign.posture.postures import Symmetry
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 

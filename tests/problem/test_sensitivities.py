@@ -134,9 +134,9 @@ def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
         assert (after - before) / 2e-4 == pytest.approx(part.cost_slope @ along, rel=1e-5)
 
 
-def test_kinks_name_the_start_that_won(found: Mapping[str, ObjectiveSensitivity]) -> None:
+def test_notes_name_the_start_that_won(found: Mapping[str, ObjectiveSensitivity]) -> None:
     for name in ("robot_torque", "worst_human_torque"):
         for height in ("0.8", "1", "1.2"):
-            assert any(kink.startswith(f"at {height} m: split: seed ") for kink in found[name].notes)
+            assert any(kink.startswith(f"at {height} m: decoupled: start ") for kink in found[name].notes)
     assert any(kink.startswith("highest load: start ") for kink in found["reach_height"].notes)
     assert found["mass"].notes == ()

@@ -14,7 +14,7 @@ from tests.fuzz.test_fuzz_inputs import PROBLEM, ROBOT, TEXTS
 def robot_of(
     table: str = "", torque_limits: str = "none", robot: str = TEXTS[ROBOT], more: str = ""
 ) -> Agent:
-    """The small robot, whose shoulders may bear 50 N m by its URDF, under other limits."""
+    """The small robot, whose shoulders have limits of 50 N m in its URDF, under other limits."""
     text = TEXTS[PROBLEM].replace(f'urdf = "{ROBOT}"', f'urdf = "{ROBOT}"\ntorque_limits = "{torque_limits}"')
     text = text.replace("[human]", f"[robot.torque_limits_n_m]\n{table}\n\n[human]", 1)
     text = text.replace('"human_torque"]', f'"human_torque"{more}]')

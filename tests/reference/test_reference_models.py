@@ -47,6 +47,7 @@ frames = [
 SOLVER = """
 [solver]
 symmetry = "off"    # the published robot is not symmetric to the last digit
+compile = false     # takes longer than it saves here
 """
 GRASPS = """
 robot_grasps_m = { left = [-0.25, 0.2, 0.025], right = [-0.25, -0.2, 0.025] }

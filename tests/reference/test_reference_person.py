@@ -164,7 +164,7 @@ def totals(tree: Tree) -> dict[str, float]:
 def documented(repository: Path) -> dict[str, list[str]]:
     """Rows of the Markdown tables in the section, by their first cell."""
     text = (repository / "docs" / "person.md").read_text(encoding="utf-8")
-    section = text.split("## Beside the published body\n")[1].split("\n## ")[0]
+    section = text.split("## Comparison with the published body\n")[1].split("\n## ")[0]
     rows = [line.strip("|").split("|") for line in section.splitlines() if line.startswith("|")]
     cells = [[cell.strip() for cell in row] for row in rows]
     return {row[0]: row[1:] for row in cells if row[0] not in ("segment", "whole body", "---")}

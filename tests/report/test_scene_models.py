@@ -53,9 +53,9 @@ def test_links_stand_where_pinocchio_puts_them(problem: Problem) -> None:
     height = random_detail(problem, 7).heights[0]
     stage = placed_scene(models, height)
     for agent in models.agents:
-        instant = AgentModel.of(agent, models.trees[agent.name]).at(posture_of(height.agents[agent.name]))
+        state = AgentModel.of(agent, models.trees[agent.name]).at(posture_of(height.agents[agent.name]))
         for link in models.trees[agent.name].link_by_name:
-            rotation, origin = instant.pose(link)
+            rotation, origin = state.pose(link)
             frame = stage.frames[agent.name][link]
             mirrored = np.diag([agent.sign, agent.sign, 1.0])
             assert np.allclose(mirrored @ origin, frame.translation, rtol=0.0, atol=1e-9)
@@ -95,7 +95,7 @@ def test_moved_wrenches_have_the_logged_force_and_moment(problem: Problem) -> No
             assert np.allclose([*(sign * hand.force), *(sign * hand.moment)], posture.hand_wrenches[side])
 
 
-def test_foot_that_bears_nothing_keeps_its_wrench_at_the_sole(problem: Problem) -> None:
+def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: Problem) -> None:
     models = random_cast(problem, 3)
     height = random_detail(problem, 3).heights[0]
     height.agents[ROBOT].foot_wrenches["left"] = (0.0,) * 6

@@ -100,7 +100,7 @@ def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
 def test_recording_shows_each_case_with_its_own_person_and_load(
     folder: Path, run: Run, several: Problem
 ) -> None:
-    """Link frames are held against pinocchio with persons that are generated anew."""
+    """Link frames are compared with pinocchio with persons that are generated anew."""
     readme = (folder / "README.md").read_text()
     seen = {}
     with (folder / "replay.mcap").open("rb") as stream:
@@ -117,10 +117,10 @@ def test_recording_shows_each_case_with_its_own_person_and_load(
         scene = next(s for s in several.scenes if (s.human.label, s.payload.label) == (human, payload))
         tree = human_tree(PEOPLE[human])
         posture = posture_of(run.details[1].heights[number].agents[HUMAN])
-        instant = AgentModel.of(scene.human, tree).at(posture)
+        state = AgentModel.of(scene.human, tree).at(posture)
         world_from = frames(seen["/tf", time])
         for link in ("LeftPalm", "RightPalm", "Head", "LeftSole"):
-            _, origin = instant.pose(link)
+            _, origin = state.pose(link)
             expected = np.diag([-1.0, -1.0, 1.0]) @ origin
             assert np.allclose(world_from[f"human/{link}"][:3, 3], expected, rtol=0.0, atol=1e-9)
         (load,) = seen["/scene/load", time].entities

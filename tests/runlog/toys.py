@@ -225,8 +225,8 @@ def shuffled(seed: int) -> Callable[[int], Sequence[int]]:
 def essence(run: Run) -> tuple[list[Evaluation], list[Generation], tuple[Front, ...]]:
     """What must be equal between two runs: everything but times and names of workers.
 
-    Postures of designs that were beaten on arrival may be there or not: evaluations that a stop logs early
-    are compared with fewer others.
+    Postures of designs that were dominated when they arrived may be there or not: those that a stop logs
+    early are compared with fewer others.
     """
     return (
         [msgspec.structs.replace(each, seconds=0.0, worker="") for each in run.evaluations],

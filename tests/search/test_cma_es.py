@@ -126,14 +126,14 @@ def two_bowls(x):
 
 
 def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
-    """The four incumbents conquer as much as four points of the line can, found by another optimiser."""
+    """The four incumbents dominate as much as four points of the line can, found by another optimiser."""
     cma_es = search(objectives=2, dimension=4, population=32)
     for _ in range(60):
         cma_es.tell([Outcome(two_bowls(np.array(genome)), 0.0) for genome in cma_es.ask()])
     best, worst = cma_es._instances._extent
     reference = worst + MARGIN * (worst - best)
 
-    def conquered_by(places):
+    def dominated_by(places):
         line = sorted(two_bowls(np.full(4, place)) for place in places)
         heights = [reference[1], *(values[1] for values in line)]
         return sum(
@@ -141,13 +141,13 @@ def test_instances_spread_over_the_trade_offs_as_the_hypervolume_asks():
             for (left, below), above in zip(line, heights, strict=False)
         )
 
-    most = -minimize(lambda places: -conquered_by(places), [0.3, 0.45, 0.55, 0.7], method="Nelder-Mead").fun
+    most = -minimize(lambda places: -dominated_by(places), [0.3, 0.45, 0.55, 0.7], method="Nelder-Mead").fun
     found = moocore.hypervolume(np.array(cma_es._instances._incumbents), ref=reference)
     assert len(cma_es._instances._incumbents) == 4
     assert 0.995 * most < found < 1.0001 * most
 
 
-def test_instances_begin_where_they_conquer_most_together():
+def test_instances_begin_where_they_dominate_most_together():
     """Of outcomes crowded at (1, 1) one is taken, then the ends; a violated one when none is left."""
     told = [Outcome((1.0 + 0.001 * i, 1.0 + 0.001 * i), 0.0) for i in range(29)]
     told += [Outcome((0.0, 3.0), 0.0), Outcome((3.0, 0.0), 0.0), Outcome(None, 0.1)]

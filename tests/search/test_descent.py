@@ -74,7 +74,7 @@ def test_region_that_does_not_exist_is_not_entered() -> None:
 
 @dataclass
 class Ridge:
-    """|x - 0.5| + y^2: a kink along x = 0.5, with the slope of one side on it."""
+    """|x - 0.5| + y^2: not differentiable along x = 0.5, where it has the slope of one side."""
 
     def look(self, position: Array) -> Iterate | None:
         return Iterate(position, float(abs(position[0] - 0.5) + position[1] ** 2), np.zeros(0))
@@ -84,7 +84,7 @@ class Ridge:
         return Slopes(np.array([sign, 2.0 * point.position[1]]), np.zeros((0, 2)))
 
 
-def test_kink_is_approached_without_getting_worse() -> None:
+def test_points_without_a_derivative_are_approached_without_getting_worse() -> None:
     assert go(Ridge(), [0.8, 0.8]).best.value < 0.1
 
 
@@ -101,7 +101,7 @@ class Fold:
 
 def test_descent_ends_where_there_is_no_derivative() -> None:
     found = go(Fold(), [0.7])
-    assert found.reason == "it stands at a kink"
+    assert found.reason == "its derivative does not exist"
     assert found.best.position[0] < 0.4
 
 

@@ -140,7 +140,7 @@ def genomes_of(algorithm, seed, generations=40):
     return asked
 
 
-def conquered(genomes):
+def dominated(genomes):
     points = np.array([assess(genome).objectives for genome in genomes])
     return float(moocore.hypervolume(points, ref=(2.0, 2.0)))
 
@@ -158,7 +158,7 @@ def test_right_choices_are_found_where_random_sampling_finds_none(algorithm, see
     asked = genomes_of(algorithm, seed)
     best = min(asked, key=lambda genome: math.hypot(*assess(genome).objectives))
     assert [choice_at(each, PARTS) for each in best[6:]] == list(BEST)
-    assert conquered(asked) > 1.5 * conquered(genomes_of("random", seed))
+    assert dominated(asked) > 1.5 * dominated(genomes_of("random", seed))
 
 
 def stuck(monkeypatch):

@@ -44,7 +44,7 @@ def test_gain_and_distance_are_those_counted_in_unit_cells(others, of):
 
 
 @given(points, point, st.tuples(*[st.integers(0, 3)] * 3))
-def test_a_dominating_point_is_never_worth_less(others, of, losses):
+def test_a_dominating_point_never_has_less_value(others, of, losses):
     worse = tuple(value + loss for value, loss in zip(of, losses, strict=True))
     assert gain(others, worse) <= gain(others, of)
 

@@ -67,7 +67,7 @@ def test_a_branch_of_nsga2_mates_what_survived_the_past() -> None:
     assert inherited > 4, "crossover leaves many coordinates as they were"
 
 
-def test_the_fittest_are_feasible_first_then_beaten_by_none() -> None:
+def test_the_fittest_are_feasible_first_then_nondominated() -> None:
     known = {
         (0.1, 0.1, 0.0): Outcome(None, 0.5),
         (0.2, 0.1, 0.0): Outcome((1.0, 2.0), 0.0),

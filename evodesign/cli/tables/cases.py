@@ -30,7 +30,7 @@ def cases_table(assessment: Assessment, title: str) -> Table:
     outcomes = assessment.heights
     labels = _name_columns(outcomes)
     table = titled(title, [*names(*labels), *numbers(*(SEVERAL if labels else ALONE)), *names("status")])
-    for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=True):
+    for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
         iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
             *(shown(name_of(outcome)) for name_of in labels.values()),

@@ -40,7 +40,7 @@ def _starts_table(problem: Problem, known: Precomputed) -> Table:
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
         miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
-        table.add_row(name, str(len(found.seeds)), str(coverage.designs), share, miss)
+        table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
     return table
 
 
@@ -70,7 +70,7 @@ def starts_json(problem: Problem, known: Precomputed) -> dict[str, Any]:
         "seeds": [
             {
                 "for": name,
-                "seeds": len(found.seeds),
+                "seeds": len(found.starts),
                 "designs_tried": found.coverage.designs,
                 "designs_led_well": found.coverage.good,
                 "worst_miss": found.coverage.worst,

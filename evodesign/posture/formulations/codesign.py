@@ -1,17 +1,16 @@
 """The paper's problem: postures at all heights and the hardware pi as variables of one nonlinear program.
 
-    minimise    W1 sum_k t1_k + W3 sum_k t3_k + W2 t2 + W4 t4 + comfort
-    subject to  the constraints of both agents and of the load, at every height k
+    minimise    W1 sum_k t1_k + W3 sum_k t3_k + W2 t2 + W4 t4 + regularisation
+    subject to  every term, for both agents and the load, at every height k
 
-The blocks are those of the posture problem, over a robot whose lengths and densities are variables; a genome
+The terms are those of the posture problem, over a robot whose lengths and densities are variables; a genome
 (a point of the unit cube) stands for them, so that IPOPT sees numbers of order one. Eq. 14 a to g (load level
-at its height, hands on it, feet on the ground and flat) always hold, physical limits as `Enforced` says.
+at its height, hands on it, feet on the ground and flat) always hold, other groups of limits as `Enforced`
+says.
 
-Without joint limits a foot can be flat upside down, which Eq. 14 f and g (e_3 . z = 1) exclude; an inequality
-does so then. Where the limits of contact are not enforced the small cost on wrenches is left out too, so that
-torques are exactly those of Eq. 12.
+The design is a variable here and not a parameter: there is no landscape over designs and no derivative.
 
-Source: Sartore et al. 2022, Eq. 14; DESIGN 3 (joint baseline).
+Source: Sartore et al. 2022, Eq. 14.
 """
 
 from __future__ import annotations
@@ -25,24 +24,30 @@ import numpy as np
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
-from evodesign.nlp.program import Constraint, IpoptOptions, Program, RawSolution, Solver, Variable
+from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
+from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
 from evodesign.posture.candidate import checked
-from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.formulations.codesign_start import drawn_postures, standard_postures
 from evodesign.posture.limit_groups import Enforced
-from evodesign.posture.results import AgentPosture, Attempt, HeightSolution
+from evodesign.posture.results import Attempt, HeightSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
-from evodesign.posture.terms.agent import AgentBlock, agent_block
-from evodesign.posture.terms.load import load_constraints
+from evodesign.posture.terms.base import TORQUE_UNIT, Residual
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.terms.torque import effort
+from evodesign.posture.warm_start import instant_of, layout_of, start_from
 from evodesign.records import Genome, Status
 
 __all__ = ["JointProblem", "JointSettings", "JointSolution"]
 
 Array = Any
 Expression = Any
+
+NAME = "codesign"
+"""Of the formulation, in results."""
 
 GENOME = "genome"
 """Name of the variable that holds the design."""
@@ -77,13 +82,13 @@ class JointSolution:
     Args:
         design: value of each parameter, of the optimum or of the last iterate.
         heights: a solution per height, all solved or none; residuals are those that the problem enforces.
-        violations: what the check found of limits that the problem does not enforce, per height, by name.
+        violations: what the check found of limits that the problem does not enforce, per height.
         attempt: how the solve ended; its cost is that of Eq. 14 [(10 N m)^2].
     """
 
     design: tuple[float, ...]
     heights: tuple[HeightSolution, ...]
-    violations: tuple[Mapping[str, float], ...]
+    violations: tuple[tuple[Residual, ...], ...]
     attempt: Attempt
 
     @property
@@ -131,67 +136,49 @@ class JointProblem:
             genome: the design that it begins with.
             drawn: whether its postures are drawn for the genome, or the standard ones.
         """
-        count = len(self._heights)
-        postures = (
-            drawn_postures(self._forms, count, genome) if drawn else standard_postures(self._forms, count)
-        )
-        name = "joint: drawn postures" if drawn else "joint: standard postures"
-        return self._from(name, {GENOME: np.array(genome), **postures})
+        if drawn:
+            return self._from("drawn postures", genome, drawn_postures(self.program, self._forms, genome))
+        return self._from("standard postures", genome, standard_postures(self.program, self._forms))
 
-    def polish(self, genome: Genome, postures: Sequence[Mapping[str, AgentPosture]]) -> JointSolution:
-        """The local optimum next to known postures, one pair per height."""
-        rows = {v.name: v.symbol.numel() for v in self.program.variables}
-        start = {GENOME: np.array(genome)}
-        for index, agents in enumerate(postures):
-            prefix = _prefix(index)
-            own = {
-                name.removeprefix(prefix): count for name, count in rows.items() if name.startswith(prefix)
-            }
-            for form in self._forms:
-                values = form.start(agents[form.agent.name], own)
-                start |= {f"{prefix}{name}": value for name, value in values.items()}
-        return self._from("joint: polish", start)
+    def polish(self, genome: Genome, postures: Sequence[Instant]) -> JointSolution:
+        """The local optimum next to known postures, one instant per height."""
+        return self._from("polish", genome, start_from(self.program, self._forms, postures))
 
-    def _from(self, name: str, start: Mapping[str, Array]) -> JointSolution:
-        raw = self._solver.solve([], _inside(self.program, start))
+    def _from(self, name: str, genome: Genome, postures: Start) -> JointSolution:
+        raw = self._solver.solve({}, _inside(self.program, {GENOME: np.array(genome), **postures}))
         design = _values(self._space, raw.values[GENOME].tolist())
         if raw.status is Status.SOLVED:
             return self._checked(name, design, raw)
-        return self._failed(design, checked(name, raw, {}))
+        return self._failed(design, checked(NAME, name, raw, ()))
 
     def _failed(self, design: tuple[float, ...], attempt: Attempt) -> JointSolution:
         reason = f"the joint problem was not solved: {attempt.reason}"
         heights = tuple(
-            HeightSolution(height, attempt.status, reason, {}, {}, (attempt,), "") for height in self._heights
+            HeightSolution(height, attempt.status, reason, {}, {}, (attempt,)) for height in self._heights
         )
-        return JointSolution(design, heights, ({},) * len(heights), attempt)
+        return JointSolution(design, heights, ((),) * len(heights), attempt)
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
         checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
-        postures = [self._postures(raw, index) for index in range(len(self._heights))]
-        found = [checker.residuals(p, h) for p, h in zip(postures, self._heights, strict=True)]
-        kept = [self._enforced.kept(residuals) for residuals in found]
-        everywhere = {
-            f"{h:g} m, {n}": x for h, of in zip(self._heights, kept, strict=True) for n, x in of.items()
-        }
-        attempt = checked(name, raw, everywhere)
+        layout, count = layout_of(self.program), len(self._heights)
+        instants = [instant_of(layout, self._forms, self._scene, raw.values, k) for k in range(count)]
+        found = [checker.residuals(i, h) for i, h in zip(instants, self._heights, strict=True)]
+        kept = [tuple(r for r in of if self._enforced.covers(r.group)) for of in found]
+        everywhere = [
+            replace(residual, name=f"{height:g} m, {residual.name}")
+            for height, of in zip(self._heights, kept, strict=True)
+            for residual in of
+        ]
+        attempt = checked(NAME, name, raw, everywhere)
         if attempt.status is not Status.SOLVED:
             return self._failed(design, attempt)
         heights = tuple(
-            HeightSolution(h, Status.SOLVED, "solved", p, of, (attempt,), name)
-            for h, p, of in zip(self._heights, postures, kept, strict=True)
+            HeightSolution(h, Status.SOLVED, "solved", instant.postures, sizes(of), (attempt,), attempt)
+            for h, instant, of in zip(self._heights, instants, kept, strict=True)
         )
-        missed = tuple(self._enforced.missed(residuals) for residuals in found)
+        missed = tuple(tuple(r for r in of if not self._enforced.covers(r.group)) for of in found)
         return JointSolution(design, heights, missed, attempt)
-
-    def _postures(self, raw: RawSolution, index: int) -> dict[str, AgentPosture]:
-        return {f.agent.name: f.expand(raw.of(f"{_prefix(index)}{f.agent.name}")) for f in self._forms}
-
-
-def _prefix(index: int) -> str:
-    """What begins the names of variables and constraints of the posture at the height of an index."""
-    return f"height_{index}."
 
 
 def _inside(program: Program, start: Mapping[str, Array]) -> dict[str, Array]:
@@ -231,35 +218,24 @@ def _program(
     scene = shared_scene(scene, space, values)
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
-    variables, constraints = [design], list[Constraint]()
-    for index, height in enumerate(heights):
-        robot = agent_block(forms[0], tree, scene, height)
-        human = agent_block(forms[1], scene.human.tree, scene, height)
-        hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}
-        load = load_constraints(scene, hands, symmetric=forms[0].mirror is not None)
-        rows = _asked((*robot.constraints, *human.constraints, *load), (robot, human), settings.enforced)
-        constraints += [replace(c, name=_prefix(index) + c.name) for c in rows]
-        for block, weight in ((robot, settings.efforts.robot), (human, settings.efforts.human)):
-            own = [settings.enforced.variable(variable) for variable in block.variables]
-            variables += [replace(v, name=_prefix(index) + v.name) for v in own]
-            cost += _height_cost(block, weight, settings)
-    return Program("joint", tuple(variables), tuple(constraints), cost, ca.SX.zeros(0))
+    parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
+    case = CaseSymbols(scene, tuple(heights))
+    assembly = assemble(parties, TERMS.values(), case, settings.enforced)
+    for (load_case,) in assembly.instants:
+        for part in _height_costs(load_case, settings):
+            cost += part
+    return Program("joint", (design, *assembly.variables), assembly.constraints, cost, {})
 
 
-def _asked(every: Sequence[Constraint], blocks: Sequence[AgentBlock], enforced: Enforced) -> list[Constraint]:
-    """The constraints that are enforced, and upright feet where joint limits do not see to them."""
-    rows = [constraint for constraint in every if enforced.covers(constraint.name)]
-    if not enforced.joint_limits:
-        upright = [z for block in blocks for z in block.stand.uprights.values()]
-        rows.append(Constraint("feet.upright", ca.vertcat(*upright), 0.0, np.inf))
-    return rows
-
-
-def _height_cost(block: AgentBlock, weight: float, settings: JointSettings) -> Expression:
-    """An agent's W1 t1 + W3 t3 + comfort at one height."""
-    weights = settings.tasks.weights
-    cost = weights.torque * weight * block.effort / TORQUE_UNIT**2 + block.stand.comfort
-    if weights.center_of_pressure:
-        feet = {v.name: v.value for v in block.variables if v.name.endswith("_foot")}
-        cost += weights.center_of_pressure * len(SIDES) / len(feet) * pressure_task(feet)
-    return cost + block.bearing.comfort if settings.enforced.contact else cost
+def _height_costs(load_case: LoadCase, settings: JointSettings) -> list[Expression]:
+    """Each agent's W1 t1 + W3 t3 + regularisation at one height, then the system's costs."""
+    tasks, weights = settings.tasks.weights, {ROBOT: settings.efforts.robot, HUMAN: settings.efforts.human}
+    costs = []
+    for position, (name, body) in enumerate(load_case.bodies.items()):
+        cost = (
+            tasks.torque * weights[name] * effort(body) / TORQUE_UNIT**2 + load_case.posture_costs[position]
+        )
+        if tasks.center_of_pressure:
+            cost += tasks.center_of_pressure * len(SIDES) / len(body.feet) * pressure_task(body.feet)
+        costs.append(cost + load_case.costs[position])
+    return [*costs, load_case.posture_costs[-1] + load_case.costs[-1]]

@@ -10,16 +10,16 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from evodesign.nlp.program import Program, Start
 from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.floating_base import joint_ranges
+from evodesign.posture.warm_start import layout_of
 from evodesign.records import Genome
 
 __all__ = ["drawn_postures", "standard_postures"]
-
-Array = Any
 
 SHARE = 0.5
 """Of the way from zero to the middle of each joint's range, at which standard postures begin."""
@@ -28,26 +28,22 @@ SPREAD = 0.3
 """Standard deviation of a joint about the common share [rad]."""
 
 
-def standard_postures(forms: Sequence[Form], heights: int) -> dict[str, Array]:
-    """Joints of every form at every height half-way to the middle of its range, by variable name."""
-    return {_name(index, form): SHARE * _middle(form) for index in range(heights) for form in forms}
+def standard_postures(program: Program, forms: Sequence[Form]) -> Start:
+    """Joints of every agent at every height half-way to the middle of their ranges, by variable name."""
+    return {name: SHARE * middle for name, middle in _middles(program, forms).items()}
 
 
-def drawn_postures(forms: Sequence[Form], heights: int, genome: Genome) -> dict[str, Array]:
-    """Joints of every form at every height, drawn for a genome, by variable name."""
+def drawn_postures(program: Program, forms: Sequence[Form], genome: Genome) -> Start:
+    """Joints of every agent at every height, drawn for a genome, by variable name."""
     digest = hashlib.sha256(np.array(genome).tobytes()).digest()
     rng = np.random.default_rng(int.from_bytes(digest))
     return {
-        _name(index, form): rng.uniform() * _middle(form) + SPREAD * rng.standard_normal(len(form.joints))
-        for index in range(heights)
-        for form in forms
+        name: rng.uniform() * middle + SPREAD * rng.standard_normal(len(middle))
+        for name, middle in _middles(program, forms).items()
     }
 
 
-def _name(index: int, form: Form) -> str:
-    return f"height_{index}.{form.agent.name}.joints"
-
-
-def _middle(form: Form) -> Array:
-    joints = [form.agent.tree.joint_by_name[name] for name in form.joints]
-    return np.array([(max(j.lower, -np.pi) + min(j.upper, np.pi)) / 2.0 for j in joints])
+def _middles(program: Program, forms: Sequence[Form]) -> dict[str, np.ndarray]:
+    """The middle of every joint's range, by variable name, in the program's order."""
+    middles = {form.agent.name: np.mean(joint_ranges(form), axis=1) for form in forms}
+    return {name: middles[slot.party] for slot, name in layout_of(program).items() if slot.part == "joints"}

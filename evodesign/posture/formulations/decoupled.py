@@ -1,130 +1,229 @@
-"""Robot and person solved one after the other, joined by the push between them.
+"""Robot and person solved one after the other, joined by the internal force between them.
 
 Where `HumanValue` knows the person's least cost V(X) at a height, the robot alone is solved against it,
 
-    minimise  w_r |tau_r|^2 + comfort_r + V(X)
+    minimise  w_r |tau_r|^2 + regularisation_r + V(X)
 
-and then the person at the push X that was found. The programs are half as large again, local minima are a
-third as many, and the person's many starts are paid for once.
+and then the person at the internal force X that was found. The programs are half as large again, local minima
+are a third as many, and the person's many starts are paid for once. The derivative follows the same chain:
 
-Source: DESIGN 3.
+    d person / d pi = d person / dX  dX / d pi
+    d cost / d pi   = d cost_r / d pi + (cost_h'(X) - V'(X)) dX / d pi
+
+with cost_r the robot's optimal cost (which holds V) and cost_h the person's. An X at its limit stays there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
+from numpy.polynomial import Chebyshev
 
-from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Start
-from evodesign.nlp.solver_cache import SolverCache, program_key
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Program, Start
+from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
+from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
-from evodesign.posture.formulations.human_value import TERMS, HumanProblem, HumanValue, chebyshev_sum
-from evodesign.posture.results import Neighbour
-from evodesign.posture.starts import SEEDS_BESIDE, fixed_starts, named_starts
+from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.formulations.human_value import (
+    COEFFICIENTS,
+    HumanProblem,
+    HumanValue,
+    chebyshev_sum,
+    human_program,
+)
+from evodesign.posture.results import HeightSolution, Neighbour
+from evodesign.posture.solution_derivative import PostureDerivative, found_again, known_instant
+from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.grasp import free_hands
-from evodesign.posture.terms.load import any_load, load_constraints, push_of
-from evodesign.posture.terms.torque import TORQUE_UNIT
-from evodesign.posture.warm_start import start_from
+from evodesign.posture.terms.load import PUSH, any_load, force_along_x
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import instant_of, layout_of, start_from
 from evodesign.records import Status, worst_status
 
-__all__ = ["DECOUPLED", "DecoupledPostures", "robot_program"]
+__all__ = ["DecoupledPostures", "robot_program"]
 
-DECOUPLED = "split"
-"""The program's name in results."""
+Array = Any
 
 AT_LIMIT = 1e-6
-"""How little below its limit a push [N] counts as being there; IPOPT ends a little before it."""
+"""How little below its limit an internal force [N] counts as being there; IPOPT ends a little before it."""
 
 
 class DecoupledPostures:
-    """The robot's program against the person's value function, for the heights that have one."""
+    """The robot's program against the person's value function, for the heights that have one.
+
+    Args:
+        name: of the formulation.
+        forms: halves of robot and person.
+        setting: of the problem.
+        values: the person's value functions.
+        solvers: of other scenes.
+    """
 
     def __init__(
         self,
+        name: str,
         forms: tuple[Form, Form],
-        scene: Scene,
-        space: DesignSpace,
-        weights: tuple[float, float],
-        options: IpoptOptions,
+        setting: Setting,
         values: Sequence[HumanValue],
         solvers: SolverCache,
     ) -> None:
-        self._forms = forms
-        self._scene = scene
+        self.name = name
+        self._forms, self._setting, self._solvers = forms, setting, solvers
         self._values = {value.height: value for value in values}
-        self._robot = solvers.solver(
-            (DECOUPLED, program_key(scene)),
-            lambda: robot_program(forms[0], scene, space, weights[0]),
-            options,
+
+    @cached_property
+    def _robot(self) -> Solver:
+        key = program_key(self.name, self._setting, self._forms[0])
+        return self._solvers.solver(key, self._robot_program, self._setting.options)
+
+    @cached_property
+    def _human(self) -> HumanProblem:
+        setting = self._setting
+        weight = setting.weights.human
+        return HumanProblem(self._forms[1], setting.scene, weight, setting.options, self._solvers)
+
+    @cached_property
+    def _fixed(self) -> tuple[Start, ...]:
+        return fixed_starts(self._robot.program)
+
+    @cached_property
+    def _sensitivities(self) -> tuple[SolutionSensitivity, SolutionSensitivity]:
+        setting = self._setting
+        human = human_program(self._forms[1], setting.scene, setting.weights.human)
+        return (
+            SolutionSensitivity(self._robot_program(), setting.options),
+            SolutionSensitivity(human, setting.options),
         )
-        self._human = HumanProblem(forms[1], scene, weights[1], options, solvers)
-        self._fixed = fixed_starts(self._robot)
+
+    def _robot_program(self) -> Program:
+        return robot_program(self._forms[0], self._setting)
 
     def landscape(self, height: float) -> Landscape:
         """The robot's cost at a height [m], with V(X)."""
         return Landscape(self._robot, self._beside(height), self._fixed, *NEAR)
 
-    def trial(
-        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
+    def solve(
+        self, design: Sequence[float], height: float, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
-        """What the seeds (or else the fixed starts) lead the robot to, with the person beside it."""
-        parameters = [*values, *self._beside(height)]
-        starts = named_starts(DECOUPLED, self._robot, seeds, self._fixed)
+        """What the portfolio (or else the fixed starts) leads the robot to, with the person beside it."""
+        parameters = {"design": design, **self._beside(height)}
+        starts = named_starts(self._robot, portfolio, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        return self._trial(height, ends, checker)
 
-    def from_neighbour(
+    def solve_beside(
         self,
-        values: Sequence[float],
+        design: Sequence[float],
         height: float,
-        seeds: Sequence[Start],
+        portfolio: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
-        """What the robot's posture in a similar scene leads to: it is close; and the worthiest seeds.
+        """What the robot's posture in a similar scene leads to: it is close; and the first starts.
 
-        With the same load the other person's V(X) is all that differs, and no seed is needed.
+        With the same load the other person's V(X) is all that differs, and no other start is needed.
         """
-        parameters = [*values, *self._beside(height)]
-        known = start_from(self._forms, self._robot.program, neighbour.solution.postures)
-        ends = [(f"{DECOUPLED}: neighbour", self._robot.near.solve(parameters, known))]
+        parameters = {"design": design, **self._beside(height)}
+        known = start_from(self._robot.program, self._forms, [known_instant(neighbour.solution)])
+        ends = [("neighbour", self._robot.near.solve(parameters, known))]
         if not neighbour.same_load:
-            starts = named_starts(DECOUPLED, self._robot, seeds, self._fixed)[:SEEDS_BESIDE]
+            starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        return self._trial(height, ends, checker)
 
-    def _beside(self, height: float) -> tuple[float, ...]:
-        """The robot's parameters beside the design's."""
-        return (height, self._scene.payload.mass, *self._values[height].coefficients)
+    def _beside(self, height: float) -> Mapping[str, Any]:
+        """The robot's parameters beside the design."""
+        mass, value = self._setting.scene.payload.mass, self._values[height]
+        return {"height": height, "mass": mass, "value": value.coefficients}
 
-    def _candidate(self, height: float, checker: Checker, start: str, robot: RawSolution) -> Candidate:
-        """The robot's posture with the person's at the push that was found."""
-        value = self._values[height]
-        push = self._push(robot)
-        human = self._human.best(height, push, value)
-        both = _joined(robot, human, float(value.cost(push)))
-        if human.status is not Status.SOLVED:
-            return Candidate(checked(start, both, {}), {}, {})
-        solutions = ((self._forms[0], robot), (self._forms[1], human))
-        postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form, raw in solutions}
-        residuals = checker.residuals(postures, height)
-        return Candidate(checked(start, both, residuals), postures, residuals)
+    def _trial(self, height: float, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
+        """The robot's postures with the person's at the internal force that was found."""
+        layout = {
+            **layout_of(self._robot.program, ROBOT),
+            **layout_of(self._human.program, HUMAN),
+        }
 
-    def _push(self, robot: RawSolution) -> float:
-        posture = self._forms[0].expand(robot.of(ROBOT))
-        push = float(push_of(self._scene.robot, {s: ca.DM(w) for s, w in posture.hand_wrenches.items()}))
-        limit = self._scene.stance.push
-        return float(np.copysign(limit, push)) if abs(push) > limit - AT_LIMIT else push
+        def finish(start: str, robot: RawSolution) -> Candidate:
+            value, internal = self._values[height], self._internal_force(robot)
+            human = self._human.best(height, internal, value)
+            both = _joined(robot, human, float(value.cost(internal)))
+            if human.status is not Status.SOLVED:
+                return Candidate(checked(self.name, start, both, ()), (), ())
+            instant = instant_of(layout, self._forms, self._setting.scene, both.values)
+            residuals = checker.residuals(instant, height)
+            return Candidate(checked(self.name, start, both, residuals), (instant,), residuals)
+
+        return cheapest(self.name, ends, finish)
+
+    def _internal_force(self, robot: RawSolution) -> float:
+        hand = robot.values[_left_hand(self._robot.program)]
+        force, limit = float(self._force(hand)), self._setting.scene.stance.push
+        return float(np.copysign(limit, force)) if abs(force) > limit - AT_LIMIT else force
+
+    def _force(self, left_hand: Array) -> Array:
+        """The robot's force on the load along x [N] from its left hand's; the right hand's is the same."""
+        return np.asarray(-len(SIDES) * self._setting.scene.robot.sign * left_hand[0])
+
+    def derivative(
+        self, design: Sequence[float], solution: HeightSolution
+    ) -> PostureDerivative | NotDifferentiable:
+        """How a posture that this pair of programs found moves with the design."""
+        value, (robots, humans) = self._values[solution.height], self._sensitivities
+        start = start_from(robots.program, self._forms, [known_instant(solution)])
+        found = robots.at({"design": design, **self._beside(solution.height)}, start)
+        if isinstance(found, NotDifferentiable):
+            return found
+        robot, hand = found.along("design"), _left_hand(robots.program)
+        internal, change = float(self._force(robot.values[hand])), self._force(robot.slopes[hand])
+        held = any(limit.active and limit.name == PUSH for limit in robot.limits)
+        person = self._person(solution, internal, held=held)
+        if isinstance(person, NotDifferentiable):
+            return person
+        human = person.along("internal_force", change[None, :])
+        expected = Chebyshev(value.coefficients, domain=[-value.push, value.push])
+        surprise = -float(expected.deriv()(internal)) * change
+        derivative = PostureDerivative(
+            layout={**layout_of(robots.program, ROBOT), **layout_of(humans.program, HUMAN)},
+            forms=self._forms,
+            scene=self._setting.scene,
+            values={**robot.values, **human.values},
+            slopes={**robot.slopes, **human.slopes},
+            cost=robot.cost - float(expected(internal)) + human.cost,
+            cost_slope=robot.cost_slope + human.cost_slope + surprise,
+            compared=robot.cost,
+            limits=(*robot.limits, *human.limits),
+        )
+        return found_again(derivative, solution)
+
+    def _person(
+        self, solution: HeightSolution, internal: float, *, held: bool
+    ) -> Optimum | NotDifferentiable:
+        """The person under an internal force [N]; one that is held at its limit does not move the person."""
+        humans = self._sensitivities[1]
+        mass = self._setting.scene.payload.mass
+        parameters = {"height": solution.height, "mass": mass, "internal_force": internal}
+        start = start_from(humans.program, self._forms, [known_instant(solution)])
+        raw = humans.solve(parameters, start)
+        if not held:
+            return humans.of(parameters, raw)
+        still = {name: np.zeros((len(value), len(parameters))) for name, value in raw.values.items()}
+        return Optimum(raw.values, still, raw.cost, np.zeros(len(parameters)), (), humans.program.columns)
+
+
+def _left_hand(program: Program) -> str:
+    """Name of the variable of the robot's left hand."""
+    return layout_of(program, ROBOT)[Slot(0, 0, ROBOT, "left_hand")]
 
 
 def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolution:
@@ -141,21 +240,21 @@ def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolut
     )
 
 
-def robot_program(form: Form, scene: Scene, space: DesignSpace, weight: float) -> Program:
-    """The robot's program; its parameters are the design's, the load's height and mass, V's coefficients."""
-    scene, mass = any_load(scene)
-    design = ca.SX.sym("design", len(space.parameters))
-    height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", TERMS)
-    tree = space.resized(scene.robot.tree, ca.vertsplit(design))
-    robot = agent_block(form, tree, scene, height)
-    human = free_hands(form, scene)
-    hands = {ROBOT: robot.hand_wrenches, HUMAN: human.wrenches}
-    push = push_of(scene.robot, robot.hand_wrenches) / scene.stance.push
-    value = chebyshev_sum(ca.vertsplit(coefficients), push)
+def robot_program(form: Form, setting: Setting) -> Program:
+    """The robot's program, given the design, the load's height and mass, and V's coefficients."""
+    scene, mass = any_load(setting.scene)
+    design = ca.SX.sym("design", len(setting.space.parameters))
+    height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", COEFFICIENTS)
+    robot = Embodied(form, setting.space.resized(scene.robot.tree, ca.vertsplit(design)))
+    parties = (robot, free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    load_case = assembly.undisturbed
+    internal = force_along_x(scene.robot, load_case.hands[ROBOT]) / scene.stance.push
+    value = chebyshev_sum(ca.vertsplit(coefficients), internal)
     return Program(
         name="robot",
-        variables=(*robot.variables, *human.variables),
-        constraints=(*robot.constraints, *load_constraints(scene, hands, symmetric=True)),
-        cost=weight * robot.effort / TORQUE_UNIT**2 + robot.comfort + value,
-        parameters=ca.vertcat(design, height, mass, coefficients),
+        variables=assembly.variables,
+        constraints=assembly.constraints,
+        cost=total([load_case.effort({ROBOT: setting.weights.robot}), *load_case.regularisation, value]),
+        parameters={"design": design, "height": height, "mass": mass, "value": coefficients},
     )

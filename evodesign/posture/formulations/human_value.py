@@ -1,15 +1,15 @@
 """The person's part of a posture, which does not depend on the robot.
 
 With point grasps and a symmetric scene the load's balance leaves one number between robot and person, the
-horizontal push X of the robot on the load. So the person's least cost at a height is a function V(X) that is
-found once, and robots are then solved alone:
+internal force X. So the person's least cost at a height is a function V(X) that is found once, and robots are
+then solved alone:
 
-    min over both  =  min over robot and X of  w_r |tau_r|^2 + comfort_r + V(X)
+    min over both  =  min over robot and X of  w_r |tau_r|^2 + regularisation_r + V(X)
 
 V is the lower envelope of many starts at Chebyshev nodes of [-push, push], as a polynomial through them; its
 error is measured half-way between the nodes.
 
-Source: DESIGN 3; Chebyshev interpolation: Trefethen, Approximation Theory and Approximation Practice, ch. 2.
+Source: Chebyshev interpolation: Trefethen, Approximation Theory and Approximation Practice, ch. 2.
 """
 
 from __future__ import annotations
@@ -23,23 +23,24 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution
-from evodesign.nlp.solver_cache import SolverCache, program_key
+from evodesign.nlp.program import Constraint, Program
+from evodesign.nlp.solver import IpoptOptions, RawSolution
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.formulations.base import program_key
 from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.grasp import free_hands
-from evodesign.posture.terms.load import any_load, load_constraints, push_of
-from evodesign.posture.terms.stance import equal
-from evodesign.posture.terms.torque import TORQUE_UNIT
+from evodesign.posture.terms.base import TORQUE_UNIT
+from evodesign.posture.terms.load import any_load, force_along_x
+from evodesign.posture.terms.registry import TERMS
 from evodesign.records import Status
 
-__all__ = ["COST_UNIT", "TERMS", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
+__all__ = ["COEFFICIENTS", "COST_UNIT", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
 
 Array = Any
 
 DEGREE = 8
-TERMS = DEGREE + 1
+COEFFICIENTS = DEGREE + 1
 PUSH_UNIT = 10.0  # [N] per unit of the row that fixes the push
 NODES_TRIED = 4
 LARGEST_ERROR = 0.02
@@ -100,14 +101,23 @@ class HumanProblem:
     ) -> None:
         self._push = scene.stance.push
         self._mass = scene.payload.mass
-        key = ("person", program_key(scene, form.agent))
-        program = (solvers or SolverCache()).solver(key, lambda: human_program(form, scene, weight), options)
-        self._solver = program
+        key = program_key("person", scene, form, weight)
+        self._solver = (solvers or SolverCache()).solver(
+            key, lambda: human_program(form, scene, weight), options
+        )
         self._pushed_to_the_end: dict[tuple[float, float], RawSolution] = {}
+
+    @property
+    def program(self) -> Program:
+        """What is solved."""
+        return self._solver.program
+
+    def _parameters(self, height: float, push: float) -> Mapping[str, float]:
+        return {"height": height, "mass": self._mass, "internal_force": push}
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
-        return self._solver.solve([height, self._mass, push], start)
+        return self._solver.solve(self._parameters(height, push), start)
 
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
         """The person's posture at a height [m] under a push [N], about as good as V promises.
@@ -125,14 +135,14 @@ class HumanProblem:
         nearest = value.nearest(push)[:NODES_TRIED]
         ends: list[RawSolution] = []
         for solver, start in [(self._solver.near, nearest[0]), *((self._solver, start) for start in nearest)]:
-            ends.append(solver.solve([height, self._mass, push], start))
+            ends.append(solver.solve(self._parameters(height, push), start))
             if ends[-1].status is Status.SOLVED and ends[-1].cost <= value.cost(push) + LARGEST_ERROR:
                 return ends[-1]
         return min(ends, key=lambda end: (end.status is not Status.SOLVED, end.cost))
 
     def value(self, height: float) -> HumanValue | None:
         """V at a height [m]; None when the person cannot hold the load there or V is too rough to fit."""
-        nodes = self._push * np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
+        nodes = self._push * np.cos(np.pi * (np.arange(COEFFICIENTS) + 0.5) / COEFFICIENTS)
         between = (nodes[1:] + nodes[:-1]) / 2.0
         best: dict[float, RawSolution] = {}
         for push in (*nodes.tolist(), *between.tolist()):
@@ -150,24 +160,23 @@ class HumanProblem:
 
     def _best(self, height: float, push: float) -> RawSolution | None:
         """The best of many starts, the same ones every time."""
-        solutions = [self.solve(height, push, start) for start in person_starts(self._solver)]
+        solutions = [self.solve(height, push, start) for start in person_starts(self.program)]
         solved = [solution for solution in solutions if solution.status is Status.SOLVED]
         return min(solved, key=lambda solution: solution.cost, default=None)
 
 
 def human_program(form: Form, scene: Scene, weight: float) -> Program:
-    """The person's program; its parameters are the load's height and mass, and the push."""
+    """The person's program; its parameters are the load's height and mass, and the internal force."""
     scene, mass = any_load(scene)
-    height, push = ca.SX.sym("height"), ca.SX.sym("push")
-    human = agent_block(form, form.agent.tree, scene, height)
-    robot = free_hands(form, scene)
-    hands = {ROBOT: robot.wrenches, HUMAN: human.hand_wrenches}
-    load = load_constraints(scene, hands, symmetric=form.mirror is not None)
-    pushed = equal("load.given_push", (push_of(scene.robot, robot.wrenches) - push) / PUSH_UNIT)
+    height, internal = ca.SX.sym("height"), ca.SX.sym("internal_force")
+    parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    load_case = assembly.undisturbed
+    given = (force_along_x(scene.robot, load_case.hands[ROBOT]) - internal) / PUSH_UNIT
     return Program(
         name="human",
-        variables=(*human.variables, *robot.variables),
-        constraints=(*human.constraints, *load, pushed),
-        cost=weight * human.effort / TORQUE_UNIT**2 + human.comfort,
-        parameters=ca.vertcat(height, mass, push),
+        variables=assembly.variables,
+        constraints=(*assembly.constraints, Constraint("load.given_internal_force", given, 0.0, 0.0)),
+        cost=total([load_case.effort({HUMAN: weight}), *load_case.regularisation]),
+        parameters={"height": height, "mass": mass, "internal_force": internal},
     )

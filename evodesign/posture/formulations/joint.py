@@ -1,279 +1,169 @@
-"""The posture problem: how robot and person stand with the load at one height, straining least.
+"""Robot and person in one program: how they stand with the load at one height, at the least effort.
 
-    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + comfort
-    subject to  the constraints of both agents and of the load
+    minimise    w_r |tau_r|^2 + w_h |tau_h|^2 + regularisation
+    subject to  every term, for both agents and the load
 
-for any design (a parameter of one program built once). It is solved from the problem's seeds (from two fixed
-starts where there are none) and the best result that the independent check accepts is kept: the answer
-depends on problem and design alone.
+for any design (a parameter of one program built once).
 
-A scene that is its own mirror image is solved for symmetric postures: half the variables and far fewer local
-minima. Where the person's value function is known, robot and person are even solved one after the other
-(`split`). The full program, started from the symmetric solution, is the polish, and the refuge when no
-symmetric posture is found.
-
-Source: Sartore et al. 2022, Eq. 14 with pi fixed; DESIGN 3.
+Source: Sartore et al. 2022, Eq. 14 with pi fixed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from enum import StrEnum
-from functools import cached_property, partial
+from functools import cached_property
+from typing import Any
 
 import casadi as ca
 
-from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Start
-from evodesign.nlp.solver_cache import SolverCache, program_key
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Program, Start
+from evodesign.nlp.sensitivity import SolutionSensitivity
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
-from evodesign.posture.allocation import EffortWeights, shared_scene, shared_weights
-from evodesign.posture.candidate import Candidate, Trial, cheapest, checked, height_solution
+from evodesign.posture.allocation import shared_scene, shared_weights
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
+from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
-from evodesign.posture.formulations.decoupled import DecoupledPostures
-from evodesign.posture.load_cases import aggregated, cases_of, filled, postures_in_cases, with_cases
-from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.results import AgentPosture, HeightSolution, Neighbour
-from evodesign.posture.starts import SEEDS_BESIDE, fixed_starts, named_starts
-from evodesign.posture.symmetry import Form, symmetric_forms, whole
-from evodesign.posture.terms.agent import AgentBlock, agent_block
-from evodesign.posture.terms.load import any_load, load_constraints
-from evodesign.posture.terms.torque import TORQUE_UNIT
-from evodesign.posture.warm_start import start_from
+from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.load_cases import aggregated, with_worst
+from evodesign.posture.results import HeightSolution, Instant, Neighbour
+from evodesign.posture.solution_derivative import PostureDerivative, found_again, known_instant
+from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.load import any_load
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import filled, instant_of, layout_of, start_from
 
-__all__ = ["SYMMETRIC", "PostureProblem", "Symmetry", "posture_program"]
-
-SYMMETRIC = "symmetric"
-"""Name in results of the symmetric program over both agents."""
+__all__ = ["JointPostures", "posture_program"]
 
 
-class Symmetry(StrEnum):
-    """Which postures are looked for."""
-
-    ON = "on"
-    OFF = "off"
-    POLISH = "polish"
-
-
-class PostureProblem:
-    """One posture program for all designs and heights of a scene.
+class JointPostures:
+    """A posture program over the given forms of both agents.
 
     Args:
-        scene: agents, load, ground and stance.
-        space: design parameters.
-        weights: of the agents' efforts.
-        options: of the solver.
-        symmetry: which postures are looked for.
-        known: seeds, and the person's part at the heights where it is known.
-        shelf: of solvers, if other scenes have programs in common with this one.
-    Raises:
-        ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
+        name: of the formulation.
+        forms: whole agents, or their halves.
+        setting: of the problem.
+        solvers: of other scenes.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        space: DesignSpace,
-        weights: EffortWeights,
-        options: IpoptOptions,
-        symmetry: Symmetry,
-        known: Precomputed = NOTHING_PRECOMPUTED,
-        solvers: SolverCache | None = None,
-    ) -> None:
-        self._solvers = solvers or SolverCache()
-        self._symmetry = symmetry
-        self._ingredients = (scene, space, weights, options)
-        self._known = known
-        self._decoupled_heights = frozenset(value.height for value in known.values)
-        if symmetry is not Symmetry.OFF:
-            space.check_mirror(scene.robot.tree)
-            self._forms = symmetric_forms(scene)
-            if known.values:
-                both = (weights.robot, weights.human)
-                self._decoupled = DecoupledPostures(
-                    self._forms, scene, space, both, options, known.values, self._solvers
-                )
-
-    def solve(
-        self,
-        values: Sequence[float],
-        height: float,
-        checker: Checker,
-        neighbour: Neighbour | None = None,
-    ) -> HeightSolution:
-        """The best checked posture of a design at one height.
-
-        Args:
-            values: one number per design parameter.
-            height: of the load's centre [m].
-            checker: the independent check, made for this design.
-            neighbour: what the same design led to in a similar scene; fewer starts do beside it.
-        """
-        trials: list[Trial] = []
-        for trial in self._trials(values, height, checker, neighbour):
-            trials.append(trial)
-            if trial.best is not None:
-                break
-        best = trials[-1].best
-        if self._symmetry is Symmetry.POLISH and best is not None:
-            trials.append(self._full.polish(values, height, best.postures, checker))
-        return height_solution(height, trials)
-
-    def _trials(
-        self, values: Sequence[float], height: float, checker: Checker, neighbour: Neighbour | None
-    ) -> Iterator[Trial]:
-        """What each program leads to, in turn."""
-        for program, seeds in self._programs(height):
-            if neighbour is not None:
-                yield program.from_neighbour(values, height, seeds, neighbour, checker)
-            yield program.trial(values, height, seeds, checker)
-
-    def landscape(self, height: float) -> Landscape:
-        """The cost at a height [m] of the program that is solved first, of which seeds are made."""
-        program, _ = next(self._programs(height))
-        return program.landscape(height)
-
-    def _programs(self, height: float) -> Iterator[tuple[DecoupledPostures | _Postures, tuple[Start, ...]]]:
-        """The programs to be solved in turn until one succeeds, with their seeds; a refuge has none."""
-        seeds = self._known.seeds(height)
-        if self._symmetry is Symmetry.OFF:
-            yield self._full, seeds
-            return
-        if height in self._decoupled_heights:
-            yield self._decoupled, seeds
-            yield self._half, ()
-        else:
-            yield self._half, seeds
-        yield self._full, ()
+    def __init__(self, name: str, forms: tuple[Form, Form], setting: Setting, solvers: SolverCache) -> None:
+        self.name = name
+        self._forms, self._setting, self._solvers = forms, setting, solvers
 
     @cached_property
-    def _half(self) -> _Postures:
-        """The symmetric program over both agents, built when it is first needed."""
-        return _Postures(SYMMETRIC, self._forms, *self._ingredients_of(refuge=bool(self._decoupled_heights)))
+    def _solver(self) -> Solver:
+        key = program_key(self.name, self._setting, self._forms)
+        return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
-    def _full(self) -> _Postures:
-        """The full program, built when it is first needed."""
-        scene = self._ingredients[0]
-        ingredients = self._ingredients_of(refuge=self._symmetry is Symmetry.ON)
-        return _Postures("whole", (whole(scene.robot), whole(scene.human)), *ingredients)
+    def _fixed(self) -> tuple[Start, ...]:
+        return fixed_starts(self._solver.program)
 
-    def _ingredients_of(
-        self, *, refuge: bool
-    ) -> tuple[Scene, DesignSpace, EffortWeights, IpoptOptions, SolverCache]:
-        """What a program is made of; one that is seldom solved is not worth compiling."""
-        scene, space, weights, options = self._ingredients
-        options = replace(options, compiled=options.compiled and not refuge)
-        return scene, space, weights, options, self._solvers
+    @cached_property
+    def _sensitivity(self) -> SolutionSensitivity:
+        return SolutionSensitivity(self._program(), self._setting.options)
 
-
-class _Postures:
-    """A posture program over the given forms of both agents."""
-
-    def __init__(
-        self,
-        name: str,
-        forms: tuple[Form, Form],
-        scene: Scene,
-        space: DesignSpace,
-        weights: EffortWeights,
-        options: IpoptOptions,
-        solvers: SolverCache,
-    ) -> None:
-        self._name = name
-        self._forms = forms
-        self._scene, self._mass = scene, scene.payload.mass
-        key = (name, program_key(scene, *(form.agent for form in forms)))
-        self._solver = solvers.solver(key, lambda: posture_program(forms, scene, space, weights), options)
-        self._fixed = fixed_starts(self._solver)
+    def _program(self) -> Program:
+        return posture_program(self._forms, self._setting)
 
     def landscape(self, height: float) -> Landscape:
         """The program's cost at a height [m]."""
-        return Landscape(self._solver, (height, self._mass), self._fixed, *NEAR)
+        return Landscape(self._solver, self._beside(height), self._fixed, *NEAR)
 
-    def trial(
-        self, values: Sequence[float], height: float, seeds: Sequence[Start], checker: Checker
+    def solve(
+        self, design: Sequence[float], height: float, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
-        """What the seeds lead to, or the fixed starts if there are none."""
-        starts = named_starts(self._name, self._solver, seeds, self._fixed)
-        ends = [(name, self._solve(values, height, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        """What the portfolio leads to, or the fixed starts if none of it fits."""
+        return self._trial(design, height, named_starts(self._solver, portfolio, self._fixed), checker)
 
-    def from_neighbour(
+    def solve_beside(
         self,
-        values: Sequence[float],
+        design: Sequence[float],
         height: float,
-        seeds: Sequence[Start],
+        portfolio: Sequence[Start],
         neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
-        """What the solution in a similar scene leads to, and the worthiest seeds."""
-        alike = neighbour.solution
-        known = start_from(self._forms, self._solver.program, alike.postures, alike.disturbed)
-        starts = [
-            (f"{self._name}: neighbour", known),
-            *named_starts(self._name, self._solver, seeds, self._fixed)[:SEEDS_BESIDE],
-        ]
-        ends = [(name, self._solve(values, height, start)) for name, start in starts]
-        return cheapest(ends, partial(self._candidate, height, checker))
+        """What the solution in a similar scene leads to, and the first starts of the portfolio."""
+        known = self._start(known_instant(neighbour.solution))
+        others = named_starts(self._solver, portfolio, self._fixed)[:STARTS_BESIDE]
+        return self._trial(design, height, [("neighbour", known), *others], checker)
 
-    def polish(
-        self, values: Sequence[float], height: float, postures: Mapping[str, AgentPosture], checker: Checker
-    ) -> Trial:
+    def polish(self, design: Sequence[float], height: float, known: Instant, checker: Checker) -> Trial:
         """What known whole postures lead to."""
-        start = start_from(self._forms, self._solver.program, postures)
-        end = self._solve(values, height, start)
-        return cheapest([(f"{self._name}: polish", end)], partial(self._candidate, height, checker))
+        return self._trial(design, height, [("polish", self._start(known))], checker)
 
-    def _solve(self, values: Sequence[float], height: float, start: Start) -> RawSolution:
-        return self._solver.solve([*values, height, self._mass], filled(start, self._solver.program))
+    def derivative(
+        self, design: Sequence[float], solution: HeightSolution
+    ) -> PostureDerivative | NotDifferentiable:
+        """How a posture that this program found moves with the design."""
+        program = self._sensitivity.program
+        start = start_from(program, self._forms, [known_instant(solution)])
+        parameters = {"design": design, **self._beside(solution.height)}
+        found = self._sensitivity.at(parameters, with_worst(start, program, parameters))
+        if isinstance(found, NotDifferentiable):
+            return found
+        own = found.along("design")
+        derivative = PostureDerivative(
+            layout=layout_of(program),
+            forms=self._forms,
+            scene=self._setting.scene,
+            values=own.values,
+            slopes=own.slopes,
+            cost=own.cost,
+            cost_slope=own.cost_slope,
+            compared=own.cost,
+            limits=own.limits,
+        )
+        return found_again(derivative, solution)
 
-    def _candidate(self, height: float, checker: Checker, start: str, raw: RawSolution) -> Candidate:
-        postures = {form.agent.name: form.expand(raw.of(form.agent.name)) for form in self._forms}
-        disturbed = postures_in_cases(self._scene, self._forms, raw.values)
-        residuals = checker.residuals(postures, height, disturbed)
-        return Candidate(checked(start, raw, residuals), postures, residuals, disturbed)
+    def _start(self, known: Instant) -> Start:
+        return start_from(self._solver.program, self._forms, [known])
+
+    def _beside(self, height: float) -> Mapping[str, Any]:
+        """The parameters beside the design."""
+        return {"height": height, "mass": self._setting.scene.payload.mass}
+
+    def _trial(
+        self, design: Sequence[float], height: float, starts: Sequence[tuple[str, Start]], checker: Checker
+    ) -> Trial:
+        parameters, program = {"design": design, **self._beside(height)}, self._solver.program
+        ends = [(name, self._solver.solve(parameters, filled(start, program))) for name, start in starts]
+
+        def finish(start: str, raw: RawSolution) -> Candidate:
+            instant = instant_of(layout_of(program), self._forms, self._setting.scene, raw.values)
+            residuals = checker.residuals(instant, height)
+            return Candidate(checked(self.name, start, raw, residuals), (instant,), residuals)
+
+        return cheapest(self.name, ends, finish)
 
 
-def posture_program(
-    forms: tuple[Form, Form], scene: Scene, space: DesignSpace, weights: EffortWeights
-) -> Program:
-    """The program over both agents; its parameters are the design's, then the load's height and mass."""
-    scene, mass = any_load(scene)
-    design = ca.SX.sym("design", len(space.parameters))
-    height = ca.SX.sym("height")
+def posture_program(forms: tuple[Form, Form], setting: Setting) -> Program:
+    """The program over both agents; its parameters are the design, and the load's height and mass."""
+    space = setting.space
+    scene, mass = any_load(setting.scene)
+    design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
     values = ca.vertsplit(design)
-    scene, weights = shared_scene(scene, space, values), shared_weights(weights, space, values)
-    tree = space.resized(scene.robot.tree, values)
-    robot = agent_block(forms[0], tree, scene, height)
-    human = agent_block(forms[1], scene.human.tree, scene, height)
-    hands = {ROBOT: robot.hand_wrenches, HUMAN: human.hand_wrenches}
-    load = load_constraints(scene, hands, symmetric=forms[0].mirror is not None)
-    effort = weights.robot * robot.effort + weights.human * human.effort
+    scene, weights = shared_scene(scene, space, values), shared_weights(setting.weights, space, values)
+    by_agent = {ROBOT: weights.robot, HUMAN: weights.human}
+    robot = Embodied(forms[0], space.resized(scene.robot.tree, values))
+    human = Embodied(forms[1], scene.human.tree)
+    assembly = assemble((robot, human), TERMS.values(), CaseSymbols(scene, (height,)))
+    load_case = assembly.undisturbed
     program = Program(
         name="posture",
-        variables=(*robot.variables, *human.variables),
-        constraints=(*robot.constraints, *human.constraints, *load),
-        cost=effort / TORQUE_UNIT**2 + robot.comfort + human.comfort,
-        parameters=ca.vertcat(design, height, mass),
+        variables=assembly.variables,
+        constraints=assembly.constraints,
+        cost=total([load_case.effort(by_agent), *load_case.regularisation]),
+        parameters={"design": design, "height": height, "mass": mass},
     )
-    return _disturbed(program, scene, weights, robot, human) if scene.disturbances else program
-
-
-def _disturbed(
-    program: Program, scene: Scene, weights: EffortWeights, robot: AgentBlock, human: AgentBlock
-) -> Program:
-    """The program with a case for each of the scene's disturbances beside the undisturbed one."""
-    cases = cases_of(scene, robot.stand, human.stand)
-    pairs = [(robot.bearing, human.bearing)]
-    pairs += [(case.bearings[ROBOT], case.bearings[HUMAN]) for case in cases]
-    costs = [
-        (weights.robot * one.effort + weights.human * other.effort) / TORQUE_UNIT**2
-        + one.comfort
-        + other.comfort
-        for one, other in pairs
-    ]
-    still = replace(program, cost=robot.stand.comfort + human.stand.comfort)
-    return aggregated(with_cases(still, cases), scene.disturbances.effort, costs)
+    if not scene.disturbances:
+        return program
+    costs = [total([each.effort(by_agent), *each.costs]) for each in assembly.instants[0]]
+    posture = replace(program, cost=total(load_case.posture_costs))
+    return aggregated(posture, scene.disturbances.effort, costs)

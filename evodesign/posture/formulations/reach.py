@@ -5,49 +5,69 @@
 with the person's hands free to push as they must: the robot's side alone decides. A share of the load that is
 given binds here too; where it is free, a robot with rigid grasps may leave the load to the person. A reach
 problem is cheaper than a posture, so it is solved first and spares the heights that are out of reach. It has
-several optima (arms forward, arms raised sideways over the head), so it begins at seeds as a posture does.
+several optima (arms forward, arms raised sideways over the head), so it begins at a portfolio of starts
+as a posture does.
 
-Source: DESIGN 3 (reach); feasibility constraints of Sartore et al. 2022, Eq. 14.
+Source: feasibility constraints of Sartore et al. 2022, Eq. 14.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
-from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import IpoptOptions, Program, RawSolution, Start, Variable
-from evodesign.nlp.solver_cache import SolverCache, program_key
+from evodesign.mechanics.scene import Scene
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.sensitivity import SolutionSensitivity
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver_cache import SolverCache
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import shared_scene
-from evodesign.posture.load_cases import cases_of, filled, with_cases
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
-from evodesign.posture.terms.agent import agent_block
-from evodesign.posture.terms.grasp import free_hands
-from evodesign.posture.terms.load import any_load, load_constraints
+from evodesign.posture.terms.load import any_load
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import filled
 from evodesign.records import Status, worst_status
 from evodesign.tree.model import Tree
 
-__all__ = ["HIGHEST", "LOWEST", "Reach", "ReachProblem", "common_reach", "reach_program"]
+__all__ = [
+    "HEIGHT",
+    "HIGHEST",
+    "LOWEST",
+    "Reach",
+    "ReachProblem",
+    "common_reach",
+    "reach_program",
+    "robot_reach_program",
+]
 
-Expression = Any
+WEIGHT_OF_REGULARISATION = 1e-4
+"""Beside the height [m]; it costs less than 0.1 mm of reach."""
 
-COMFORT = 1e-4
-"""Weight of the comfort terms beside the height [m]; it costs less than 0.1 mm of reach."""
+HEIGHT = "height"
+"""Name of the variable that is the load's height."""
 
 HIGHEST, LOWEST = -1.0, 1.0
 """Sense in which the height is extreme: the sign with which it is minimised."""
 
-FIXED: tuple[Start, ...] = ({"height": [1.0]}, {"height": [0.6]})
-"""Starts where there are no seeds; the best result counts."""
+FIXED: tuple[Start, ...] = ({HEIGHT: [1.0]}, {HEIGHT: [0.6]})
+"""Starts where there is no portfolio; the best result counts."""
 
 NEAR_HEIGHT = 0.005
 """How far [m] from the best known extreme another one is still good."""
+
+DISTINCT = 1e-6
+"""Difference of heights [m] above which two optima are not the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,44 +104,59 @@ def common_reach(reaches: Sequence[Reach]) -> Reach:
 
 
 class ReachProblem:
-    """One reach program for all designs of a scene.
+    """One reach program for all designs of a scene; built when it is needed.
 
-    Attributes:
-        form: of the robot.
-        mass: of the load [kg].
+    Args:
+        setting: of the problem; the weights of efforts do not count.
+        symmetric: whether postures are mirror-symmetric.
+        known: portfolios of starts.
+        solvers: of other scenes.
     """
+
+    name = "reach"
 
     def __init__(
         self,
-        scene: Scene,
-        space: DesignSpace,
-        options: IpoptOptions,
+        setting: Setting,
         *,
         symmetric: bool,
         known: Precomputed = NOTHING_PRECOMPUTED,
         solvers: SolverCache | None = None,
     ) -> None:
-        self.mass = scene.payload.mass
+        scene = setting.scene
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
-        key = ("reach", program_key(scene))
-        self._solver = (solvers or SolverCache()).solver(
-            key, lambda: _robot(self.form, scene, space), options
-        )
-        self._seeds = {HIGHEST: known.highest.seeds, LOWEST: known.lowest.seeds}
+        self._setting, self._solvers = setting, solvers or SolverCache()
+        self._starts = {HIGHEST: known.highest.starts, LOWEST: known.lowest.starts}
+
+    @cached_property
+    def _solver(self) -> Solver:
+        key = program_key(self.name, self._setting, self.form)
+        return self._solvers.solver(key, self._program, self._setting.options)
+
+    @cached_property
+    def _sensitivity(self) -> SolutionSensitivity:
+        return SolutionSensitivity(self._program(), self._setting.options)
+
+    def _program(self) -> Program:
+        return robot_reach_program(self.form, self._setting)
 
     @property
     def program(self) -> Program:
-        """What is solved; its parameters are the design's, then the load's mass and the sense."""
+        """What is solved; its parameters are the design, the load's mass and the sense."""
         return self._solver.program
 
-    def landscape(self, sense: float) -> Landscape:
-        """Minus the highest (sense -1) or plus the lowest (sense 1) height [m], of which seeds are made."""
-        return Landscape(self._solver, (self.mass, sense), FIXED, 0.0, NEAR_HEIGHT)
+    def _beside(self, sense: float) -> Mapping[str, float]:
+        """The parameters beside the design."""
+        return {"mass": self._setting.scene.payload.mass, "sense": sense}
 
-    def solve(self, values: Sequence[float]) -> Reach:
+    def landscape(self, sense: float) -> Landscape:
+        """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
+        return Landscape(self._solver, self._beside(sense), FIXED, 0.0, NEAR_HEIGHT)
+
+    def solve(self, design: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
-        highest, high = self._extreme(values, HIGHEST)
-        lowest, low = self._extreme(values, LOWEST)
+        highest, high = self._extreme(design, HIGHEST)
+        lowest, low = self._extreme(design, LOWEST)
         status = worst_status([high.status, low.status])
         if status is not Status.SOLVED:
             which = "highest" if high.status is not Status.SOLVED else "lowest"
@@ -129,30 +164,72 @@ class ReachProblem:
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
         return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
 
-    def solves(self, values: Sequence[float], sense: float) -> list[RawSolution]:
+    def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense."""
-        starts = [filled(start, self.program) for start in self._seeds[sense] or FIXED]
-        return [self._solver.solve([*values, self.mass, sense], start) for start in starts]
+        starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
+        parameters = {"design": design, **self._beside(sense)}
+        return [self._solver.solve(parameters, start) for start in starts]
 
-    def _extreme(self, values: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
+    def _extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
-        solves = self.solves(values, sense)
+        solves = self.solves(design, sense)
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
         if not solved:
             return None, solves[0]
-        best = min(solved, key=lambda raw: sense * float(raw.values["height"][0]))
-        return float(best.values["height"][0]), best
+        best = min(solved, key=lambda raw: sense * _height(raw))
+        return _height(best), best
+
+    def derivative(self, design: Sequence[float], sense: float) -> ReachDerivative | NotDifferentiable:
+        """How a design's highest or lowest load moves with the design, or why it has no derivative.
+
+        An extreme height is the solution of the reach problem, not its optimal cost (which holds a little
+        regularisation), so its derivative is that of the solution. Every start is solved as for the reach
+        itself; the one that counts is differentiated, and the next best other optimum is where another one
+        may win.
+        """
+        solves = self.solves(design, sense)
+        heights = {start: _height(raw) for start, raw in enumerate(solves) if raw.status is Status.SOLVED}
+        if not heights:
+            return NotDifferentiable("no posture was found")
+        start = min(heights, key=lambda number: sense * heights[number])
+        if self._at_end(heights[start]):
+            return ReachDerivative(heights[start], np.zeros(len(design)), start, len(solves), None, ())
+        found = self._sensitivity.at({"design": design, **self._beside(sense)}, solves[start].values)
+        if isinstance(found, NotDifferentiable):
+            return found
+        own = found.along("design")
+        slope = own.slopes[HEIGHT][0]
+        if np.isnan(slope).any():
+            return NotDifferentiable("the height is not determined")
+        short = [sense * (height - heights[start]) for height in heights.values()]
+        return ReachDerivative(
+            height=float(found.values[HEIGHT][0]),
+            slope=slope,
+            start=start,
+            starts=len(solves),
+            runner_up=min((much for much in short if much > DISTINCT), default=None),
+            limits=own.limits,
+        )
+
+    def _at_end(self, height: float) -> bool:
+        """Whether a height ends the range that is looked at, whatever the design: a load on the ground."""
+        block = next(v for v in self.program.variables if v.name == HEIGHT)
+        return bool(min(height - block.lower[0], block.upper[0] - height) < DISTINCT)
 
 
-def _robot(form: Form, scene: Scene, space: DesignSpace) -> Program:
-    """The robot's program; its parameters are the design's, then the load's mass and the sense."""
-    design = ca.SX.sym("design", len(space.parameters))
+def _height(raw: RawSolution) -> float:
+    return float(raw.values[HEIGHT][0])
+
+
+def robot_reach_program(form: Form, setting: Setting) -> Program:
+    """The robot's program; its parameters are the design, the load's mass and the sense."""
+    design = ca.SX.sym("design", len(setting.space.parameters))
     values = ca.vertsplit(design)
-    tree = space.resized(scene.robot.tree, values)
-    return reach_program(form, tree, shared_scene(scene, space, values), design)
+    tree = setting.space.resized(setting.scene.robot.tree, values)
+    return reach_program(form, tree, shared_scene(setting.scene, setting.space, values), {"design": design})
 
 
-def reach_program(form: Form, tree: Tree, scene: Scene, given: Expression) -> Program:
+def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]) -> Program:
     """The program of an agent's extreme heights; the other agent is a pair of free hands.
 
     Args:
@@ -164,17 +241,15 @@ def reach_program(form: Form, tree: Tree, scene: Scene, given: Expression) -> Pr
     scene, mass = any_load(scene)
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
-    height = Variable.column("height", [floor], [5.0], [1.0], 1.0)
-    body = agent_block(form, tree, scene, height.value)
-    partner = free_hands(form, scene)
-    other = HUMAN if form.agent.name == ROBOT else ROBOT
-    hands = {form.agent.name: body.hand_wrenches, other: partner.wrenches}
-    load = load_constraints(scene, hands, symmetric=form.mirror is not None)
-    program = Program(
+    height = Variable.column(HEIGHT, [floor], [5.0], [1.0], 1.0)
+    parties = (Embodied(form, tree), free_hands_beside(form))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)))
+    load_case = assembly.undisturbed
+    disliked = total([*load_case.regularisation, load_case.free_moments])
+    return Program(
         name="reach",
-        variables=(height, *body.variables, *partner.variables),
-        constraints=(*body.constraints, *load),
-        cost=sense * height.value + COMFORT * (body.comfort + partner.comfort),
-        parameters=ca.vertcat(given, mass, sense),
+        variables=(height, *assembly.variables),
+        constraints=assembly.constraints,
+        cost=sense * height.value + WEIGHT_OF_REGULARISATION * disliked,
+        parameters={**given, "mass": mass, "sense": sense},
     )
-    return with_cases(program, cases_of(scene, body.stand))

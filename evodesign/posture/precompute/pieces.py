@@ -1,29 +1,29 @@
 """What is worked out once per problem, before any robot is evaluated: the pieces of a `Precomputed`.
 
-A piece is a function of the problem alone and is kept, as JSON, under a digest of everything that it depends
-on; so a score depends neither on a cache nor on who worked the piece out.
+A piece is a function of the problem alone and is kept, as JSON, under a digest of all of the setting, the
+piece and the code but for named exceptions; so a score depends neither on a cache nor on who worked it out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-import casadi as ca
 import msgspec
 
 from evodesign.design.space import DesignSpace
+from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
-from evodesign.mechanics.scene import Agent, Grasp, Scene
-from evodesign.nlp.disk_cache import digest_of
-from evodesign.nlp.program import IpoptOptions
+from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio
 from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
-from evodesign.posture.formulations.joint import PostureProblem, Symmetry
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.person_reach import person_reach
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.precompute.stored import (
     StoredPersonReach,
@@ -37,12 +37,8 @@ from evodesign.posture.precompute.stored import (
     stored_value,
 )
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.tree.urdf_write import urdf_text
 
 __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
-
-RECIPE = b"4"
-"""Changes whenever the same problem would get other pieces."""
 
 REACH_TRAINING = Training(designs=32, starts=8)
 HALF_TRAINING = Training(designs=48, starts=8)
@@ -61,9 +57,9 @@ class Subject(StrEnum):
 
     PERSON = "the person's part"
     PERSON_REACH = "the person's reach"
-    HIGHEST = "seeds of the highest load"
-    LOWEST = "seeds of the lowest load"
-    POSTURE = "seeds of postures"
+    HIGHEST = "starts of the highest load"
+    LOWEST = "starts of the lowest load"
+    POSTURE = "starts of postures"
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +89,7 @@ class PrecomputeSetting:
 
     Args:
         scenes: every person with every load.
-        middle: the scene that seeds are made in.
+        middle: the scene that portfolios are made in.
     """
 
     scenes: tuple[Scene, ...]
@@ -109,15 +105,46 @@ class PrecomputeSetting:
         return self.symmetry is not Symmetry.OFF
 
 
+NO_PART_OF_PIECES: Exceptions = {
+    PrecomputeSetting: {
+        "scenes": "the one that a piece is worked out in counts",
+        "middle": "says which scene that is",
+        "symmetry": "polishing comes later: whether postures are symmetric counts",
+    },
+    Piece: {"scene": "says which scene that is", "label": "is a word for messages"},
+    Agent: {"label": "is a word for results"},
+    Payload: {"label": "is a word for results"},
+    IpoptOptions: {"compiled": "machine code gives the same bits"},
+}
+
+NO_PART_OF_A_PERSONS: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        **NO_PART_OF_PIECES[PrecomputeSetting],
+        "space": "a person stands behind the load, whatever the robot's hardware",
+    },
+    Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
+}
+
+NO_PART_OF: Mapping[Subject, Exceptions] = {
+    Subject.PERSON: NO_PART_OF_A_PERSONS,
+    Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
+    Subject.HIGHEST: NO_PART_OF_PIECES,
+    Subject.LOWEST: NO_PART_OF_PIECES,
+    Subject.POSTURE: NO_PART_OF_PIECES,
+}
+"""Fields on which a piece does not depend, by its subject, with the reason."""
+
+
 def stages(
-    setting: PrecomputeSetting, heights: Sequence[float], *, seeds: bool, person_reaches: bool
+    setting: PrecomputeSetting, heights: Sequence[float], *, portfolios: bool, person_reaches: bool
 ) -> list[list[Piece]]:
     """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
     Args:
         setting: of the problem.
         heights: of the load's centre [m].
-        seeds: whether solves begin at seeds.
+        portfolios: whether solves begin at portfolios of starts.
         person_reaches: whether the people's own reach is asked for.
     """
     people = [
@@ -131,7 +158,7 @@ def stages(
         for height in heights
         if setting.symmetric and _push_alone(scene, setting.space)
     ]
-    if not seeds:
+    if not portfolios:
         return [people]
     middle = setting.middle
     return [
@@ -159,19 +186,9 @@ def _scene_of(setting: PrecomputeSetting, piece: Piece) -> Scene:
 
 
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
-    """The digest under which a piece is kept."""
-    scene, options = _scene_of(setting, piece), replace(setting.options, compiled=False)
-    load = replace(scene.payload, label="")
-    limits = (scene.ground, scene.stance, scene.robot_share)
-    numbers = (piece.subject, piece.height, load, *limits, setting.weights, options)
-    ingredients = [RECIPE, ca.__version__.encode(), repr(numbers).encode(), *_named(scene.human)]
-    if scene.disturbances:
-        ingredients.append(repr(scene.disturbances).encode())
-    if piece.subject is Subject.PERSON_REACH:
-        ingredients.append(repr(setting.symmetric).encode())
-    elif piece.subject is not Subject.PERSON:
-        ingredients += [repr((setting.space, setting.symmetric)).encode(), *_named(scene.robot)]
-    return digest_of(*ingredients)
+    """The digest under which a piece is kept: of all that it may follow from, and of the code."""
+    data = (setting, setting.symmetric, _scene_of(setting, piece), piece)
+    return digest((data, code_digest(__name__)), without=NO_PART_OF[piece.subject])
 
 
 def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
@@ -188,7 +205,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         scene = setting.scenes[piece.scene]
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
         return msgspec.json.encode(stored_person_reach(found))
-    return msgspec.json.encode(stored_portfolio(_seeds(setting, piece, known)))
+    return msgspec.json.encode(stored_portfolio(_portfolio(setting, piece, known)))
 
 
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
@@ -218,16 +235,17 @@ def _person(setting: PrecomputeSetting, piece: Piece) -> HumanValue | None:
     return HumanProblem(form, scene, setting.weights.human, setting.options).value(piece.height)
 
 
-def _seeds(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
+def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
     scene, space, known = _scene_of(setting, piece), setting.space, known.of_scene(piece.scene)
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
-    reach = ReachProblem(scene, space, options, symmetric=setting.symmetric, known=known)
+    own = Setting(scene, space, setting.weights, options)
+    reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
     if piece.subject is not Subject.POSTURE:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         return start_portfolio(
             landscape, _designs(space, REACH_TRAINING, lambda design: True), REACH_TRAINING
         )
-    problem = PostureProblem(scene, space, setting.weights, options, setting.symmetry, known)
+    problem = PostureProblem(own, setting.symmetry, known)
     training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
     training = training if setting.symmetric else WHOLE_TRAINING
     designs = _designs(space, training, lambda design: reach.solve(design).distance(piece.height) == 0.0)
@@ -238,9 +256,3 @@ def _designs(
     space: DesignSpace, training: Training, wanted: Callable[[tuple[float, ...]], bool]
 ) -> Iterator[tuple[float, ...]]:
     return spread_designs(len(space.parameters), space.values, wanted, LOOKED_AT * training.designs)
-
-
-def _named(agent: Agent) -> list[bytes]:
-    named = (agent.joints, agent.hands, agent.soles, agent.sole_size, agent.trunk)
-    limits = [repr(sorted(agent.torque_limits.items())).encode()] if agent.limits_torques else []
-    return [urdf_text(agent.tree).encode(), repr(named).encode(), *limits]

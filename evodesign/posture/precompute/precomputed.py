@@ -1,4 +1,4 @@
-"""What is known of a problem before any robot is evaluated: the person's part, and seeds.
+"""What is known of a problem before any robot is evaluated: the person's part, and starts.
 
 It follows from the problem alone and consists of plain numbers, so it travels to workers as it is.
 """
@@ -36,12 +36,12 @@ class PersonReach:
 class Precomputed:
     """What is known; left out, everything is solved jointly and from fixed starts.
 
-    Seeds serve every scene: they are starting values, and hardly depend on who holds what.
+    Portfolios serve every scene: they are starting values, and hardly depend on who holds what.
 
     Args:
         values: the people's value functions, for the scenes and heights that have one.
-        highest, lowest: seeds of the reach problem.
-        postures: seeds of the posture problem, by height [m].
+        highest, lowest: starts of the reach problem.
+        postures: starts of the posture problem, by height [m].
         stretches: the people's own reach, for the scenes in which it was asked for.
     """
 
@@ -55,9 +55,9 @@ class Precomputed:
         """What is known of one of the problem's scenes."""
         return replace(self, values=tuple(value for value in self.values if value.scene == scene))
 
-    def seeds(self, height: float) -> tuple[Start, ...]:
-        """The posture problem's seeds at a height [m]; none where none are known."""
-        return self.postures.get(height, NO_STARTS).seeds
+    def starts(self, height: float) -> tuple[Start, ...]:
+        """The posture problem's starts at a height [m]; none where none are known."""
+        return self.postures.get(height, NO_STARTS).starts
 
 
 NOTHING_PRECOMPUTED = Precomputed()

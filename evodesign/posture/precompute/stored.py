@@ -38,7 +38,7 @@ class StoredValue(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class StoredStartPortfolio(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A portfolio on disk."""
 
-    seeds: tuple[dict[str, list[float]], ...]
+    starts: tuple[dict[str, list[float]], ...]
     designs: int
     good: int
     worst: float
@@ -81,15 +81,15 @@ def human_value_of_stored(stored: StoredValue) -> HumanValue | None:
 
 def stored_portfolio(found: StartPortfolio) -> StoredStartPortfolio:
     """A portfolio to be kept."""
-    seeds = tuple(_numbers(seed) for seed in found.seeds)
+    starts = tuple(_numbers(start) for start in found.starts)
     coverage = found.coverage
-    return StoredStartPortfolio(seeds, coverage.designs, coverage.good, coverage.worst)
+    return StoredStartPortfolio(starts, coverage.designs, coverage.good, coverage.worst)
 
 
 def portfolio_of(stored: StoredStartPortfolio) -> StartPortfolio:
     """The portfolio that was kept."""
-    seeds = tuple(_arrays(seed) for seed in stored.seeds)
-    return StartPortfolio(seeds, Coverage(stored.designs, stored.good, stored.worst))
+    starts = tuple(_arrays(start) for start in stored.starts)
+    return StartPortfolio(starts, Coverage(stored.designs, stored.good, stored.worst))
 
 
 def _numbers(start: Start) -> dict[str, list[float]]:

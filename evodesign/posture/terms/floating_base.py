@@ -1,112 +1,61 @@
-"""How an agent stands: its base and joints, and everything that binds them whatever it bears.
+"""Floating base and joints: where an agent is, within its joint limits and a bounded tilt.
 
-Everything is expressed in the agent's own frame (it looks along +x at the load above the origin), so robot
-and person share every line, and so do whole agents and the halves of symmetric ones (`Form`).
-
-Source: Sartore et al. 2022, Eq. 14 c to g; DESIGN 3.
+Source: Sartore et al. 2022, Eq. 14, whose variable q_b, s they are.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Set
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator
 
 import casadi as ca
+import numpy as np
 
 from evodesign.mechanics.scene import Agent, Scene
-from evodesign.nlp.program import Constraint, Variable
+from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.stance import foot_flat, foot_yaw, hand_constraints, stance_constraints
-from evodesign.tree.kinematics import Pose, euler_rotation, forward
-from evodesign.tree.model import Tree
+from evodesign.posture.terms.base import BodyTerm, MeasuredBody, Residual, Unknown
+from evodesign.tree.kinematics import Pose, forward
 
-__all__ = ["COMFORT", "Stand", "stand_of"]
-
-Expression = Any
-
-COMFORT = 1e-2
-"""Weight of what is slightly disliked beside a lifted torque."""
+__all__ = ["FLOATING_BASE", "joint_ranges"]
 
 
-@dataclass(frozen=True, slots=True)
-class Stand:
-    """The part of a program that says how an agent stands.
-
-    Args:
-        form: all of the agent, or its left half.
-        part: the links and joints that the form holds, resized by a design; numbers or expressions.
-        doubled: joints of the part whose branch stands for its mirror image too.
-        poses: of the part's links, in the agent's frame.
-        variables: base and joints.
-        hands: constraints that keep the hands on the load.
-        flat, yaw: constraints on each foot, by side.
-        stance: constraints that keep the posture a natural one.
-        comfort: small convex cost that makes the posture unique where torques do not.
-        uprights: z_sole . z by side; 1 for a flat foot, -1 for one upside down, which joint limits rule out.
-    """
-
-    form: Form
-    part: Tree
-    doubled: Set[str]
-    poses: Mapping[str, Pose]
-    variables: tuple[Variable, ...]
-    hands: tuple[Constraint, ...]
-    flat: Mapping[str, Constraint]
-    yaw: Mapping[str, Constraint]
-    stance: tuple[Constraint, ...]
-    comfort: Expression
-    uprights: Mapping[str, Expression]
-
-
-def stand_of(form: Form, tree: Tree, scene: Scene, height: Expression) -> Stand:
-    """Variables and constraints of an agent's posture.
-
-    Args:
-        form: all of the agent, or its left half.
-        tree: the agent's whole tree, resized by a design; numbers or expressions.
-        scene: load, ground and stance.
-        height: of the load's centre above the ground [m].
-    """
-    variables = _variables(form, scene)
-    position, angles, joints = (variable.value for variable in variables)
-    part, doubled = form.part(tree)
-    positions = {name: joints[i] for i, name in enumerate(form.joints)}
-    poses = forward(part, Pose(euler_rotation(angles), position), positions)
-    return Stand(
-        form=form,
-        part=part,
-        doubled=doubled,
-        poses=poses,
-        variables=variables,
-        hands=tuple(hand_constraints(form, poses, scene, height)),
-        flat={side: foot_flat(form.agent, poses, side) for side in form.sides},
-        yaw={side: foot_yaw(form.agent, poses, side, scene) for side in form.sides},
-        stance=tuple(stance_constraints(form, poses, scene)),
-        comfort=_comfort(form, joints, angles),
-        uprights={side: poses[form.agent.soles[side]].rotation[2, 2] for side in form.sides},
-    )
-
-
-def _variables(form: Form, scene: Scene) -> tuple[Variable, Variable, Variable]:
-    """Position and angles of the base, and the joints."""
-    name, tilt = form.agent.name, scene.stance.base_tilt
-    joints = [form.agent.tree.joint_by_name[joint] for joint in form.joints]
+def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
+    """Position [m] and angles [rad] of the base, and the joints [rad]."""
+    tilt = scene.stance.base_tilt
     sideways, turn = (0.0, 0.0) if form.mirror else (0.5, tilt)  # none in a symmetric posture
-    farthest, nearest = [-3.0, -sideways, 0.0], [0.0, sideways, 3.0]
-    standing = _standing(form.agent, scene)
-    return (
-        Variable.column(f"{name}.base_position", farthest, nearest, standing, 1.0),
-        Variable.column(f"{name}.base_angles", [-turn, -tilt, -turn], [turn, tilt, turn], [0.0] * 3, 1.0),
-        Variable.column(
-            f"{name}.joints",
-            [max(joint.lower, -math.pi) for joint in joints],
-            [min(joint.upper, math.pi) for joint in joints],
-            [0.0] * len(joints),
-            1.0,
-        ),
+    lower, upper = zip(*joint_ranges(form), strict=True)
+    yield Unknown(
+        "base_position",
+        [-3.0, -sideways, 0.0],
+        [0.0, sideways, 3.0],
+        _standing(form.agent, scene),
+        posture_only=True,
     )
+    yield Unknown(
+        "base_angles",
+        [-turn, -tilt, -turn],
+        [turn, tilt, turn],
+        [0.0] * 3,
+        group=LimitGroup.STANCE,
+        posture_only=True,
+    )
+    yield Unknown(
+        "joints",
+        lower,
+        upper,
+        [0.0] * len(lower),
+        group=LimitGroup.JOINT_LIMITS,
+        posture_only=True,
+        labels=form.joints,
+        drawn=True,
+    )
+
+
+def joint_ranges(form: Form) -> list[tuple[float, float]]:
+    """Limits of each of the form's joints [rad], within half a turn to either side."""
+    joints = [form.agent.tree.joint_by_name[name] for name in form.joints]
+    return [(max(joint.lower, -math.pi), min(joint.upper, math.pi)) for joint in joints]
 
 
 def _standing(agent: Agent, scene: Scene) -> list[float]:
@@ -117,9 +66,20 @@ def _standing(agent: Agent, scene: Scene) -> list[float]:
     return [-back, 0.0, -lowest]
 
 
-def _comfort(form: Form, positions: Expression, base_angles: Expression) -> Expression:
-    """Bent joints and a tilted base, slightly disliked."""
-    joints = [form.agent.tree.joint_by_name[name] for name in form.joints]
-    ranges = [min(j.upper, math.pi) - max(j.lower, -math.pi) for j in joints]
-    bent = ca.dot(ca.DM(list(form.counts)), (positions / ca.DM(ranges)) ** 2)
-    return COMFORT * (bent + ca.sumsqr(base_angles))
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """Joints beyond their limits, a base that tilts too far, and a posture that a disturbance moved."""
+    posture, tree = body.posture, body.agent.tree
+    joints = [(tree.joint_by_name[name], position) for name, position in posture.joints.items()]
+    beyond = max(0.0, *(max(joint.lower - at, at - joint.upper) for joint, at in joints))
+    yield Residual("joint_limits", beyond, "rad", "joint limits", LimitGroup.JOINT_LIMITS, posture_only=True)
+    tilt = max(0.0, float(np.abs(posture.base_angles).max()) - body.scene.stance.base_tilt)
+    yield Residual("base_tilt", tilt, "rad", "the tilt of the base", LimitGroup.STANCE, posture_only=True)
+    if body.disturbed:
+        other = body.undisturbed
+        base = np.abs(posture.base_position - other.base_position).max()
+        turned = np.abs(posture.base_angles - other.base_angles).max()
+        moved = max(base, turned, *(abs(posture.joints[name] - x) for name, x in other.joints.items()))
+        yield Residual("moved", float(moved), "m or rad", "the posture that a disturbance leaves as it is")
+
+
+FLOATING_BASE = BodyTerm("floating_base", unknowns=unknowns, residuals=residuals)

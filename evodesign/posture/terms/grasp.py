@@ -1,62 +1,79 @@
-"""An agent reduced to its hands: forces on the load that it may choose freely, without a body behind them.
+"""The grasp: hands on the load, and what they can pass to it.
 
-The reach problem lets such hands stand in for the person; the split posture problem lets them stand in for
-whichever agent is solved separately.
+An agent that has no body in a program is a pair of free hands, which pass what they must.
+
+Source: Sartore et al. 2022, Eq. 14 c and d.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 import casadi as ca
+import numpy as np
 
-from evodesign.mechanics.scene import Grasp, Scene
-from evodesign.nlp.program import Variable
-from evodesign.posture.symmetry import WRENCH, Form
-from evodesign.posture.terms.floating_base import COMFORT
-from evodesign.posture.terms.torque import HAND_UNIT, hand_limits, hand_wrench
+from evodesign.mechanics.scene import SIDES, Grasp, Payload, Scene
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import (
+    HAND_UNIT,
+    REGULARISATION,
+    Body,
+    BodyTerm,
+    Expression,
+    MeasuredBody,
+    Residual,
+    Row,
+    Unknown,
+)
+from evodesign.tree.kinematics import vector
 
-__all__ = ["Hands", "free_hands"]
+__all__ = ["GRASP", "GRASP_ROWS", "hand_unknowns", "moment_cost"]
 
-Expression = Any
+STRONGEST = 300.0  # [N] and [N m] of a hand, beyond any holding posture
 
-
-@dataclass(frozen=True, slots=True)
-class Hands:
-    """Hands without a body.
-
-    Args:
-        variables: what they pass, for the sides of the form.
-        wrenches: force [N] and moment [N m] on both hands by side, in their agent's frame.
-        comfort: small convex cost of their moments, so that rigid hands are unique; zero for point grasps.
-    """
-
-    variables: tuple[Variable, ...]
-    wrenches: Mapping[str, Expression]
-    comfort: Expression
+GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}
+"""Numbers of a hand's wrench that are free: a force, or a force and a moment."""
 
 
-def free_hands(form: Form, scene: Scene, prefix: str = "") -> Hands:
-    """Hands that stand in for another agent of the same form (whole or half).
+def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
+    """The free numbers of the form's hands [N, N m]."""
+    return hand_unknowns(form.sides, scene.payload)
 
-    Args:
-        form: of the agent that is there.
-        scene: for what a hand can pass.
-        prefix: begins the names of variables, where there is more than one thing to bear.
-    """
-    limit = hand_limits(scene.payload)
-    variables = {
-        side: Variable.column(
-            f"{prefix}partner.{side}_hand", [-x for x in limit], limit, [0.0] * len(limit), HAND_UNIT
-        )
-        for side in form.sides
-    }
-    wrenches = {side: hand_wrench(variable.value) for side, variable in variables.items()}
-    if form.mirror is not None:
-        wrenches["right"] = wrenches["left"] * ca.DM(WRENCH)
-    moments = [wrench[3:] / HAND_UNIT for wrench in wrenches.values()]
-    comfort = COMFORT * sum(ca.sumsqr(moment) for moment in moments)
-    rigid = scene.payload.grasp is Grasp.RIGID
-    return Hands(tuple(variables.values()), wrenches, comfort if rigid else ca.SX(0.0))
+
+def hand_unknowns(sides: Sequence[str], payload: Payload) -> Iterator[Unknown]:
+    """The free numbers of hands [N, N m]: a force, and with rigid grasps a moment."""
+    moment = min(STRONGEST, payload.hand_moment)
+    limit = ([STRONGEST] * 3 + [moment] * 3)[: GRASP_ROWS[payload.grasp]]
+    for side in sides:
+        least, rest = [-x for x in limit], [0.0] * len(limit)
+        yield Unknown(f"{side}_hand", least, limit, rest, HAND_UNIT, LimitGroup.CONTACT)
+
+
+def moment_cost(hands: Mapping[str, Expression], payload: Payload) -> Expression:
+    """Moments of free hands, slightly disliked so that rigid ones are unique; zero for point grasps."""
+    moments = [wrench[3:] / HAND_UNIT for wrench in hands.values()]
+    cost = REGULARISATION * sum(ca.sumsqr(moment) for moment in moments)
+    return cost if payload.grasp is Grasp.RIGID else ca.SX(0.0)
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """Hands on their grasp points (Eq. 14 c and d)."""
+    lift = ca.vertcat(0.0, 0.0, body.load_height)
+    for side in body.form.sides:
+        hand = body.poses[body.agent.hands[side]].position
+        distance = hand - vector(body.scene.payload.grasp_point(body.agent, side)) - lift
+        yield Row(f"{side}_hand_on_load", distance, 0.0, 0.0, ("hands_on_load",), posture_only=True)
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """Largest distance of a hand from its grasp point along an axis."""
+    found, lift = [], np.array([0.0, 0.0, body.load_height])
+    for side in SIDES:
+        grasp = np.array(body.scene.payload.grasp_point(body.agent, side)) + lift
+        found.append(float(np.abs(body.state.pose(body.agent.hands[side])[1] - grasp).max()))
+    words = "the hands' place on the load"
+    yield Residual("hands_on_load", max(found), "m", words, posture_only=True)
+
+
+GRASP = BodyTerm("grasp", unknowns=unknowns, rows=rows, residuals=residuals)

@@ -1,33 +1,43 @@
-"""The load's part of a program: it is level, still, and held by up to four hands.
+"""The load: level, still, and held by up to four hands.
 
     sum_i f_i + (0, 0, -m g) = 0        sum_i (r_i x f_i + n_i) + c x (0, 0, -m g) = 0
 
 with f_i and n_i the force and moment of hand i on the load (no moment with `point` grasps, as in the paper),
-r_i its grasp point and c the centre of mass, both from the box's centre. Where the robot's share s is given,
-its hands carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best
-posture lifts the partner by the load with hundreds of newtons.
+r_i its grasp point and c the centre of mass, both from the box's centre. The agents push against each other
+with the internal force
+
+    X = (X_robot - X_human) / 2        X_a agent a's force on the load along the world's x
+
+which is the robot's push where nothing else pushes the load. Where the robot's share s is given, its hands
+carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best posture
+lifts the partner by the load with hundreds of newtons.
 
 Source: Sartore et al. 2022, Eq. 8, third row at rest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
 import casadi as ca
 import numpy as np
+import pinocchio as pin
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
-from evodesign.nlp.program import Constraint
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.terms.base import UNDISTURBED, Coupled, MeasuredSystem, Residual, Row, SystemTerm
 from evodesign.tree.kinematics import vector
 
-__all__ = ["any_load", "disturbed_load_constraints", "load_constraints", "push_of", "turned_to_world"]
+__all__ = ["LOAD", "LOAD_UNIT", "PUSH", "any_load", "force_along_x", "turned_to_world"]
 
 Expression = Any
+
+PUSH = "load.push"
+"""Name of the row that bounds the internal force."""
 
 LOAD_UNIT = 10.0  # [N] and [N m] per unit of the load's balance rows
 
@@ -43,129 +53,112 @@ def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
     return in_agent * ca.DM([agent.sign, agent.sign, 1.0])
 
 
-def push_of(agent: Agent, hand_wrenches: Mapping[str, Expression]) -> Expression:
+def force_along_x(agent: Agent, hands: Mapping[str, Expression]) -> Expression:
     """Force of an agent on the load along the world's x, from the robot towards the person [N].
 
     Args:
         agent: robot or person.
-        hand_wrenches: on its hands, in its frame, by side.
+        hands: wrenches on its hands, in its frame, by side.
     """
-    return sum(-turned_to_world(agent, wrench[:3])[0] for wrench in hand_wrenches.values())
+    return sum(-turned_to_world(agent, wrench[:3])[0] for wrench in hands.values())
 
 
-def internal_force(scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]]) -> Expression:
-    """How hard the agents push against each other [N].
-
-        (X_robot - X_human) / 2        X an agent's force on the load along the world's x
-
-    is the robot's push where nobody else pushes the load; a push from outside leaves it as it is when both
-    bear half of that.
-
-    Args:
-        scene: agents.
-        hand_wrenches: by agent name and side, in the agents' frames.
-    """
-    forces = [push_of(agent, hand_wrenches[agent.name]) for agent in (scene.robot, scene.human)]
-    return (forces[0] - forces[1]) / 2.0
-
-
-def load_constraints(
-    scene: Scene, hand_wrenches: Mapping[str, Mapping[str, Expression]], *, symmetric: bool
-) -> tuple[Constraint, ...]:
-    """Balance of the load, the bound on the push between the agents, and the robot's share where it is given.
-
-    Args:
-        scene: agents and load.
-        hand_wrenches: force [N] and moment [N m] on each hand in its agent's frame, by agent name and side.
-        symmetric: whether right hands mirror left ones, so that three of the six rows vanish by themselves.
-    """
+def rows(coupled: Coupled) -> Iterator[Row]:
+    """Balance of the load, the bound on the internal force, and the robot's share where it is bounded."""
+    scene, disturbance = coupled.scene, coupled.disturbance
+    scene = scene if disturbance is UNDISTURBED else _disturbed(scene, disturbance)
     weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
-    rows = _unbalanced(scene, hand_wrenches, weight, weight, symmetric=symmetric)
-    push = push_of(scene.robot, hand_wrenches[scene.robot.name])
-    carried = _carried(hand_wrenches[scene.robot.name])
-    return _constraints(scene, rows, push, carried, -weight[2], "")
+    force = weight
+    if disturbance is not UNDISTURBED:
+        force = weight + vector(disturbance.push_on(PushedAt.LOAD))
+    unbalanced = _unbalanced(coupled, scene, force, weight)
+    internal = _internal_force(coupled)
+    carried = -sum(wrench[2] for wrench in coupled.hands[scene.robot.name].values())
+    limit = scene.stance.push / LOAD_UNIT
+    balance = ("load.force_balance", "load.moment_balance")
+    yield Row("load.balance", unbalanced / LOAD_UNIT, 0.0, 0.0, balance, LOAD_UNIT)
+    row = internal / LOAD_UNIT
+    yield Row(PUSH, row, -limit, limit, (PUSH,), LOAD_UNIT, LimitGroup.STANCE)
+    whole = -force[2]
+    if scene.robot_share is not None:
+        missing = (carried - scene.robot_share * whole) / LOAD_UNIT
+        yield Row("load.share", missing, 0.0, 0.0, ("load.share",), LOAD_UNIT)
+    elif scene.payload.grasp is Grasp.RIGID:
+        parts = ca.vertcat(carried, whole - carried) / LOAD_UNIT
+        yield Row("load.share", parts, 0.0, np.inf, ("load.share",), LOAD_UNIT)
 
 
-def disturbed_load_constraints(
-    scene: Scene,
-    disturbance: Disturbance,
-    hand_wrenches: Mapping[str, Mapping[str, Expression]],
-    prefix: str,
-    *,
-    symmetric: bool,
-) -> tuple[Constraint, ...]:
-    """Balance of a load under a disturbance, and the bound on how hard the agents push against each other.
-
-    Args:
-        scene: agents and load, undisturbed.
-        disturbance: what happens to them.
-        hand_wrenches: as for `load_constraints`.
-        prefix: begins the constraints' names.
-        symmetric: as for `load_constraints`.
-    """
-    scene = replace(scene, payload=scene.payload.disturbed(disturbance))
-    weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
-    push = vector(disturbance.push_on(PushedAt.LOAD))
-    rows = _unbalanced(scene, hand_wrenches, weight + push, weight, symmetric=symmetric)
-    squeeze, carried = internal_force(scene, hand_wrenches), _carried(hand_wrenches[scene.robot.name])
-    return _constraints(scene, rows, squeeze, carried, -(weight + push)[2], prefix)
+def _disturbed(scene: Scene, disturbance: Disturbance) -> Scene:
+    return replace(scene, payload=scene.payload.disturbed(disturbance))
 
 
-def _carried(hand_wrenches: Mapping[str, Expression]) -> Expression:
-    """Upward force of an agent's hands on the load [N]."""
-    return -sum(wrench[2] for wrench in hand_wrenches.values())
+def _internal_force(coupled: Coupled) -> Expression:
+    """X [N]; the load's balance makes it the robot's push where nothing else pushes."""
+    agents = (coupled.scene.robot, coupled.scene.human)
+    if coupled.disturbance is UNDISTURBED:
+        return force_along_x(agents[0], coupled.hands[agents[0].name])
+    robot, human = (force_along_x(agent, coupled.hands[agent.name]) for agent in agents)
+    return (robot - human) / 2.0
 
 
-def _unbalanced(
-    scene: Scene,
-    hand_wrenches: Mapping[str, Mapping[str, Expression]],
-    force: Expression,
-    weight: Expression,
-    *,
-    symmetric: bool,
-) -> Expression:
+def _unbalanced(coupled: Coupled, scene: Scene, force: Expression, weight: Expression) -> Expression:
     """Sum of forces [N] and moments about the box's centre [N m] on the load.
 
     Args:
-        scene: agents and load.
-        hand_wrenches: by agent name and side, in the agents' frames.
+        coupled: hands.
+        scene: with the load of the load case.
         force: of everything but hands, [N].
         weight: the part of it that acts at the centre of mass; the rest acts at the box's centre.
-        symmetric: whether rows that vanish by themselves are left out.
     """
     moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
     for agent in (scene.robot, scene.human):
         for side in SIDES:
-            wrench = hand_wrenches[agent.name][side]
+            wrench = coupled.hands[agent.name][side]
             on_load = -turned_to_world(agent, wrench[:3])
             point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, side)))
             force = force + on_load
             moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
-    return ca.vertcat(force, moment)[[0, 2, 4]] if symmetric else ca.vertcat(force, moment)
+    both = ca.vertcat(force, moment)
+    return both[[0, 2, 4]] if coupled.symmetric else both  # the others vanish by symmetry
 
 
-def _constraints(
-    scene: Scene, rows: Expression, push: Expression, carried: Expression, whole: Expression, prefix: str
-) -> tuple[Constraint, ...]:
-    """The constraints of a load.
-
-    Args:
-        scene: limits and shares.
-        rows: what must vanish, [N] and [N m].
-        push: between the agents [N].
-        carried: by the robot, upwards [N].
-        whole: what both must carry [N].
-        prefix: begins the constraints' names.
-    """
-    limit = scene.stance.push / LOAD_UNIT
-    balanced = (
-        Constraint(f"{prefix}load.balance", rows / LOAD_UNIT, 0.0, 0.0),
-        Constraint(f"{prefix}load.push", push / LOAD_UNIT, -limit, limit),
-    )
+def residuals(system: MeasuredSystem) -> Iterator[Residual]:
+    """Balance of the load, of which a push meets the box's centre, and bounds on hands and their shares."""
+    scene, payload = system.scene, system.payload
+    outside = np.array(system.disturbance.push_on(PushedAt.LOAD))
+    weight = np.array([0.0, 0.0, -GRAVITY * payload.mass])
+    force, moment = weight + outside, pin.skew(np.array(payload.center_of_mass)) @ weight
+    passed, carried = 0.0, 0.0
+    along_x = {agent.name: 0.0 for agent in (scene.robot, scene.human)}
+    for agent in (scene.robot, scene.human):
+        world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
+        for side in SIDES:
+            wrench = system.bodies[agent.name].posture.hand_wrenches[side]
+            on_load = -world_from_agent @ wrench[:3]
+            point = world_from_agent @ np.array(payload.grasp_point(agent, side))
+            force = force + on_load
+            moment = moment + pin.skew(point) @ on_load - world_from_agent @ wrench[3:]
+            along_x[agent.name] += float(on_load[0])
+            if agent is scene.robot:
+                carried += float(on_load[2])
+            passed = max(passed, float(np.abs(wrench[3:]).max()))
+    yield Residual("load.force_balance", float(np.abs(force).max()), "N", "the load's balance of forces")
+    yield Residual("load.moment_balance", float(np.abs(moment).max()), "N m", "the load's balance of moments")
+    internal = along_x[scene.robot.name]
+    if system.disturbance is not UNDISTURBED:
+        internal = (internal - along_x[scene.human.name]) / 2.0
+    beyond = max(0.0, abs(internal) - scene.stance.push)
+    yield Residual(PUSH, beyond, "N", "the internal force", LimitGroup.STANCE)
+    grasp = passed if payload.grasp is Grasp.POINT else 0.0
+    yield Residual("load.grasp", grasp, "N m", "the moment of a hand that passes none")
+    if payload.hand_moment < np.inf:
+        beyond = max(0.0, passed - payload.hand_moment)
+        yield Residual("load.hand_moment", beyond, "N m", "the moment of a hand", LimitGroup.CONTACT)
+    whole = -float(weight[2] + outside[2])
     if scene.robot_share is not None:
-        missing = (carried - scene.robot_share * whole) / LOAD_UNIT
-        return (*balanced, Constraint(f"{prefix}load.share", missing, 0.0, 0.0))
-    if scene.payload.grasp is Grasp.RIGID:
-        parts = ca.vertcat(carried, whole - carried) / LOAD_UNIT
-        return (*balanced, Constraint(f"{prefix}load.share", parts, 0.0, np.inf))
-    return balanced
+        yield Residual("load.share", abs(carried - scene.robot_share * whole), "N", "the robot's share")
+    elif payload.grasp is Grasp.RIGID:
+        yield Residual("load.share", max(0.0, -carried, carried - whole), "N", "the robot's share")
+
+
+LOAD = SystemTerm("load", rows=rows, residuals=residuals)

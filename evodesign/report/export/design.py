@@ -22,7 +22,7 @@ class ExportedDesign:
         run: name of the run, for people.
         header: of the run.
         evaluation: the design.
-        company: robot of the design, people and loads.
+        scene_set: robot of the design, people and loads.
         heights: postures of the cases that were solved, in the problem's order.
     """
 

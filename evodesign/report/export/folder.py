@@ -62,7 +62,7 @@ def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) ->
     Args:
         design: what to write.
         directory: a new or empty folder.
-        on_front: whether no design of the run beats it.
+        on_front: whether no design of the run dominates it.
     Raises:
         InputError: the folder holds files already, or cannot be written.
     """

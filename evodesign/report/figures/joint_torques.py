@@ -1,4 +1,4 @@
-"""Which joint bears what: one row per joint, one mark per height of the load.
+"""The torque of each joint: one row per joint, one mark per height of the load.
 
 Where a problem has several people or loads, a height has a mark for each of them.
 """

@@ -73,7 +73,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._respond("application/json", state)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - as the base class has it
-        """Keep the terminal quiet."""
+        """Write nothing to the terminal."""
 
     def _respond(self, kind: str, content: bytes, *, code: int = 200) -> None:
         self.send_response(code)

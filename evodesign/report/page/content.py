@@ -62,7 +62,7 @@ class Points(Part, frozen=True):
 
 
 class Mark(Part, frozen=True):
-    """A design worth a look; `kind` is `unscaled`, `best`, `knee`, `asked` or `near`."""
+    """A marked design; `kind` is `unscaled`, `best`, `knee`, `asked` or `near`."""
 
     number: int
     kind: str

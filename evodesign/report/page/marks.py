@@ -1,4 +1,4 @@
-"""Designs worth a look: the unscaled robot, the best of each objective, knees, and what the user asks for."""
+"""Marked designs: the unscaled robot, the best of each objective, knees, and what the user asks for."""
 
 from __future__ import annotations
 

@@ -127,5 +127,5 @@ def _path(agent: str, joint: str) -> dict[str, Any]:
 
 
 def _plotted(torques: Sequence[Mapping[str, float]]) -> list[str]:
-    """The most strained joints, but for names that a message path cannot hold."""
+    """The joints of largest torque, but for names that a message path cannot hold."""
     return [joint for joint in ranked_joints(torques) if not set(joint) & set('"\\{}')][:JOINTS_SHOWN]

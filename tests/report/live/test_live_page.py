@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import http.client
 import json
-import shutil
 import subprocess
 import threading
 from collections.abc import Iterator
@@ -18,12 +17,13 @@ from evodesign.analysis.live_state import LiveRun
 from evodesign.errors import InputError, RunError
 from evodesign.report.live.server import ADDRESS, LiveServer
 from evodesign.report.live.state import state_of
+from tests.machine import chromium
 from tests.runlog.toys import toy_evaluations, toy_generation, toy_header
 
 NAME = "<script>alert(1)</script>"
 HEADER = msgspec.structs.replace(toy_header(budget=100), problem_name=NAME)
 RUN = toy_evaluations(HEADER, 40)
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+CHROMIUM = chromium()
 
 
 def state(*, ended: bool = False, now: float = 45.0, count: int = len(RUN)) -> dict[str, object]:
@@ -114,7 +114,7 @@ def test_port_that_is_taken_is_named(server: LiveServer) -> None:
         LiveServer(server.server_port, lambda: b"")
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium on this machine")
+@pytest.mark.needs_chromium
 def test_browser_shows_names_as_text(server: LiveServer, tmp_path: Path) -> None:
     flags = [
         "--headless",
@@ -123,8 +123,8 @@ def test_browser_shows_names_as_text(server: LiveServer, tmp_path: Path) -> None
         "--disable-background-networking",
         "--no-first-run",
     ]
-    quiet = ["--disable-component-update", "--disable-sync", f"--user-data-dir={tmp_path}"]
-    command = [str(CHROMIUM), *flags, *quiet, "--virtual-time-budget=4000", "--dump-dom", server.url]
+    silent = ["--disable-component-update", "--disable-sync", f"--user-data-dir={tmp_path}"]
+    command = [str(CHROMIUM), *flags, *silent, "--virtual-time-budget=4000", "--dump-dom", server.url]
     page = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
     assert "40 of 100 evaluations" in page

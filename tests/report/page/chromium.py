@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import shutil
 import subprocess
 import time
 import urllib.request
@@ -14,6 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
+
+from tests.machine import chromium
 
 FLAGS = (
     "--headless",
@@ -30,11 +31,6 @@ FLAGS = (
 )
 PATIENCE = 60.0
 """Seconds after which a wait fails."""
-
-
-def executable() -> str | None:
-    """Path of Chromium, or None when it is not installed."""
-    return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 class Tab:
@@ -158,7 +154,7 @@ class Tab:
 @contextmanager
 def browser(profile: Path, *flags: str) -> Iterator[Tab]:
     """A tab of a new Chromium with a profile of its own."""
-    program = executable()
+    program = chromium()
     assert program is not None, "wanted Chromium on this machine, found none"
     command = [program, *FLAGS, *flags, f"--user-data-dir={profile}", "about:blank"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -1,8 +1,9 @@
-"""A small real run: the named designs of the default problem and some random ones, evaluated and logged."""
+"""A browser, and a small real run: named designs of the default problem and some random ones, logged."""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from evodesign.records import Detail, Evaluation, Front, Generation
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
+from tests.report.page.chromium import Tab, browser
 
 RANDOM_DESIGNS = 4
 
@@ -71,3 +73,10 @@ def real_page(real_run: Run) -> Path:
     path = real_run.directory / "report.html"
     path.write_text(page_html(page_content(real_run)), encoding="utf-8")
     return path
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+    """A tab of a browser of the module's own."""
+    with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
+        yield tab

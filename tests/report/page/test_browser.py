@@ -1,18 +1,15 @@
-"""The page in a real browser: it is quiet, asks for nothing, and its parts answer to each other."""
+"""The page in a real browser: it reports no error, asks for nothing, and its parts answer to each other."""
 
 from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import msgspec
-import numpy as np
 import pytest
 
 from evodesign.analysis.front import front
@@ -23,46 +20,26 @@ from evodesign.report.page import page_content, page_html
 from evodesign.report.page.bodies import agent_body
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.tree.kinematics import Pose, euler_rotation, forward
-from evodesign.tree.model import Tree
-from tests.report.page.chromium import Tab, browser, executable
+from tests.report.page.chromium import Tab, browser
+from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
 from tests.runlog.toys import toy_evaluations, toy_header
 from tests.tree.crane import crane
 
-if executable() is None and not os.environ.get("CI"):
-    pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)", allow_module_level=True)
+pytestmark = pytest.mark.needs_chromium
 
-CANVAS = "document.getElementById('posture')"
 PLOT = "document.getElementById('front')"
 SHOWN = "document.getElementById('card-title').textContent"
 NAME = "<script>alert(1)</script>"
 
 
-@pytest.fixture(scope="module")
-def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
-    with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
-        yield tab
-
-
-def open_page(tab: Tab, path: Path, theme: str = "light") -> None:
-    """Open a page and wait until its scripts are through."""
-    tab.open(path.as_uri(), theme=theme)
-    tab.wait_for("window.evodesign !== undefined")
-
-
 @pytest.fixture
 def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
-    """The real run's page, newly opened; at the end it must have been quiet."""
+    """The real run's page, newly opened; at the end it must have reported no error."""
     chromium.events.clear()
     open_page(chromium, real_page)
     yield chromium
     assert chromium.complaints() == []
     assert chromium.requests() == [real_page.as_uri()]
-
-
-def shown_as(value: float) -> str:
-    """A number as tiles and tables show it: four significant digits."""
-    return f"{value:#.4g}".rstrip(".").replace("-", "\u2212")
 
 
 def trace(tab: Tab, name: str) -> list[int]:
@@ -101,7 +78,7 @@ def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: 
     page.drag((left + 0.5 * width, top + height / 2), (left + 0.99 * width, top + height / 2))
     low, high = page.value("[...window.evodesign.state.brushes.values()][0]")
     assert low == pytest.approx(0.6 + 0.5 * 1.2, abs=0.01)
-    inside = [n for n, worth in front_of(real_run).items() if low <= worth.design["length.thigh"] <= high]
+    inside = [n for n, found in front_of(real_run).items() if low <= found.design["length.thigh"] <= high]
     assert 0 < len(inside) < len(front_of(real_run))
     page.wait_for(f"{PLOT}.data.find(t => t.name === 'front').x.length === {len(inside)}")
     assert trace(page, "front") == inside
@@ -142,11 +119,11 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: Run) -> None:
     page.click(*spot(page, number))
     page.wait_for(f"{SHOWN} === 'Design {number}'")
     assert page.value("document.getElementById('announce').textContent") == f"Design {number} is shown."
-    worth = front_of(real_run)[number]
-    for name, value in worth.objectives.items():
+    found = front_of(real_run)[number]
+    for name, value in found.objectives.items():
         tile = f"document.querySelector('[data-objective=\"{name}\"]').firstChild.textContent"
         assert page.value(tile) == shown_as(value)
-    for name, value in worth.design.items():
+    for name, value in found.design.items():
         cell = f"document.querySelector('[data-parameter=\"{name}\"]').textContent"
         assert page.value(cell) == shown_as(value)
 
@@ -188,21 +165,6 @@ def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run)
     page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
 
 
-def check_poses(tab: Tab, script: str, tree: Tree, posture: AgentDetail, turn: float) -> None:
-    """A script's link poses are those of our kinematics, for an agent's frame turned about z [rad]."""
-    world_from_agent = euler_rotation(ca.DM([0.0, 0.0, turn]))
-    base = Pose(
-        world_from_agent @ euler_rotation(ca.DM(posture.base_rpy_rad)),
-        world_from_agent @ ca.DM(posture.base_position_m),
-    )
-    poses = forward(tree, base, posture.joints_rad)
-    for link, pose in zip(tree.links, tab.value(script), strict=True):
-        wanted = poses[link.name]
-        np.testing.assert_allclose(pose["position"], np.array(wanted.position)[:, 0], atol=1e-9)
-        rotation = np.array(pose["rotation"]).reshape(3, 3)
-        np.testing.assert_allclose(rotation, np.array(wanted.rotation), atol=1e-9)
-
-
 def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem, real_run: Run) -> None:
     detail = real_run.details[-1]
     values = list(real_run.evaluations[detail.evaluation].assessment.design.values())
@@ -236,10 +198,10 @@ def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: Run) -> No
     rows = page.value(
         "[...document.querySelectorAll('#table tbody tr')].map(r => [...r.children].map(c => c.textContent))"
     )
-    worth = front_of(real_run)
-    assert sorted(int(row[0]) for row in rows) == list(worth)
+    found = front_of(real_run)
+    assert sorted(int(row[0]) for row in rows) == list(found)
     for row in rows:
-        assert row[1:4] == [shown_as(value) for value in worth[int(row[0])].objectives.values()]
+        assert row[1:4] == [shown_as(value) for value in found[int(row[0])].objectives.values()]
     page.value("document.querySelector('#table .open').click()")
     assert page.value(SHOWN) == f"Design {rows[0][0]}"
 
@@ -271,7 +233,7 @@ def test_laptop_width_needs_no_sideways_scrolling(page: Tab) -> None:
 
 
 def open_run(tab: Tab, run: Run) -> None:
-    """Write and open the page of a run, which must be quiet."""
+    """Write and open the page of a run, which must report no error."""
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")
     tab.events.clear()
@@ -296,10 +258,10 @@ def toy_run(
     with RunWriter(directory, header) as log:
         for evaluation in toy_evaluations(header, count):
             if feasible or not evaluation.feasible:
-                worth = evaluation.assessment
+                found = evaluation.assessment
                 values = {one.name: (0.5 - evaluation.genome[i % 2]) ** 2 for i, one in enumerate(more)}
-                worth = msgspec.structs.replace(worth, objectives={**worth.objectives, **values})
-                log.evaluation(msgspec.structs.replace(evaluation, assessment=worth))
+                found = msgspec.structs.replace(found, objectives={**found.objectives, **values})
+                log.evaluation(msgspec.structs.replace(evaluation, assessment=found))
     return read_run(directory)
 
 

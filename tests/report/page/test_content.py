@@ -45,12 +45,15 @@ def test_every_number_of_an_evaluation_is_the_logs(real_run: Run, content: Conte
     points = content.points
     assert points.number == [evaluation.number for evaluation in real_run.evaluations]
     for row, evaluation in enumerate(real_run.evaluations):
-        worth = evaluation.assessment
-        assert {name: column[row] for name, column in points.objectives.items()} == worth.objectives
-        assert {name: column[row] for name, column in points.parameters.items()} == worth.design
-        assert points.violation_m[row] == worth.violation
-        assert worth.reach is not None
-        assert (points.lowest_m[row], points.highest_m[row]) == (worth.reach.lowest_m, worth.reach.highest_m)
+        assessment = evaluation.assessment
+        assert {name: column[row] for name, column in points.objectives.items()} == assessment.objectives
+        assert {name: column[row] for name, column in points.parameters.items()} == assessment.design
+        assert points.violation_m[row] == assessment.violation
+        assert assessment.reach is not None
+        assert (points.lowest_m[row], points.highest_m[row]) == (
+            assessment.reach.lowest_m,
+            assessment.reach.highest_m,
+        )
     assert content.generations == real_run.generations
 
 
@@ -78,14 +81,14 @@ def test_masses_are_the_resized_robots(real_run: Run, content: Content, problem:
 def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: Run, content: Content) -> None:
     marks = {mark.label: mark.number for mark in content.marks}
     assert marks["unscaled robot"] == 0
-    worth = {
+    objectives = {
         each.number: each.assessment.objectives
         for each in front(real_run.header.objectives, real_run.evaluations)
     }
-    least = min(worth.values(), key=lambda values: values["robot_torque"])
-    assert worth[marks["least robot torque"]] == least
-    greatest = max(worth.values(), key=lambda values: values["reach_height"])
-    assert worth[marks["greatest reach height"]] == greatest
+    least = min(objectives.values(), key=lambda values: values["robot_torque"])
+    assert objectives[marks["least robot torque"]] == least
+    greatest = max(objectives.values(), key=lambda values: values["reach_height"])
+    assert objectives[marks["greatest reach height"]] == greatest
     assert "knee" in marks
 
 
@@ -168,10 +171,10 @@ def test_any_number_of_objectives(tmp_path: Path, count: int) -> None:
     header = msgspec.structs.replace(toy_header(), objectives=objectives)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in toy_evaluations(header, 30):
-            worth = evaluation.assessment
+            assessment = evaluation.assessment
             values = {one.name: evaluation.genome[0] + i for i, one in enumerate(more)}
-            worth = msgspec.structs.replace(worth, objectives={**worth.objectives, **values})
-            log.evaluation(msgspec.structs.replace(evaluation, assessment=worth))
+            assessment = msgspec.structs.replace(assessment, objectives={**assessment.objectives, **values})
+            log.evaluation(msgspec.structs.replace(evaluation, assessment=assessment))
     made = page_content(read_run(tmp_path / "run"))
     assert list(made.points.objectives) == [objective.name for objective in objectives]
     assert {"best"} <= {mark.kind for mark in made.marks}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Iterator
 
 import pytest
@@ -14,12 +13,11 @@ from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import Problem
 from evodesign.report.page import page_content, page_html
 from evodesign.runlog.run import Run
-from tests.report.page.chromium import Tab, browser, executable
-from tests.report.page.test_browser import CANVAS, check_poses, open_page, shown_as
+from tests.report.page.chromium import Tab
+from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
 
-if executable() is None and not os.environ.get("CI"):
-    pytest.skip("no Chromium on this machine (Debian: apt-get install chromium)", allow_module_level=True)
+pytestmark = pytest.mark.needs_chromium
 
 
 @pytest.fixture(scope="module")
@@ -28,14 +26,13 @@ def run(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 
 @pytest.fixture(scope="module")
-def page(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+def page(chromium: Tab, run: Run) -> Iterator[Tab]:
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")
-    with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
-        open_page(tab, path)
-        yield tab
-        assert tab.complaints() == []
-        assert tab.requests() == [path.as_uri()]
+    open_page(chromium, path)
+    yield chromium
+    assert chromium.complaints() == []
+    assert chromium.requests() == [path.as_uri()]
 
 
 def choose(tab: Tab, control: str, option: int) -> None:

@@ -118,10 +118,10 @@ def test_frames_stand_where_pinocchio_puts_the_links(replay: Replay) -> None:
         assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, height.height_m], rtol=0.0, atol=TOLERANCE)
         for agent in replay.models.agents:
             tree = replay.models.trees[agent.name]
-            instant = AgentModel.of(agent, tree).at(posture_of(height.agents[agent.name]))
+            state = AgentModel.of(agent, tree).at(posture_of(height.agents[agent.name]))
             turn = np.diag([agent.sign, agent.sign, 1.0])
             for link in tree.link_by_name:
-                rotation, origin = instant.pose(link)
+                rotation, origin = state.pose(link)
                 found = world_from[f"{agent.name}/{link}"]
                 assert np.allclose(found[:3, :3], turn @ rotation, rtol=0.0, atol=TOLERANCE)
                 assert np.allclose(found[:3, 3], turn @ origin, rtol=0.0, atol=TOLERANCE)

@@ -1,4 +1,4 @@
-// The card of the chosen design: what it is worth, how it stands, what it is made of.
+// The card of the chosen design: its objectives, its postures, its parameters.
 
 const against = (axis, row) => {
   const reference = unscaledMark ? axis.column[rowOf.get(unscaledMark.number)] : null;

@@ -43,7 +43,7 @@ const frontTrace = (wanted, name, marker, more = {}) => {
   };
 };
 
-// From the front's best value to its worst but 5 %, with the marked designs: outliers must not squeeze it.
+// From the front's best value to its worst but 5 %, with the marked designs: outliers must not compress it.
 const zoomed = (axis) => {
   const values = frontRows.map((row) => axis.column[row]);
   const marked = content.marks
@@ -268,7 +268,7 @@ const startFront = () => {
   for (const event of ["selected", "filter", "theme"]) on(event, drawFront);
 };
 
-// Buttons for the designs worth a look.
+// Buttons for the marked designs.
 const startChips = () => {
   const seen = [...new Set(content.marks.map((mark) => mark.number))];
   const chips = seen.map((number) => {

@@ -1,4 +1,4 @@
-// Everything in its place; then the first design: the sharpest knee, else the first one worth a look.
+// Everything in its place; then the first design: the sharpest knee, else the first marked one.
 
 startHead();
 startFront();

@@ -69,7 +69,7 @@ const drawTable = () => {
         head("Design", null),
         ...columns.map((axis, index) => head(label(axis), index)),
         ...extra,
-        element("th", { scope: "col", text: "Worth a look" }),
+        element("th", { scope: "col", text: "Marked as" }),
       ),
     ),
     element("tbody", {}, ...body),

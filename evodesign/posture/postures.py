@@ -1,0 +1,169 @@
+"""The posture of a design at a height: formulations in turn, until the check accepts a result.
+
+A scene that is its own mirror image is solved for symmetric postures: half the variables and far fewer local
+minima. Where the person's value function is known, robot and person are even solved one after the other. The
+whole program, started from the symmetric solution, is the polish, and the refuge when no symmetric posture is
+found. Solves begin at the problem's portfolio of starts (at two fixed ones where there is none), so that the
+result depends on problem and design alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from enum import StrEnum
+from functools import cached_property
+
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Start
+from evodesign.nlp.solver_cache import SolverCache
+from evodesign.nlp.start_portfolio import Landscape
+from evodesign.posture.candidate import Trial, height_solution
+from evodesign.posture.check import Checker
+from evodesign.posture.formulations.base import Formulation, Setting
+from evodesign.posture.formulations.decoupled import DecoupledPostures
+from evodesign.posture.formulations.joint import JointPostures
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.results import HeightSolution, Neighbour
+from evodesign.posture.solution_derivative import PostureDerivative
+from evodesign.posture.symmetry import symmetric_forms, whole
+
+__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
+
+DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
+"""Names of the formulations in results."""
+
+Maker = Callable[[str, Setting, Precomputed, SolverCache], Formulation]
+
+
+def _decoupled(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> Formulation:
+    return DecoupledPostures(name, symmetric_forms(setting.scene), setting, known.values, solvers)
+
+
+def _symmetric(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> Formulation:
+    return JointPostures(name, symmetric_forms(setting.scene), setting, solvers)
+
+
+def _whole(name: str, setting: Setting, known: Precomputed, solvers: SolverCache) -> JointPostures:
+    forms = (whole(setting.scene.robot), whole(setting.scene.human))
+    return JointPostures(name, forms, setting, solvers)
+
+
+FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
+
+
+class Symmetry(StrEnum):
+    """Which postures are looked for."""
+
+    ON = "on"
+    OFF = "off"
+    POLISH = "polish"
+
+
+class PostureProblem:
+    """The postures of any design of a scene.
+
+    Args:
+        setting: of the scene.
+        symmetry: which postures are looked for.
+        known: portfolios of starts, and the person's part at the heights where it is known.
+        solvers: of other scenes, which may have programs in common with this one.
+    Raises:
+        ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
+    """
+
+    def __init__(
+        self,
+        setting: Setting,
+        symmetry: Symmetry,
+        known: Precomputed = NOTHING_PRECOMPUTED,
+        solvers: SolverCache | None = None,
+    ) -> None:
+        self._setting, self._symmetry, self._known = setting, symmetry, known
+        self._solvers = solvers or SolverCache()
+        self._decoupled_heights = frozenset(value.height for value in known.values)
+        self._made: dict[str, Formulation] = {}
+        if symmetry is not Symmetry.OFF:
+            setting.space.check_mirror(setting.scene.robot.tree)
+            symmetric_forms(setting.scene)
+
+    def solve(
+        self,
+        design: Sequence[float],
+        height: float,
+        checker: Checker,
+        neighbour: Neighbour | None = None,
+    ) -> HeightSolution:
+        """The best checked posture of a design at one height.
+
+        Args:
+            design: one number per design parameter.
+            height: of the load's centre [m].
+            checker: the independent check, made for this design.
+            neighbour: what the same design led to in a similar scene; fewer starts do beside it.
+        """
+        trials: list[Trial] = []
+        for trial in self._trials(design, height, checker, neighbour):
+            trials.append(trial)
+            if trial.best is not None:
+                break
+        best = trials[-1].best
+        if self._symmetry is Symmetry.POLISH and best is not None:
+            trials.append(self._whole.polish(design, height, best.instants[0], checker))
+        return height_solution(height, trials)
+
+    def derivative(
+        self, design: Sequence[float], solution: HeightSolution
+    ) -> PostureDerivative | NotDifferentiable:
+        """How a solved posture moves with the design, or why it has no derivative."""
+        if solution.attempt is None:
+            return NotDifferentiable(solution.reason)
+        return self._formulation(solution.attempt.formulation).derivative(design, solution)
+
+    def landscape(self, height: float) -> Landscape:
+        """The cost at a height [m] of the formulation that is tried first, of which portfolios are made."""
+        name, _ = next(self._in_turn(height))
+        return self._formulation(name).landscape(height)
+
+    def _trials(
+        self, design: Sequence[float], height: float, checker: Checker, neighbour: Neighbour | None
+    ) -> Iterator[Trial]:
+        """What each formulation leads to, in turn."""
+        for name, portfolio in self._in_turn(height):
+            formulation = self._formulation(name)
+            if neighbour is not None:
+                yield formulation.solve_beside(design, height, portfolio, neighbour, checker)
+            yield formulation.solve(design, height, portfolio, checker)
+
+    def _in_turn(self, height: float) -> Iterator[tuple[str, tuple[Start, ...]]]:
+        """The formulations to be tried until one succeeds, with their starts; a refuge has none."""
+        portfolio = self._known.starts(height)
+        if self._symmetry is Symmetry.OFF:
+            yield WHOLE, portfolio
+            return
+        if height in self._decoupled_heights:
+            yield DECOUPLED, portfolio
+            yield SYMMETRIC, ()
+        else:
+            yield SYMMETRIC, portfolio
+        yield WHOLE, ()
+
+    @cached_property
+    def _whole(self) -> JointPostures:
+        return _whole(WHOLE, self._compiled(WHOLE), self._known, self._solvers)
+
+    def _formulation(self, name: str) -> Formulation:
+        if name not in self._made:
+            setting = self._compiled(name)
+            self._made[name] = FORMULATIONS[name](name, setting, self._known, self._solvers)
+        return self._made[name]
+
+    def _compiled(self, name: str) -> Setting:
+        """The setting of a formulation; one that is seldom solved is not worth compiling."""
+        refuge = {
+            DECOUPLED: False,
+            SYMMETRIC: bool(self._decoupled_heights),
+            WHOLE: self._symmetry is Symmetry.ON,
+        }[name]
+        options = self._setting.options
+        return replace(self._setting, options=replace(options, compiled=options.compiled and not refuge))

@@ -1,0 +1,303 @@
+"""What a term of the posture programs is, and what it sees.
+
+A term is one physical statement: the numbers that it asks the solver for, the rows and costs in which it
+speaks in a program, and the residuals in which other code, with pinocchio's numbers, finds it violated. It
+speaks of one agent with a body (`Body`, `MeasuredBody`), or of robot, person and load together (`Coupled`,
+`MeasuredSystem`). What depends on the posture alone is said once per instant; the rest holds anew in every
+load case: the undisturbed one, and one for each disturbance.
+
+A new term is a file with a `Term` in it, and a line in `terms/registry.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.mechanics.disturbance import Disturbance
+from evodesign.mechanics.floating_base import BodyState
+from evodesign.mechanics.scene import Agent, Payload, Scene
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.symmetry import WRENCH, Form
+from evodesign.tree.kinematics import Pose
+from evodesign.tree.model import Tree
+
+__all__ = [
+    "FORCE_UNIT",
+    "HAND_UNIT",
+    "REGULARISATION",
+    "TORQUE_UNIT",
+    "Body",
+    "BodyTerm",
+    "Coupled",
+    "MeasuredBody",
+    "MeasuredSystem",
+    "Residual",
+    "Row",
+    "SystemTerm",
+    "Unknown",
+    "hand_wrench",
+]
+
+Array = NDArray[np.float64]
+Expression = Any
+
+TORQUE_UNIT = 10.0  # [N m] per unit of a lifted torque
+FORCE_UNIT = 100.0  # [N] per unit of a foot wrench
+HAND_UNIT = 10.0  # [N] per unit of a hand force, [N m] per unit of a hand moment
+
+REGULARISATION = 1e-2
+"""Weight of what is slightly disliked beside a lifted torque."""
+
+UNDISTURBED = Disturbance("none")
+"""Nothing happens."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """Numbers of an agent that a term asks the solver for.
+
+    Args:
+        part: what they are called within the agent, such as `joints`.
+        lower, upper, start: bounds and starting values, SI units, one per row.
+        unit: size of one unit of the solver's symbols, in SI units.
+        group: to which the bounds belong.
+        posture_only: whether they are the same in all load cases.
+        labels: words for the rows.
+        drawn: whether random starts draw them from between their bounds.
+    """
+
+    part: str
+    lower: Sequence[float]
+    upper: Sequence[float]
+    start: Sequence[float]
+    unit: float = 1.0
+    group: LimitGroup = LimitGroup.ALWAYS
+    posture_only: bool = False
+    labels: tuple[str, ...] = ()
+    drawn: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Rows lower <= expression <= upper of a program.
+
+    Args:
+        name: what they are called.
+        expression: a column.
+        lower, upper: limits of every row, in the expression's unit.
+        residuals: names of the residuals that find them violated.
+        unit: size of one unit of the expression, in SI units.
+        group: to which they belong.
+        posture_only: whether they are the same in all load cases.
+        labels: words for the rows.
+    """
+
+    name: str
+    expression: Expression
+    lower: float
+    upper: float
+    residuals: tuple[str, ...]
+    unit: float = 1.0
+    group: LimitGroup = LimitGroup.ALWAYS
+    posture_only: bool = False
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """By how much a posture violates something.
+
+    Args:
+        name: what is violated.
+        size: SI units; zero or rounding where it holds.
+        unit: of the size.
+        words: what is violated, in a sentence.
+        group: to which it belongs.
+        posture_only: whether it is the same in all load cases.
+    """
+
+    name: str
+    size: float
+    unit: str
+    words: str
+    group: LimitGroup = LimitGroup.ALWAYS
+    posture_only: bool = False
+
+
+@dataclass(frozen=True)
+class Body:
+    """An agent with a body at one instant and in one load case: expressions in the agent's own frame.
+
+    The frame looks along +x at the load above its origin, so robot and person share every line, and so do
+    whole agents and the halves of symmetric ones.
+
+    Args:
+        form: all of the agent, or its left half.
+        scene: load, ground and stance, undisturbed.
+        load_height: of the load's centre above the ground [m].
+        part: links and joints that the form holds, resized by a design.
+        doubled: joints of the part whose branch stands for its mirror image too.
+        poses: of the part's links.
+        values: of the unknowns of all terms, SI units, by part.
+        disturbance: of the load case; one of nothing where it is undisturbed.
+    """
+
+    form: Form
+    scene: Scene
+    load_height: Expression
+    part: Tree
+    doubled: Set[str]
+    poses: Mapping[str, Pose]
+    values: Mapping[str, Expression]
+    disturbance: Disturbance = UNDISTURBED
+
+    @property
+    def agent(self) -> Agent:
+        """The agent as its file describes it."""
+        return self.form.agent
+
+    @cached_property
+    def hands(self) -> Mapping[str, Expression]:
+        """Force [N] and moment about the grasp point [N m] on both hands; the load feels their negative."""
+        return both_hands({side: self.values[f"{side}_hand"] for side in self.form.sides})
+
+    @cached_property
+    def feet(self) -> Mapping[str, Expression]:
+        """Force [N] and moment [N m] on each of the form's feet, in the sole frame."""
+        return {side: self.values[f"{side}_foot"] for side in self.form.sides}
+
+
+def hand_wrench(free: Expression) -> Expression:
+    """Six rows from the free numbers of a grasp: a point grasp passes no moment."""
+    return ca.vertcat(free, ca.DM.zeros(6 - free.numel()))
+
+
+def both_hands(free: Mapping[str, Expression]) -> Mapping[str, Expression]:
+    """Wrenches on both hands, by side, from the free numbers of both, or of the left one that is mirrored."""
+    hands = {side: hand_wrench(numbers) for side, numbers in free.items()}
+    if "right" not in hands:
+        hands["right"] = hands["left"] * ca.DM(WRENCH)
+    return hands
+
+
+@dataclass(frozen=True, slots=True)
+class Coupled:
+    """Robot, person and load together, at one instant and in one load case.
+
+    Args:
+        scene: agents, load, ground and stance, undisturbed.
+        bodies: agents that have one, by name.
+        hands: force [N] and moment [N m] on both hands of both agents, by agent and side, in
+            the agents' frames.
+        symmetric: whether right hands mirror left ones.
+        disturbance: of the load case.
+    """
+
+    scene: Scene
+    bodies: Mapping[str, Body]
+    hands: Mapping[str, Mapping[str, Expression]]
+    symmetric: bool
+    disturbance: Disturbance
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredBody:
+    """An agent in a posture as pinocchio sees it, in the agent's own frame.
+
+    Args:
+        agent: whose posture it is.
+        posture: with what is carried in the load case.
+        undisturbed: with what is carried where nothing happens.
+        state: kinematics, Jacobians and gravity torques.
+        scene: load, ground and stance, undisturbed.
+        load_height: of the load's centre [m].
+        disturbance: of the load case.
+    """
+
+    agent: Agent
+    posture: AgentPosture
+    undisturbed: AgentPosture
+    state: BodyState
+    scene: Scene
+    load_height: float
+    disturbance: Disturbance
+
+    @property
+    def disturbed(self) -> bool:
+        """Whether something happens."""
+        return self.disturbance is not UNDISTURBED
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredSystem:
+    """Robot, person and load in a posture.
+
+    Args:
+        scene: agents, ground and stance.
+        payload: as the disturbance makes it.
+        bodies: both agents, by name.
+        disturbance: of the load case.
+    """
+
+    scene: Scene
+    payload: Payload
+    bodies: Mapping[str, MeasuredBody]
+    disturbance: Disturbance
+
+
+def no_unknowns(form: Form, scene: Scene) -> Iterable[Unknown]:
+    """No numbers are asked for."""
+    return ()
+
+
+def nothing(seen: Any) -> Iterable[Any]:
+    """Neither rows nor residuals."""
+    return ()
+
+
+def no_cost(seen: Any) -> Expression | None:
+    """Nothing is disliked."""
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTerm:
+    """A statement about each agent that has a body.
+
+    Args:
+        name: unique among terms.
+        group: to which its cost belongs.
+        unknowns: numbers that it asks for, of a form in a scene.
+        rows: in a program.
+        posture_cost: a cost that depends on the posture alone, beside |tau|^2 / TORQUE_UNIT^2; or None.
+        cost: one that every load case has; or None.
+        residuals: of a posture.
+    """
+
+    name: str
+    group: LimitGroup = LimitGroup.ALWAYS
+    unknowns: Callable[[Form, Scene], Iterable[Unknown]] = field(default=no_unknowns)
+    rows: Callable[[Body], Iterable[Row]] = field(default=nothing)
+    posture_cost: Callable[[Body], Expression | None] = field(default=no_cost)
+    cost: Callable[[Body], Expression | None] = field(default=no_cost)
+    residuals: Callable[[MeasuredBody], Iterable[Residual]] = field(default=nothing)
+
+
+@dataclass(frozen=True, slots=True)
+class SystemTerm:
+    """A statement about robot, person and load together; the fields are those of `BodyTerm`."""
+
+    name: str
+    group: LimitGroup = LimitGroup.ALWAYS
+    rows: Callable[[Coupled], Iterable[Row]] = field(default=nothing)
+    posture_cost: Callable[[Coupled], Expression | None] = field(default=no_cost)
+    cost: Callable[[Coupled], Expression | None] = field(default=no_cost)
+    residuals: Callable[[MeasuredSystem], Iterable[Residual]] = field(default=nothing)

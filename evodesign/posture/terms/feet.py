@@ -1,0 +1,105 @@
+"""Feet: flat on the ground, not turned far, and pressing as the ground allows.
+
+"Flat" is two vanishing entries of the sole's rotation rather than one entry equal to one, whose gradient
+vanishes at the solution. Foot wrenches live in the sole frame, where the limits of contact are linear.
+
+Source: Sartore et al. 2022, Eq. 14 e to g; contact: `mechanics.contact`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import casadi as ca
+import numpy as np
+
+from evodesign.mechanics.contact import foot_margins
+from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import (
+    FORCE_UNIT,
+    Body,
+    BodyTerm,
+    Coupled,
+    MeasuredBody,
+    Residual,
+    Row,
+    SystemTerm,
+    Unknown,
+)
+
+__all__ = ["FEET", "UPRIGHT"]
+
+STRONGEST = 5000.0  # [N] and [N m] of a foot
+RESTING = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
+"""A foot's wrench in the program's own start [N, N m]."""
+
+MARGIN_UNIT = 100.0  # [N] and [N m] per unit of a foot's margin
+
+
+def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
+    """Wrenches on the form's feet [N, N m], in the sole frames."""
+    for side in form.sides:
+        limit = [STRONGEST] * 6
+        least = [-x for x in limit]
+        yield Unknown(f"{side}_foot", least, limit, RESTING, FORCE_UNIT, LimitGroup.CONTACT)
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """Each sole on the ground and flat (Eq. 14 e to g), within the limits of contact, and not turned far."""
+    most = math.sin(body.scene.stance.foot_yaw)
+    for side in body.form.sides:
+        sole = body.poses[body.agent.soles[side]]
+        level = ca.vertcat(sole.position[2], sole.rotation[0, 2], sole.rotation[1, 2])
+        margins = ca.vertcat(*foot_margins(body.feet[side], body.agent.sole_size, body.scene.ground))
+        flat = ("feet_on_ground", "feet_flat")
+        yield Row(f"{side}_foot_flat", level, 0.0, 0.0, flat, posture_only=True)
+        yield Row(
+            f"{side}_foot_contact",
+            margins / MARGIN_UNIT,
+            0.0,
+            np.inf,
+            ("foot_contact",),
+            MARGIN_UNIT,
+            LimitGroup.CONTACT,
+        )
+        turn, stance = sole.rotation[1, 0], LimitGroup.STANCE
+        yield Row(f"{side}_foot_yaw", turn, -most, most, ("feet_yaw",), group=stance, posture_only=True)
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """Soles above the ground, slanted or turned, and wrenches that the ground cannot return."""
+    heights, slants, yaws, margins = [], [], [], []
+    for side in SIDES:
+        rotation, origin = body.state.pose(body.agent.soles[side])
+        heights.append(abs(float(origin[2])))
+        slants.append(float(np.abs(rotation[:, 2] - [0.0, 0.0, 1.0]).max()))
+        yaws.append(abs(float(np.arctan2(rotation[1, 0], rotation[0, 0]))))
+        wrench = body.posture.foot_wrenches[side]
+        margins += foot_margins(wrench, body.agent.sole_size, body.scene.ground)
+    yield Residual("feet_on_ground", max(heights), "m", "the feet's height", posture_only=True)
+    yield Residual("feet_flat", max(slants), "1", "the feet's slant", posture_only=True)
+    broken = max(0.0, -float(min(margins)))
+    words = "the contact of a foot with the ground"
+    yield Residual("foot_contact", broken, "N", words, LimitGroup.CONTACT)
+    turned = max(0.0, max(yaws) - body.scene.stance.foot_yaw)
+    yield Residual("feet_yaw", turned, "rad", "the turn of a foot", LimitGroup.STANCE, posture_only=True)
+
+
+FEET = BodyTerm("feet", unknowns=unknowns, rows=rows, residuals=residuals)
+
+
+def upright_rows(coupled: Coupled) -> Iterator[Row]:
+    """z_sole . z >= 0: of the two ways of being flat, 1 and -1, the first."""
+    soles = [
+        body.poses[body.agent.soles[side]].rotation[2, 2]
+        for body in coupled.bodies.values()
+        for side in body.form.sides
+    ]
+    rows, group = ca.vertcat(*soles), LimitGroup.UPRIGHT
+    yield Row("feet.upright", rows, 0.0, np.inf, ("feet_flat",), group=group, posture_only=True)
+
+
+UPRIGHT = SystemTerm("upright", LimitGroup.UPRIGHT, rows=upright_rows)

@@ -1,0 +1,250 @@
+"""Every term of the registry: its rows are its residuals, and its residuals fire when it is violated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.nlp.program import Program
+from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
+from evodesign.posture.check import TOLERANCE, AgentModel, Checker
+from evodesign.posture.limit_groups import Enforced, LimitGroup
+from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.terms.base import BodyTerm, Coupled, Row, SystemTerm
+from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import instant_of, layout_of
+from evodesign.problem.build import Problem
+
+HEIGHT = 0.9
+CLOSE = 1e-9
+
+
+class Everything(Enforced):
+    """All groups, with the rows that hold feet upright where joint limits do not."""
+
+    def covers(self, group: LimitGroup) -> bool:
+        return True
+
+
+EVERY_ROW = Everything()
+
+DISTURBED = Disturbances(
+    (
+        Disturbance("heavier", mass_share=0.2, center_of_mass=(0.03, 0.0, 0.01)),
+        Disturbance("robot pushed", push=(-15.0, 0.0, 4.0), at=PushedAt.ROBOT),
+        Disturbance("load pushed", push=(9.0, 0.0, -7.0)),
+    )
+)
+
+SAME_MEASURE = {
+    "hands_on_load", "foot_contact", "feet_apart", "feet_stagger", "trunk_clear", "torque",
+    "load.push", "load.share",
+}  # fmt: skip
+"""Residuals that measure just what their rows do; others take other axes, or another function of an angle."""
+
+
+def scene_of(problem: Problem) -> Scene:
+    payload = replace(problem.scene.payload, grasp=Grasp.RIGID, hand_moment=5.0)
+    return replace(problem.scene, payload=payload, disturbances=DISTURBED)
+
+
+def random_values(program: Program, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    """Somewhat beyond the bounds of joints and base, and wrenches of usual size."""
+    values = {}
+    for variable in program.variables:
+        middle = np.clip((variable.lower + variable.upper) / 2.0, -1.0, 1.0)
+        span = np.minimum((variable.upper - variable.lower) / 2.0, 0.6 * max(1.0, variable.scale))
+        held = variable.lower == variable.upper
+        noise = np.where(held, 0.0, 1.2 * span * rng.uniform(-1.0, 1.0, len(span)))
+        values[variable.name] = variable.start + np.where(held, 0.0, 0.3 * middle) + noise
+    return values
+
+
+@pytest.fixture(scope="module", params=["whole", "half"])
+def forms(request: pytest.FixtureRequest, problem: Problem) -> tuple[Form, Form]:
+    scene = scene_of(problem)
+    return symmetric_forms(scene) if request.param == "half" else (whole(scene.robot), whole(scene.human))
+
+
+def program_of(scene: Scene, forms: tuple[Form, Form], terms: Mapping[str, BodyTerm | SystemTerm]) -> Program:
+    parties = (Embodied(forms[0], scene.robot.tree), Embodied(forms[1], scene.human.tree))
+    made = assemble(parties, terms.values(), CaseSymbols(scene, (HEIGHT,)), EVERY_ROW)
+    return Program("all", made.variables, made.constraints, ca.SX(0.0), {})
+
+
+def seen_rows(
+    term: BodyTerm | SystemTerm, scene: Scene, forms: tuple[Form, Form]
+) -> Iterator[tuple[str, Row]]:
+    """The rows of a term in the undisturbed load case, with the name of whom they are about."""
+    parties = (Embodied(forms[0], scene.robot.tree), Embodied(forms[1], scene.human.tree))
+    undisturbed = replace(scene, disturbances=Disturbances())
+    load_case = assemble(parties, TERMS.values(), CaseSymbols(undisturbed, (HEIGHT,)), EVERY_ROW).undisturbed
+    if isinstance(term, BodyTerm):
+        for name, body in load_case.bodies.items():
+            yield from ((f"{name}.", row) for row in term.rows(body))
+    else:
+        body = next(iter(load_case.bodies.values()))
+        coupled = Coupled(
+            undisturbed, load_case.bodies, load_case.hands, forms[0].mirror is not None, body.disturbance
+        )
+        yield from (("", row) for row in term.rows(coupled))
+
+
+def test_registry_and_terms_agree_on_names() -> None:
+    assert {name: term.name for name, term in TERMS.items()} == {name: name for name in TERMS}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rows_say_what_the_residuals_say(problem: Problem, forms: tuple[Form, Form], seed: int) -> None:
+    """At random values of all variables, in every load case: another library finds the same violations."""
+    scene = scene_of(problem)
+    program = program_of(scene, forms, TERMS)
+    values = random_values(program, np.random.default_rng(seed))
+    rows = ca.Function("rows", [program.symbols], [c.expression for c in program.constraints])
+    numbers = rows(program.packed(values))
+    instant = instant_of(layout_of(program), forms, scene, values)
+    checker = checker_of(scene)
+    found = {residual.name: residual for residual in checker.residuals(instant, HEIGHT)}
+    said = {
+        f"{owner}{row.name}": (owner, row)
+        for t in TERMS.values()
+        for owner, row in seen_rows(t, scene, forms)
+    }
+    measured: dict[str, float] = {}
+    compared = set()
+    for constraint, number in zip(program.constraints, numbers, strict=True):
+        case, name = split_case(constraint.name, scene)
+        owner, row = said[name]
+        column = np.asarray(number).ravel() * row.unit
+        beyond = np.maximum(row.lower * row.unit - column, column - row.upper * row.unit)
+        violation = max(0.0, float(np.abs(column).max() if row.lower == row.upper else beyond.max()))
+        names = [f"{case}{owner}{residual}" for residual in row.residuals]
+        if owner == "" and name == "feet.upright":
+            names = [f"{agent}.feet_flat" for agent in (ROBOT, HUMAN)]
+        assert set(names) <= set(found), (constraint.name, names)
+        for each in names:
+            measured[each] = max(measured.get(each, 0.0), violation)
+            compared.add(each)
+        if violation > 1e-6:
+            assert max(found[each].size for each in names) > 1e-7, constraint.name
+    for each in compared:
+        kind = each.rsplit(": ", 1)[-1]
+        kind = kind if kind.startswith("load.") else kind.split(".", 1)[1]
+        if kind in SAME_MEASURE and kind not in {
+            "feet_on_ground",
+            "load.force_balance",
+            "load.moment_balance",
+        }:
+            expected = pytest.approx(measured[each], rel=1e-7, abs=CLOSE)
+            assert found[each].size == expected, each
+    assert len(compared) > 30
+
+
+def split_case(name: str, scene: Scene) -> tuple[str, str]:
+    """A constraint's load case, as residuals say it, and the rest of its name."""
+    for number, disturbance in enumerate(scene.disturbances.cases):
+        prefix = f"disturbed_{number}."
+        if name.startswith(prefix):
+            return f"{disturbance.name}: ", name.removeprefix(prefix)
+    return "", name
+
+
+def test_every_residual_fires(problem: Problem) -> None:
+    """Each of every term, undisturbed and not, for some random posture; no residual is always silent."""
+    scene, seen = scene_of(problem), set[str]()
+    forms = (whole(scene.robot), whole(scene.human))
+    program = program_of(scene, forms, TERMS)
+    checker = checker_of(scene)
+    silent: set[str] = set()
+    for seed in range(12):
+        values = random_values(program, np.random.default_rng(seed))
+        instant = instant_of(layout_of(program), forms, scene, values)
+        pushed = dict(instant.disturbed)
+        name, postures = next(iter(pushed.items()))
+        moved = {k: replace(p, base_position=p.base_position + 0.01) for k, p in postures.items()}
+        instant = replace(instant, disturbed={**pushed, name: moved})
+        found = checker.residuals(instant, HEIGHT)
+        seen |= {residual.name for residual in found if residual.size > TOLERANCE}
+        silent |= {residual.name for residual in found}
+    never = {name for name in silent - seen if not name.endswith(("moved", "load.grasp"))}
+    assert never == set(), "residuals that no posture violates"
+    assert {f"{name}: {agent}.moved" for agent in (ROBOT, HUMAN)} <= seen
+
+
+def test_a_point_grasp_that_passes_a_moment_is_seen(problem: Problem) -> None:
+    scene = problem.scene
+    forms = (whole(scene.robot), whole(scene.human))
+    program = program_of(scene, forms, TERMS)
+    values = random_values(program, np.random.default_rng(1))
+    instant = instant_of(layout_of(program), forms, scene, values)
+    robot = instant.postures[ROBOT]
+    moment = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    twisted = {side: wrench + moment for side, wrench in robot.hand_wrenches.items()}
+    postures = {**instant.postures, ROBOT: replace(robot, hand_wrenches=twisted)}
+    found = {r.name: r.size for r in checker_of(scene).residuals(replace(instant, postures=postures), HEIGHT)}
+    assert found["load.grasp"] == pytest.approx(1.0)
+
+
+def test_torques_beyond_their_limits_are_seen(problem: Problem) -> None:
+    joint = problem.scene.robot.joints[0]
+    robot = replace(problem.scene.robot, torque_limits={joint: 1.0}, limits_torques=True)
+    scene = replace(problem.scene, robot=robot)
+    forms = (whole(robot), whole(scene.human))
+    program = program_of(scene, forms, TERMS)
+    values = random_values(program, np.random.default_rng(1))
+    values["robot.torques"] = np.full(len(robot.joints), 3.5)
+    instant = instant_of(layout_of(program), forms, scene, values)
+    found = {residual.name: residual.size for residual in checker_of(scene).residuals(instant, HEIGHT)}
+    assert found["robot.torque_limits"] == pytest.approx(2.5)
+    assert "human.torque_limits" not in found
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_derivatives_of_a_term_agree_with_differences(
+    name: str, problem: Problem, forms: tuple[Form, Form]
+) -> None:
+    """Rows and costs of one term, with respect to every variable, at random values."""
+    scene = scene_of(problem)
+    program = program_of(scene, forms, TERMS)
+    parties = (Embodied(forms[0], scene.robot.tree), Embodied(forms[1], scene.human.tree))
+    made = assemble(parties, TERMS.values(), CaseSymbols(scene, (HEIGHT,)), EVERY_ROW)
+    term, (undisturbed, *_) = TERMS[name], made.instants[0]
+    if isinstance(term, BodyTerm):
+        said = [part for body in undisturbed.bodies.values() for part in parts_of(term, body)]
+    else:
+        body = next(iter(undisturbed.bodies.values()))
+        symmetric = forms[0].mirror is not None
+        coupled = Coupled(scene, undisturbed.bodies, undisturbed.hands, symmetric, body.disturbance)
+        said = parts_of(term, coupled)
+    if not said:
+        return  # bounds alone
+    symbols = ca.vertcat(*[variable.symbol for variable in made.variables])
+    stacked = ca.vertcat(*said)
+    function = ca.Function("said", [symbols], [stacked, ca.jacobian(stacked, symbols)])
+    at = program.packed(random_values(program, np.random.default_rng(7)))
+    jacobian = np.asarray(function(at)[1])
+    for _ in range(6):
+        way = np.random.default_rng(_).standard_normal(len(at))
+        way /= np.linalg.norm(way)
+        step = 1e-5
+        ahead, behind = (np.asarray(function(at + sign * step * way)[0]).ravel() for sign in (1.0, -1.0))
+        differences = (ahead - behind) / (2.0 * step)
+        exact = jacobian @ way
+        assert np.abs(differences - exact).max() <= 1e-6 * max(1.0, np.abs(exact).max())
+
+
+def parts_of(term: BodyTerm | SystemTerm, seen: Any) -> list[Any]:
+    """Rows and costs of a term."""
+    costs = [term.posture_cost(seen), term.cost(seen)]
+    return [*(row.expression for row in term.rows(seen)), *(cost for cost in costs if cost is not None)]
+
+
+def checker_of(scene: Scene) -> Checker:
+    return Checker(scene, scene.robot.tree, AgentModel.of(scene.human, scene.human.tree))

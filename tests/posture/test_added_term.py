@@ -1,0 +1,114 @@
+"""A new term is one file and one line: it enters every program, the check, derivatives and sentences."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.posture.check import AgentModel, Checker, sizes
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.codesign import JointProblem
+from evodesign.posture.formulations.decoupled import robot_program
+from evodesign.posture.formulations.human_value import human_program
+from evodesign.posture.formulations.reach import ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.results import HeightSolution
+from evodesign.posture.solution_derivative import PostureDerivative, known_instant
+from evodesign.posture.symmetry import symmetric_forms
+from evodesign.posture.terms.registry import TERMS
+from evodesign.problem.build import Problem
+from evodesign.records import Status
+from tests.posture.center_of_mass_term import mass_height
+
+HEIGHT, HIGHER = 0.8, 0.02  # [m]
+ROWS = {f"{agent}.mass_height" for agent in (ROBOT, HUMAN)}
+
+
+@dataclass(frozen=True)
+class Bench:
+    setting: Setting
+    design: tuple[float, ...]
+    checker: Checker
+
+    def solve(self, problem: PostureProblem) -> HeightSolution:
+        return problem.solve(self.design, HEIGHT, self.checker)
+
+    def too_low(self, solution: HeightSolution) -> float:
+        return sizes(self.checker.residuals(known_instant(solution), HEIGHT))["robot.mass_height"]
+
+
+@pytest.fixture(scope="module")
+def bench(problem: Problem) -> Bench:
+    scene, space = problem.scene, problem.space
+    design = space.unscaled(scene.robot.tree)
+    checker = Checker(
+        scene, space.resized(scene.robot.tree, design), AgentModel.of(scene.human, scene.human.tree)
+    )
+    return Bench(Setting(scene, space, problem.weights, problem.options), design, checker)
+
+
+@pytest.fixture(scope="module")
+def before(bench: Bench) -> HeightSolution:
+    """The posture without the term."""
+    return bench.solve(PostureProblem(bench.setting, Symmetry.ON))
+
+
+@pytest.fixture
+def lowest(bench: Bench, before: HeightSolution, monkeypatch: pytest.MonkeyPatch) -> float:
+    """The term is in the registry, and asks for a little more than the posture without it has."""
+    monkeypatch.setitem(TERMS, "mass_height", mass_height(10.0))
+    asked = 10.0 - bench.too_low(before) + HIGHER
+    monkeypatch.setitem(TERMS, "mass_height", mass_height(asked))
+    return asked
+
+
+@pytest.mark.usefixtures("lowest")
+def test_it_enters_every_formulation(problem: Problem, bench: Bench) -> None:
+    forms = symmetric_forms(bench.setting.scene)
+    joint = PostureProblem(bench.setting, Symmetry.ON).landscape(HEIGHT).solver.program
+    whole = PostureProblem(bench.setting, Symmetry.OFF).landscape(HEIGHT).solver.program
+    codesign = JointProblem(problem.scene, problem.space, (HEIGHT,), problem.joint).program
+    for program in (joint, whole, codesign):
+        assert {c.name for c in program.constraints} >= ROWS
+    decoupled = robot_program(forms[0], bench.setting), human_program(forms[1], bench.setting.scene, 1.0)
+    assert {c.name for program in decoupled for c in program.constraints} >= ROWS
+    reach = ReachProblem(bench.setting, symmetric=True)
+    assert "robot.mass_height" in {c.name for c in reach.program.constraints}
+
+
+def test_it_holds_in_what_is_solved_and_in_the_derivative(
+    bench: Bench, before: HeightSolution, lowest: float
+) -> None:
+    problem = PostureProblem(bench.setting, Symmetry.ON)
+    solution = bench.solve(problem)
+    assert solution.solved, solution.reason
+    assert bench.too_low(before) == pytest.approx(HIGHER)
+    assert bench.too_low(solution) < 1e-6
+    assert solution.residuals["robot.mass_height"] == bench.too_low(solution)
+    derivative = problem.derivative(bench.design, solution)
+    assert isinstance(derivative, PostureDerivative), derivative
+    assert {(limit.name, limit.active) for limit in derivative.limits} >= {("robot.mass_height", True)}
+
+
+def test_it_is_in_the_sentence_of_a_posture_that_fails_the_check(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that was built without it, and a check that knows it."""
+    problem = PostureProblem(bench.setting, Symmetry.ON)
+    problem.landscape(HEIGHT)
+    monkeypatch.setitem(TERMS, "mass_height", mass_height(1.2))
+    solution = bench.solve(problem)
+    assert solution.status is Status.NUMERICAL_FAILURE or solution.status is Status.INFEASIBLE
+    assert "the check found robot.mass_height" in solution.reason
+
+
+def test_it_narrows_the_reach(bench: Bench, lowest: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who may not squat so low cannot hold the lowest load."""
+    narrowed = ReachProblem(bench.setting, symmetric=True).solve(bench.design)
+    monkeypatch.delitem(TERMS, "mass_height")
+    free = ReachProblem(bench.setting, symmetric=True).solve(bench.design)
+    assert free.lowest is not None
+    assert narrowed.lowest is not None
+    assert narrowed.lowest > free.lowest + HIGHER

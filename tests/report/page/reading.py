@@ -1,0 +1,41 @@
+"""What tests of the page share: opening it, and reading what it shows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+
+from evodesign.records import AgentDetail
+from evodesign.tree.kinematics import Pose, euler_rotation, forward
+from evodesign.tree.model import Tree
+from tests.report.page.chromium import Tab
+
+CANVAS = "document.getElementById('posture')"
+
+
+def open_page(tab: Tab, path: Path, theme: str = "light") -> None:
+    """Open a page and wait until its scripts are through."""
+    tab.open(path.as_uri(), theme=theme)
+    tab.wait_for("window.evodesign !== undefined")
+
+
+def shown_as(value: float) -> str:
+    """A number as tiles and tables show it: four significant digits."""
+    return f"{value:#.4g}".rstrip(".").replace("-", "\u2212")
+
+
+def check_poses(tab: Tab, script: str, tree: Tree, posture: AgentDetail, turn: float) -> None:
+    """A script's link poses are those of our kinematics, for an agent's frame turned about z [rad]."""
+    world_from_agent = euler_rotation(ca.DM([0.0, 0.0, turn]))
+    base = Pose(
+        world_from_agent @ euler_rotation(ca.DM(posture.base_rpy_rad)),
+        world_from_agent @ ca.DM(posture.base_position_m),
+    )
+    poses = forward(tree, base, posture.joints_rad)
+    for link, pose in zip(tree.links, tab.value(script), strict=True):
+        wanted = poses[link.name]
+        np.testing.assert_allclose(pose["position"], np.array(wanted.position)[:, 0], atol=1e-9)
+        rotation = np.array(pose["rotation"]).reshape(3, 3)
+        np.testing.assert_allclose(rotation, np.array(wanted.rotation), atol=1e-9)
