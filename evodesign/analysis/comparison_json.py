@@ -6,7 +6,6 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
-from evodesign.analysis.attainment import AttainmentSurface
 from evodesign.analysis.best_designs import best_designs
 from evodesign.analysis.comparison import Compared, Comparison
 
@@ -42,7 +41,10 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
             {
                 "search": each.search,
                 "objectives": [objective.name for objective in each.objectives],
-                "surfaces": [_surface(surface) for surface in each.surfaces],
+                "surfaces": [
+                    {"share": surface.share, "corners": [list(corner) for corner in surface.corners]}
+                    for surface in each.surfaces
+                ],
             }
             for each in comparison.attainments
         ],
@@ -88,7 +90,3 @@ def _run(each: Compared) -> dict[str, Any]:
             "best": {name: list(values) for name, values in curve.best.items()},
         },
     }
-
-
-def _surface(surface: AttainmentSurface) -> dict[str, Any]:
-    return {"share": surface.share, "corners": [list(corner) for corner in surface.corners]}

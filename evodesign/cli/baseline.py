@@ -28,7 +28,8 @@ def baseline(
     json: Json = False,
 ) -> None:
     """The paper's way: postures at all heights and the design in one program, from many starts."""
-    from evodesign.cli.output import counted, print_lines
+    from evodesign.analysis.failures import causes
+    from evodesign.cli.output import print_lines
     from evodesign.cli.session import new_directory
     from evodesign.problem.baseline import GENERATION, refuse_unsuited
     from evodesign.problem.build import build_problem
@@ -55,4 +56,4 @@ def baseline(
     )
     if not json:
         ended = Counter(evaluation.assessment.status for evaluation in read_run(directory).evaluations)
-        print_lines(f"how the {sum(ended.values())} starts ended: {counted(ended)}")
+        print_lines(f"how the {sum(ended.values())} starts ended: {causes(ended)}")

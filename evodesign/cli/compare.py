@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from evodesign.cli.options import Json
 from evodesign.errors import InputError
-
-if TYPE_CHECKING:
-    from evodesign.analysis.comparison import Comparison
 
 __all__ = ["compare"]
 
@@ -26,7 +23,8 @@ def compare(
     """Several runs side by side: hypervolumes, rank tests over seeds, the best designs of all."""
     from evodesign.analysis import comparison
     from evodesign.analysis.comparison_json import comparison_json
-    from evodesign.cli.output import print_json, show_notes, write_text
+    from evodesign.cli.output import console, print_json, print_lines, show_notes, visible, write_text
+    from evodesign.cli.tables.comparison import comparison_tables, lines_after, lines_before
     from evodesign.runlog.run import read_run
 
     if len(runs) < 2:
@@ -46,14 +44,7 @@ def compare(
         print_json({"comparisons": [comparison_json(each) for each in comparisons]})
         return
     for each in comparisons:
-        _print(each, alone=len(comparisons) == 1)
-
-
-def _print(comparison: Comparison, *, alone: bool) -> None:
-    from evodesign.cli.output import console, print_lines, visible
-    from evodesign.cli.tables.comparison import comparison_tables, lines_after, lines_before
-
-    print_lines(*map(visible, lines_before(comparison, alone=alone)))
-    for table in comparison_tables(comparison):
-        console().print(table)
-    print_lines(*map(visible, lines_after(comparison)))
+        print_lines(*map(visible, lines_before(each, alone=len(comparisons) == 1)))
+        for table in comparison_tables(each):
+            console().print(table)
+        print_lines(*map(visible, lines_after(each)))

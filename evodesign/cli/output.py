@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +12,10 @@ from rich.console import Console
 from rich.markup import escape
 
 from evodesign.errors import InputError
-from evodesign.records import Objective, Status
+from evodesign.records import Objective
 
 __all__ = [
     "console",
-    "counted",
     "figure",
     "heading",
     "print_json",
@@ -40,11 +39,6 @@ def console(*, stderr: bool = False) -> Console:
 def figure(value: float | None) -> str:
     """A number with four significant figures, or a dash for none."""
     return "-" if value is None else f"{value:.4g}"
-
-
-def counted(statuses: Mapping[Status, int]) -> str:
-    """Statuses in words, such as `solved 48, infeasible 2`."""
-    return ", ".join(f"{status} {statuses[status]}" for status in Status if statuses.get(status)) or "none"
 
 
 def visible(text: str) -> str:

@@ -30,8 +30,7 @@ from evodesign.cli.output import console, figure, heading, show_notes
 from evodesign.cli.tables.live import generation_line
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
-from evodesign.runlog.observer import Observer
-from evodesign.runlog.run import Run
+from evodesign.runlog.observer import Observer, Silent
 
 __all__ = ["precompute_progress", "search_progress"]
 
@@ -59,19 +58,19 @@ def precompute_progress() -> Iterator[PrecomputeProgress]:
         progress.close()
 
 
-class SearchLines:
+class SearchLines(Silent):
     """One line when a session starts and one per generation."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
-        self._clock = _Clock()
-        self._budget = 0
+        self._began = time.monotonic()
+        self._known = self._done = self._budget = 0
         self._failures: Counter[Status] = Counter()
 
     def started(self, header: RunHeader, evaluations_done: int) -> None:
         """Say what begins."""
-        self._budget = header.budget
-        self._clock.start(evaluations_done, header.budget)
+        self._began, self._budget = time.monotonic(), header.budget
+        self._known = self._done = evaluations_done
         search = header.search
         known = f", {evaluations_done} known" if evaluations_done else ""
         _write(
@@ -82,20 +81,24 @@ class SearchLines:
 
     def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
         """Only count."""
-        self._clock.tick(done)
+        self._done = done
         self._failures += failures([evaluation])
 
     def generation_done(self, generation: Generation) -> None:
         """Say where the search stands."""
         failed = f"; failed in this session: {causes(self._failures)}" if self._failures else ""
-        line = generation_line(generation, self._budget)
-        _write(self._stream, f"{line}, {self._clock.left()} left{failed}")
+        _write(self._stream, f"{generation_line(generation, self._budget)}, {self._left()} left{failed}")
 
-    def finished(self, run: Run) -> None:
-        """Nothing: the result follows."""
+    def _left(self) -> str:
+        """The time left, from the pace of this session."""
+        if self._done == self._known:
+            return "unknown time"
+        pace = (time.monotonic() - self._began) / (self._done - self._known)
+        minutes, rest = divmod(round(pace * (self._budget - self._done)), 60)
+        return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-class SearchPanel:
+class SearchPanel(Silent):
     """A bar and the state of the search, redrawn in place."""
 
     def __init__(self) -> None:
@@ -135,10 +138,6 @@ class SearchPanel:
         """Show the new hypervolume and best values."""
         self._generation = generation
         self._tally.learn(generation.best)
-        self._draw()
-
-    def finished(self, run: Run) -> None:
-        """Leave the last state on the screen."""
         self._draw()
 
     def close(self) -> None:
@@ -187,28 +186,6 @@ class _Tally:
                 better = min if objective.sense == Sense.MINIMISE else max
                 value = values[objective.name]
                 self.best[objective.name] = better(value, self.best.get(objective.name, value))
-
-
-class _Clock:
-    """Time left, from the pace of this session."""
-
-    def __init__(self) -> None:
-        self._began = time.monotonic()
-        self._first = self._done = self._budget = 0
-
-    def start(self, done: int, budget: int) -> None:
-        self._began, self._first, self._done, self._budget = time.monotonic(), done, done, budget
-
-    def tick(self, done: int) -> None:
-        self._done = done
-
-    def left(self) -> str:
-        made = self._done - self._first
-        if made == 0:
-            return "unknown time"
-        seconds = (time.monotonic() - self._began) / made * (self._budget - self._done)
-        minutes, rest = divmod(round(seconds), 60)
-        return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
 class ShownProgress(PrecomputeProgress):

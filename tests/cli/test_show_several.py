@@ -53,7 +53,7 @@ def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.
         assert expected in rows
 
 
-def test_card_names_the_case_in_which_a_joint_or_contact_bears_most(
+def test_card_names_the_case_of_largest_torque_and_contact_force(
     run: Run, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show(run.directory, 1)

@@ -120,7 +120,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         ("posture/precompute/pieces.py", True),
         ("human/data/strength.toml", True),
         ("identity.py", True),
-        ("cli/commands.py", False),
+        ("cli/main.py", False),
         ("report/page/content.py", False),
         ("search/nsga2.py", False),
     ],

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
@@ -12,13 +11,13 @@ from rich.table import Table
 from rich.text import Text
 
 from evodesign.cli.output import figure, heading
-from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
+from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
-from evodesign.cli.tables.worst_cases import JOINTS_SHOWN, worst_forces, worst_torques
+from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
 from evodesign.errors import on_one_line
-from evodesign.records import Assessment, CaseDetail, Parameter, materials_of
+from evodesign.records import Assessment, Parameter, materials_of
 from evodesign.report.opened_design import OpenedDesign
-from evodesign.report.ranked_joints import ranked_joints
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
@@ -44,13 +43,13 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
         sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
         sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
     else:
-        sections[f"the load at each height ({reach})"] = heights_table(assessment, "")
+        sections[f"the load at each height ({reach})"] = cases_table(assessment, "")
     if opened.cases and several:
         sections["largest joint torques [N m]"] = worst_torques(opened.cases)
         sections["contact forces [N]"] = worst_forces(opened.cases)
     elif opened.cases:
-        sections["largest joint torques [N m]"] = _torques(opened.cases)
-        sections["contact forces [N]"] = _contacts(opened.cases)
+        sections["largest joint torques [N m]"] = torques_by_height(opened.cases)
+        sections["contact forces [N]"] = forces_by_height(opened.cases)
     if asked:
         cases = [*zip((detail.case for detail in opened.cases), asked, strict=True)]
         sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)
@@ -78,9 +77,7 @@ def _title(opened: OpenedDesign) -> Text:
 
 
 def _objectives(opened: OpenedDesign) -> Table:
-    table = _table("objective")
-    table.add_column("value", justify="right")
-    table.add_column("best of the run", justify="right")
+    table = titled("", [*names("objective"), *numbers("value", "best of the run")])
     assessment = opened.evaluation.assessment
     for objective in opened.run.header.objectives:
         best = max if objective.sense == "maximise" else min
@@ -95,12 +92,10 @@ def _objectives(opened: OpenedDesign) -> Table:
 
 
 def _parameters(opened: OpenedDesign) -> Table:
-    table = _table("parameter")
-    for column in ("value", "unit", "lower", "within its bounds", "upper"):
-        table.add_column(column, justify="right" if column in ("value", "lower") else "left")
     made_of = materials_of(opened.run.header.parameters, opened.evaluation.assessment.design)
-    if made_of:
-        table.add_column("material", overflow="fold")
+    within = names("within its bounds", "upper", *(["material"] if made_of else []))
+    columns = [*names("parameter"), *numbers("value"), *names("unit"), *numbers("lower"), *within]
+    table = titled("", columns)
     for parameter in opened.run.header.parameters:
         value = opened.evaluation.assessment.design[parameter.name]
         unit = "" if parameter.unit == "1" else parameter.unit
@@ -122,50 +117,3 @@ def _bar(parameter: Parameter, value: float) -> str:
     share = (value - parameter.lower) / (parameter.upper - parameter.lower)
     place = round(min(max(share, 0.0), 1.0) * (BAR - 1))
     return "─" * place + "●" + "─" * (BAR - 1 - place)
-
-
-def _torques(cases: Sequence[CaseDetail]) -> Table:
-    table = _height_table(("agent", "joint"), cases)
-    for agent in cases[0].agents:
-        by_height = [detail.agents[agent].torques_n_m for detail in cases]
-        shown = ranked_joints(by_height)[:JOINTS_SHOWN]
-        for joint in shown:
-            row = [figure(torques.get(joint)) for torques in by_height]
-            table.add_row(agent, escape(on_one_line(joint)), *row, end_section=joint == shown[-1])
-    return table
-
-
-def _contacts(cases: Sequence[CaseDetail]) -> Table:
-    table = _height_table(("agent", "contact"), cases)
-    for agent in cases[0].agents:
-        rows = list(_forces(cases, agent))
-        for position, (contact, forces) in enumerate(rows):
-            last = position == len(rows) - 1
-            table.add_row(agent, escape(contact), *map(figure, forces), end_section=last)
-    return table
-
-
-def _forces(cases: Sequence[CaseDetail], agent: str) -> Iterator[tuple[str, list[float]]]:
-    """Size of the force on each hand and foot, by height."""
-    postures = [detail.agents[agent] for detail in cases]
-    for part, wrenches in (
-        ("hand", [posture.hand_wrenches for posture in postures]),
-        ("foot", [posture.foot_wrenches for posture in postures]),
-    ):
-        for side in wrenches[0]:
-            yield f"{side} {part}", [math.hypot(*wrench[side][:3]) for wrench in wrenches]
-
-
-def _height_table(columns: Sequence[str], cases: Sequence[CaseDetail]) -> Table:
-    table = _table(*columns)
-    for detail in cases:
-        table.add_column(str(detail.case.task), justify="right")
-    return table
-
-
-def _table(*columns: str) -> Table:
-    """A table whose first columns hold names."""
-    table = Table()
-    for column in columns:
-        table.add_column(column, overflow="fold")
-    return table

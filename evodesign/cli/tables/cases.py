@@ -8,61 +8,42 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import figure, shown
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome
 
-__all__ = ["cases_table", "heights_table", "summary_table"]
+__all__ = ["cases_table", "summary_table"]
 
-
-def heights_table(assessment: Assessment, title: str) -> Table:
-    """A design's postures in short, height by height, under a title unless it is empty."""
-    table = Table(title=title or None, title_justify="left")
-    for column in ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual"):
-        table.add_column(escape(column), justify="right")
-    table.add_column("status", overflow="fold")
-    for outcome in assessment.cases:
-        table.add_row(
-            figure(outcome.case.task.height_m),
-            figure(outcome.robot_torque_norm),
-            figure(outcome.human_torque_norm),
-            str(outcome.iterations),
-            _residual(outcome),
-            _status(outcome),
-        )
-        for name, norms in outcome.disturbed.items():
-            table.add_row(
-                "",
-                *(figure(norms[agent]) for agent in (ROBOT, HUMAN)),
-                "",
-                "",
-                shown(f"under '{name}'"),
-            )
-    return table
+ALONE = ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual")
+SEVERAL = ("height", "robot |tau|", "human |tau|", "residual")
 
 
 def cases_table(assessment: Assessment, title: str) -> Table:
-    """A design's postures in short, case by case: columns for people and loads where there are several."""
+    """A design's postures in short, height by height; of several people or loads, case by case.
+
+    Args:
+        assessment: of the design.
+        title: over the table; empty for none.
+    """
     outcomes = assessment.cases
-    names = _name_columns(outcomes)
-    table = Table(title=title or None, title_justify="left")
-    for name in names:
-        table.add_column(name, overflow="fold")
-    for column in ("height", "robot |tau|", "human |tau|", "residual"):
-        table.add_column(column, justify="right")
-    table.add_column("status", overflow="fold")
-    for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=True):
+    labels = _name_columns(outcomes)
+    table = titled(title, [*names(*labels), *numbers(*(SEVERAL if labels else ALONE)), *names("status")])
+    for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
+        iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
-            *(shown(name_of(outcome)) for name_of in names.values()),
-            _height(outcome),
+            *(shown(name_of(outcome)) for name_of in labels.values()),
+            _height(outcome) if labels else figure(outcome.case.task.height_m),
             figure(outcome.robot_torque_norm),
             figure(outcome.human_torque_norm),
+            *iterations,
             _residual(outcome),
             _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
-            bore = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
-            table.add_row(*("" for _ in names), "", *bore, "", shown(f"under '{name}'"))
+            own = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
+            blank = ["" for _ in iterations]
+            table.add_row(*("" for _ in labels), "", *own, *blank, "", shown(f"under '{name}'"))
         if following is not None and outcome.case.pair != following.case.pair:
             table.add_section()
     return table
@@ -82,11 +63,8 @@ def summary_table(assessment: Assessment, title: str) -> Table:
 
     Torques under disturbances count as the objectives count them, each beside the undisturbed one.
     """
-    table = Table(title=title or None, title_justify="left")
-    table.add_column("cases", overflow="fold")
-    table.add_column("solved", justify="right")
-    for column in ("robot mean", "worst", "human mean", "worst"):
-        table.add_column(column, justify="right")
+    measured = numbers("solved", "robot mean", "worst", "human mean", "worst")
+    table = titled(title, [*names("cases"), *measured])
     outcomes = assessment.cases
     _add_summary(table, "all", outcomes, last=True)
     groups = [*_name_columns(outcomes).values(), _height]
@@ -100,20 +78,20 @@ def summary_table(assessment: Assessment, title: str) -> Table:
 
 def _add_summary(table: Table, name: str, outcomes: Sequence[CaseOutcome], *, last: bool) -> None:
     solved = [outcome for outcome in outcomes if outcome.robot_torque_norm is not None]
-    numbers = [
+    measured = [
         number
         for agent in (ROBOT, HUMAN)
         for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, agent)])
     ]
     share = f"{len(solved)} of {len(outcomes)}"
-    table.add_row(shown(name), share, *map(figure, numbers), end_section=last)
+    table.add_row(shown(name), share, *map(figure, measured), end_section=last)
 
 
 def _norms(outcome: CaseOutcome, agent: str) -> Iterator[float]:
-    """An agent's torque norms in a case, quiet and disturbed."""
-    quiet = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
-    if quiet is not None:
-        yield quiet
+    """An agent's torque norms in a case, undisturbed and disturbed."""
+    undisturbed = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
+    if undisturbed is not None:
+        yield undisturbed
     for norms in outcome.disturbed.values():
         yield norms[agent]
 

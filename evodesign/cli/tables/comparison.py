@@ -11,6 +11,7 @@ from evodesign.analysis.best_designs import best_designs
 from evodesign.analysis.comparison import Comparison
 from evodesign.analysis.comparison_json import hypervolume_summary
 from evodesign.cli.output import figure, heading, shown
+from evodesign.cli.tables.table import names, numbers, titled
 
 __all__ = ["comparison_tables", "lines_after", "lines_before"]
 
@@ -49,10 +50,8 @@ def lines_after(comparison: Comparison) -> Iterator[str]:
 
 
 def _searches(comparison: Comparison) -> Table:
-    table = Table(title="Searches", title_justify="left")
-    table.add_column("search", overflow="fold")
-    for name in ("runs", "hypervolume, median", "least", "greatest", "median share of all"):
-        table.add_column(name, justify="right", overflow="fold")
+    measured = numbers("runs", "hypervolume, median", "least", "greatest", "median share of all")
+    table = titled("Searches", [*names("search"), *measured])
     for name, members in comparison.searches.items():
         summary = hypervolume_summary(members) or {}
         shares = [each.share for each in members if each.share is not None]
@@ -66,13 +65,8 @@ def _searches(comparison: Comparison) -> Table:
 
 
 def _runs(comparison: Comparison) -> Table:
-    table = Table(title="Runs", title_justify="left")
-    table.add_column("run", overflow="fold")
-    table.add_column("search", overflow="fold")
-    for name in ("seed", "front", "hypervolume"):
-        table.add_column(name, justify="right", overflow="fold")
-    for objective in comparison.objectives:
-        table.add_column(shown(f"best {heading(objective)}"), justify="right", overflow="fold")
+    best = [f"best {heading(objective)}" for objective in comparison.objectives]
+    table = titled("Runs", [*names("run", "search"), *numbers("seed", "front", "hypervolume", *best)])
     for each in comparison.runs:
         table.add_row(
             shown(each.run.directory.name),
@@ -86,12 +80,8 @@ def _runs(comparison: Comparison) -> Table:
 
 
 def _tests(comparison: Comparison) -> Table:
-    table = Table(title="Rank tests of the hypervolumes", title_justify="left")
-    for name in ("between", "test"):
-        table.add_column(name, overflow="fold")
-    for name in ("p", "first better"):
-        table.add_column(name, justify="right", overflow="fold")
-    table.add_column("finding at 5 %", overflow="fold")
+    columns = [*names("between", "test"), *numbers("p", "first better"), *names("finding at 5 %")]
+    table = titled("Rank tests of the hypervolumes", columns)
     for test in comparison.tests:
         if test.p is None:
             continue
@@ -106,12 +96,8 @@ def _tests(comparison: Comparison) -> Table:
 
 
 def _best(comparison: Comparison) -> Table:
-    table = Table(title="Best designs of all runs", title_justify="left")
-    for name in ("", "run"):
-        table.add_column(name, overflow="fold")
-    table.add_column("design", justify="right", overflow="fold")
-    for objective in comparison.objectives:
-        table.add_column(shown(heading(objective)), justify="right", overflow="fold")
+    columns = [*names("", "run"), *numbers("design", *map(heading, comparison.objectives))]
+    table = titled("Best designs of all runs", columns)
     for each in best_designs(comparison):
         values = each.evaluation.assessment.objectives
         table.add_row(

@@ -8,8 +8,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import figure, heading
-from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
+from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import people_table
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics
@@ -43,16 +44,14 @@ def _assessment_tables(
     problem: Problem, name: str, result: DesignResult, assessment: Assessment
 ) -> tuple[Table, ...]:
     """Its objectives, its postures case by case, and a summary where there are many cases."""
-    summary = Table(title=escape(f"{problem.name}: {name}"), title_justify="left")
-    summary.add_column("objective")
-    summary.add_column("value", justify="right")
+    summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
         value = assessment.objectives.get(objective.name)
         summary.add_row(escape(heading(objective)), figure(value))
     summary.add_row(escape("violation [m]"), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
     if not any(outcome.case.label for outcome in assessment.cases):
-        return summary, heights_table(assessment, "the load at each height")
+        return summary, cases_table(assessment, "the load at each height")
     return (
         summary,
         summary_table(assessment, "torque norms |tau| over the cases [N m]"),
@@ -73,9 +72,8 @@ def _people_table(result: DesignResult) -> Table:
 def _sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
     """The parameters that move each objective most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
-    table = Table(title="what 1 % more of a parameter's range changes", title_justify="left")
-    table.add_column("objective")
-    table.add_column("strongest parameters", overflow="fold")
+    columns = names("objective", "strongest parameters")
+    table = titled("what 1 % more of a parameter's range changes", columns)
     for objective in problem.objectives:
         found = sensitivities.get(objective.name)
         if found is None:

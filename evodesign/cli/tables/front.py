@@ -8,12 +8,12 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from rich.markup import escape
 from rich.table import Table
 
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.analysis.failures import causes, failures
-from evodesign.cli.output import figure, heading, shown
+from evodesign.cli.output import visible
+from evodesign.cli.tables.table import designs_table
 from evodesign.records import Evaluation, materials_of
 from evodesign.runlog.run import Run
 
@@ -80,16 +80,8 @@ def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
 
 def front_table(run: Run, choice: Choice, designs: Sequence[Evaluation]) -> Table:
     """Designs with their objectives, in the given order."""
-    objectives = run.header.objectives
-    title = f"{TITLES[choice.order]} {shown(run.header.problem_name)}"
-    table = Table(title=title, title_justify="left")
-    table.add_column("design", justify="right")
-    for objective in objectives:
-        table.add_column(escape(heading(objective)), justify="right")
-    for evaluation in designs:
-        values = evaluation.assessment.objectives
-        table.add_row(str(evaluation.number), *(figure(values[objective.name]) for objective in objectives))
-    return table
+    title = f"{TITLES[choice.order]} {visible(run.header.problem_name)}"
+    return designs_table(title, run.header.objectives, designs)
 
 
 def front_lines(run: Run, choice: Choice, chosen: Chosen, rows: int) -> list[str]:

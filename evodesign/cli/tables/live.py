@@ -8,13 +8,14 @@ from pathlib import Path
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.progress_bar import ProgressBar
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from evodesign.analysis.hypervolume import best
 from evodesign.analysis.knees import knees
 from evodesign.analysis.live_state import LiveState
 from evodesign.cli.output import figure, heading, shown, visible
+from evodesign.cli.tables.table import designs_table, names, numbers
 from evodesign.records import Generation
 from evodesign.report.live.state import MOST_KNEES, word
 
@@ -112,10 +113,8 @@ def _numbers(live_state: LiveState) -> Table:
     generations = live_state.generations
     volumes = [each.hypervolume for each in generations if each.hypervolume is not None]
     share = f"{live_state.feasible / live_state.done:.0%}" if live_state.done else "-"
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
-    table.add_column(overflow="fold")
-    table.add_column(justify="right")
-    table.add_column(style="cyan", no_wrap=True)
+    columns = (*names(""), *numbers(""), Column(style="cyan", no_wrap=True))
+    table = Table(*columns, box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_row("generations", str(len(generations)), "")
     table.add_row("feasible", share, sparkline([each.feasible_share for each in generations], (0.0, 1.0)))
     table.add_row("hypervolume", figure(volumes[-1] if volumes else None), sparkline(volumes))
@@ -130,15 +129,6 @@ def _numbers(live_state: LiveState) -> Table:
 
 
 def _knees(live_state: LiveState) -> Table:
-    objectives = live_state.header.objectives
-    found = knees(objectives, live_state.front)
-    table = Table(
-        title=f"Knees of the front, {len(found[:MOST_KNEES])} of {len(found)}", title_justify="left"
-    )
-    table.add_column("design", justify="right")
-    for objective in objectives:
-        table.add_column(shown(heading(objective)), justify="right")
-    for each in found[:MOST_KNEES]:
-        values = each.assessment.objectives
-        table.add_row(str(each.number), *(figure(values[objective.name]) for objective in objectives))
-    return table
+    found = knees(live_state.header.objectives, live_state.front)
+    title = f"Knees of the front, {len(found[:MOST_KNEES])} of {len(found)}"
+    return designs_table(title, live_state.header.objectives, found[:MOST_KNEES])

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import shown
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.records import Case
 
 if TYPE_CHECKING:
@@ -63,11 +63,9 @@ def _index(asked: Asked) -> float:
 
 def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) -> Table:
     """A row for each case."""
-    table = Table(title=title or None, title_justify="left", caption=CAPTION, caption_justify="left")
-    for column in ("case", "hardest joint"):
-        table.add_column(column, overflow="fold")
-    for column in ("effort", "ahead [m]", "up [m]", "holds [kg]", "limit [kg]", "index"):
-        table.add_column(escape(column), justify="right")
+    measured = numbers("effort", "ahead [m]", "up [m]", "holds [kg]", "limit [kg]", "index")
+    table = titled(title, [*names("case", "hardest joint"), *measured])
+    table.caption, table.caption_justify = CAPTION, "left"
     for case, asked in cases:
         strain, task = asked.strain, asked.task
         table.add_row(

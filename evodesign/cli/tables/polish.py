@@ -9,6 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import figure, heading
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.problem.build import Problem
 from evodesign.problem.polish import Aim, Polished
 from evodesign.runlog.run import Run
@@ -18,16 +19,13 @@ __all__ = ["polish_json", "polish_tables"]
 
 def polish_tables(problem: Problem, number: int, done: Polished) -> tuple[Table, Table]:
     """Objectives and changed parameters before and after."""
-    objectives = Table(title=escape(f"{problem.name}: design {number}"), title_justify="left")
-    for column in ("objective", "before", "after", "change"):
-        objectives.add_column(column, justify="left" if column == "objective" else "right")
+    columns = [*names("objective"), *numbers("before", "after", "change")]
+    objectives = titled(f"{problem.name}: design {number}", columns)
     for objective in problem.objectives:
         before, after = (a.objectives[objective.name] for a in (done.before, done.after))
         change = f"{(after - before) / abs(before):+.2%}" if before else "-"
         objectives.add_row(escape(heading(objective)), figure(before), figure(after), change)
-    parameters = Table(title="parameters that changed", title_justify="left")
-    for column in ("parameter", "before", "after"):
-        parameters.add_column(column, justify="left" if column == "parameter" else "right")
+    parameters = titled("parameters that changed", [*names("parameter"), *numbers("before", "after")])
     for name, before in done.before.design.items():
         after = done.after.design[name]
         if after != before:

@@ -9,6 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import figure, shown, visible
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.problem.build import Problem
 from evodesign.problem.model_json import model_json
@@ -36,11 +37,8 @@ def model_tables(problem: Problem) -> tuple[Table, ...]:
 def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
     """Robot and people; of several people, also who each is and how tall."""
     several = any("who" in agent for agent in agents)
-    table = Table(title=escape(name), title_justify="left")
-    for column in ("agent", *(("person",) if several else ()), "model"):
-        table.add_column(escape(column), overflow="fold")
-    for column in ("links", "joints", "that move", "mass [kg]"):
-        table.add_column(escape(column), justify="right")
+    who = names("agent", *(("person",) if several else ()), "model")
+    table = titled(name, [*who, *numbers("links", "joints", "that move", "mass [kg]")])
     for agent in agents:
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
         table.add_row(
@@ -88,10 +86,8 @@ def _links_table(links: Iterable[dict[str, Any]]) -> Table:
     """Every link that has mass; the frames without are named below."""
     frames = [link["link"] for link in links if link["kind"] == "frame"]
     caption = f"{CAPTION}\nwithout mass: {', '.join(frames)}" if frames else CAPTION
-    table = Table(title="links of the robot", title_justify="left", caption=escape(caption))
-    table.caption_justify = "left"
-    for column in ("link", "shape", "grows along", "density", "mass [kg]"):
-        table.add_column(escape(column))
+    table = titled("links of the robot", names("link", "shape", "grows along", "density", "mass [kg]"))
+    table.caption, table.caption_justify = escape(caption), "left"
     for link in links:
         if link["kind"] != "frame":
             _add_link(table, link)
@@ -107,9 +103,7 @@ def _add_link(table: Table, link: dict[str, Any]) -> None:
 
 
 def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
-    table = Table(title="parameters", title_justify="left")
-    for column in ("parameter", "from", "to", "unit", "links"):
-        table.add_column(column)
+    table = titled("parameters", names("parameter", "from", "to", "unit", "links"))
     for parameter in parameters:
         bounds = (figure(parameter["lower"]), figure(parameter["upper"]), parameter["unit"])
         links = ", ".join(link["link"] for link in parameter["links"])
@@ -120,10 +114,8 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
 
 
 def _materials_table(materials: Iterable[dict[str, Any]]) -> Table:
-    table = Table(title="materials", title_justify="left")
-    table.add_column("material", overflow="fold")
-    table.add_column(escape("density [kg/m^3]"), justify="right")
-    table.add_column("source", overflow="fold")
+    columns = [*names("material"), *numbers("density [kg/m^3]"), *names("source")]
+    table = titled("materials", columns)
     for material in materials:
         name, source = escape(on_one_line(material["name"])), escape(on_one_line(material["source"]))
         table.add_row(name, figure(material["density_kg_per_m3"]), source)

@@ -8,8 +8,10 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
+from evodesign.analysis.failures import causes
 from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
-from evodesign.cli.output import counted, figure
+from evodesign.cli.output import figure
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.report.reproduction import Reproduction
 
 __all__ = ["claims_table", "reproduction_lines", "torque_table"]
@@ -18,11 +20,8 @@ __all__ = ["claims_table", "reproduction_lines", "torque_table"]
 def torque_table(done: Reproduction) -> Table:
     """Table II of the paper with ours beside it, row under row."""
     heights = list(PAPER_OPTIMISED)
-    table = Table(title="Table II: torque norm [N m] by height of the load", title_justify="left")
-    for column in ("model", "agent", "setting"):
-        table.add_column(column)
-    for height in heights:
-        table.add_column(f"{height:g} m", justify="right")
+    columns = [*names("model", "agent", "setting"), *numbers(*(f"{height:g} m" for height in heights))]
+    table = titled("Table II: torque norm [N m] by height of the load", columns)
     for model, rows in done.by_setting.items():
         for agent in ("human", "robot"):
             for number, (setting, torque_norms) in enumerate(rows.items()):
@@ -36,9 +35,7 @@ def torque_table(done: Reproduction) -> Table:
 
 def claims_table(claims: Iterable[Claim]) -> Table:
     """Every claim with its verdict."""
-    table = Table(title="Claims", title_justify="left")
-    for column in ("claim", "by", "paper", "here", "verdict"):
-        table.add_column(column, overflow="fold")
+    table = titled("Claims", names("claim", "by", "paper", "here", "verdict"))
     for claim in claims:
         shown = (claim.subject, claim.by, claim.paper, claim.found, _verdict(claim))
         table.add_row(*(escape(text) for text in shown))
@@ -50,12 +47,12 @@ def reproduction_lines(done: Reproduction, directory: Path, seconds: float) -> l
     published = done.published
     return [
         *(f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in done.claims),
-        f"published setting: starts {counted(published.statuses)}; largest difference of a torque from the "
+        f"published setting: starts {causes(published.statuses)}; largest difference of a torque from the "
         f"paper's formula {published.difference:.1e} N m",
         f"the original robot holds loads up to {figure(done.highest)} m",
         *(
             f"{one.robot.name}: least cost {figure(one.cost)}; {len(one.run.evaluations)} evaluations, "
-            f"{counted(one.statuses)}; the run lies in {one.run.directory}"
+            f"{causes(one.statuses)}; the run lies in {one.run.directory}"
             for one in done.found
         ),
         f"figures and robots lie in {directory}; {seconds / 60.0:.1f} min",

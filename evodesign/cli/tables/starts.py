@@ -9,6 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import figure
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -34,10 +35,8 @@ def _portfolios(problem: Problem, known: Precomputed) -> Iterator[tuple[str, Sta
 
 
 def _starts_table(problem: Problem, known: Precomputed) -> Table:
-    table = Table(title="seeds, and designs that they were not made from", title_justify="left")
-    table.add_column("problem")
-    for column in ("seeds", "designs tried", "led well", "worst miss"):
-        table.add_column(column, justify="right")
+    columns = [*names("problem"), *numbers("seeds", "designs tried", "led well", "worst miss")]
+    table = titled("seeds, and designs that they were not made from", columns)
     for name, found, unit in _portfolios(problem, known):
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
@@ -47,12 +46,9 @@ def _starts_table(problem: Problem, known: Precomputed) -> Table:
 
 
 def _people_table(problem: Problem, known: Precomputed) -> Table:
-    table = Table(title="the person's part V(X), X the push between the agents", title_justify="left")
     several = len(problem.scenes) > 1
-    if several:
-        table.add_column("person and load")
-    for column in ("height", "known", "largest error"):
-        table.add_column(column, justify="right")
+    columns = [*names(*["person and load"][:several]), *numbers("height", "known", "largest error")]
+    table = titled("the person's part V(X), X the internal force", columns)
     for case, error in _errors(problem, known):
         shown = "-" if error is None else f"{figure(error)} N^2 m^2"
         row = (str(case.task), "no: solved jointly" if error is None else "yes", shown)

@@ -1,78 +1,89 @@
-"""What joints and contacts bear in the cases of a design, where there are too many for a column each."""
+"""What joints and contacts bear: at each height, or of many cases the worst."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from rich.table import Table
 
 from evodesign.cli.output import figure, shown
+from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.ranked_joints import ranked_joints
 
-__all__ = ["JOINTS_SHOWN", "worst_forces", "worst_torques"]
+__all__ = ["forces_by_height", "torques_by_height", "worst_forces", "worst_torques"]
 
 JOINTS_SHOWN = 6
 """Rows of joints per agent; the others bear less."""
 
-CONTACTS = ("hand", "foot")
+ValuesOf = Callable[[Sequence[AgentDetail]], dict[str, Sequence[float | None]]]
+"""From an agent's postures to the values of each row of a table."""
 
 
 def worst_torques(cases: Sequence[CaseDetail]) -> Table:
-    """The joints that bear most: the mean size of their torques, the largest torque, and in which case."""
-    table = _table("agent", "joint", ("mean size", "worst"))
-    for agent in cases[0].agents:
-        torques = [detail.agents[agent].torques_n_m for detail in cases]
-        joints = ranked_joints(torques)[:JOINTS_SHOWN]
-        for joint in joints:
-            _add(table, agent, joint, cases, [by[joint] for by in torques], last=joint == joints[-1])
-    return table
+    """The joints of largest torque: mean size of their torques, the largest one, and in which case."""
+    return _worst("joint", ("mean size", "worst"), cases, largest_torques)
 
 
 def worst_forces(cases: Sequence[CaseDetail]) -> Table:
     """Sizes of the forces on hands and feet: the mean, the largest, and in which case."""
-    table = _table("agent", "contact", ("mean", "largest"))
+    return _worst("contact", ("mean", "largest"), cases, contact_forces)
+
+
+def torques_by_height(cases: Sequence[CaseDetail]) -> Table:
+    """The joints that have the largest torques, with their torques [N m] at each height."""
+    return _by_height("joint", cases, largest_torques)
+
+
+def forces_by_height(cases: Sequence[CaseDetail]) -> Table:
+    """Sizes of the forces on hands and feet [N] at each height."""
+    return _by_height("contact", cases, contact_forces)
+
+
+def largest_torques(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float | None]]:
+    """Torques of the joints of largest torque, posture by posture; None where a person lacks the joint."""
+    torques = [posture.torques_n_m for posture in postures]
+    return {joint: [by.get(joint) for by in torques] for joint in ranked_joints(torques)[:JOINTS_SHOWN]}
+
+
+def contact_forces(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float | None]]:
+    """Size of the force on each hand and foot, posture by posture."""
+    parts = {
+        "hand": [posture.hand_wrenches for posture in postures],
+        "foot": [posture.foot_wrenches for posture in postures],
+    }
+    return {
+        f"{side} {part}": [math.hypot(*wrench[side][:3]) for wrench in wrenches]
+        for part, wrenches in parts.items()
+        for side in wrenches[0]
+    }
+
+
+def _rows(
+    cases: Sequence[CaseDetail], values_of: ValuesOf
+) -> Iterator[tuple[str, str, Sequence[float | None], bool]]:
+    """Agent, name and values of each row, and whether it is the agent's last one."""
     for agent in cases[0].agents:
-        postures = [detail.agents[agent] for detail in cases]
-        contacts = [(part, side) for part in CONTACTS for side in _wrenches(part)(postures[0])]
-        for part, side in contacts:
-            forces = [math.hypot(*_wrenches(part)(posture)[side][:3]) for posture in postures]
-            _add(table, agent, f"{side} {part}", cases, forces, last=(part, side) == contacts[-1])
+        found = values_of([detail.agents[agent] for detail in cases])
+        for name, values in found.items():
+            yield agent, name, values, name == [*found][-1]
+
+
+def _by_height(named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> Table:
+    columns = [*names("agent", named), *numbers(*(str(detail.case.task) for detail in cases))]
+    table = titled("", columns)
+    for agent, name, values, last in _rows(cases, values_of):
+        table.add_row(agent, shown(name), *map(figure, values), end_section=last)
     return table
 
 
-def _add(
-    table: Table,
-    agent: str,
-    name: str,
-    cases: Sequence[CaseDetail],
-    values: Sequence[float],
-    *,
-    last: bool,
-) -> None:
-    worst = max(range(len(values)), key=lambda case: abs(values[case]))
-    table.add_row(
-        agent,
-        shown(name),
-        figure(sum(map(abs, values)) / len(values)),
-        figure(values[worst]),
-        shown(cases[worst].case.name),
-        end_section=last,
-    )
-
-
-def _wrenches(part: str) -> Callable[[AgentDetail], dict[str, tuple[float, ...]]]:
-    if part == "hand":
-        return lambda posture: posture.hand_wrenches
-    return lambda posture: posture.foot_wrenches
-
-
-def _table(agent: str, named: str, numbers: tuple[str, str]) -> Table:
-    table = Table()
-    for column in (agent, named):
-        table.add_column(column, overflow="fold")
-    for column in numbers:
-        table.add_column(column, justify="right")
-    table.add_column("in the case", overflow="fold")
+def _worst(named: str, measured: tuple[str, str], cases: Sequence[CaseDetail], values_of: ValuesOf) -> Table:
+    table = titled("", [*names("agent", named), *numbers(*measured), *names("in the case")])
+    for agent, name, values, last in _rows(cases, values_of):
+        known = [(value, detail) for value, detail in zip(values, cases, strict=True) if value is not None]
+        worst, where = max(known, key=lambda found: abs(found[0]))
+        mean = sum(abs(value) for value, _ in known) / len(known)
+        case = shown(where.case.name)
+        table.add_row(agent, shown(name), figure(mean), figure(worst), case, end_section=last)
     return table

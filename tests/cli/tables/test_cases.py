@@ -9,7 +9,7 @@ from msgspec import structs
 from rich.console import Console
 from rich.table import Table
 
-from evodesign.cli.tables.cases import cases_table, heights_table, summary_table
+from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.records import Assessment, Case, CaseOutcome, Hold, Status
 
 
@@ -42,7 +42,7 @@ def test_who_holds_what_is_named_where_there_are_several() -> None:
 
 
 def test_one_person_with_one_load_needs_no_name() -> None:
-    assert "person" not in printed(heights_table, outcome())
+    assert "person" not in printed(cases_table, outcome())
 
 
 def test_torques_under_disturbances_stand_below_their_case_and_count_in_the_summary() -> None:
