@@ -47,7 +47,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "evaluate": evaluate,
     "polish": polish,
     "check": check,
-    "seeds": starts,
+    "starts": starts,
     "verify": verify,
     "recover": recover,
     "merge": merge,

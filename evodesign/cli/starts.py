@@ -1,4 +1,4 @@
-"""`seeds`: what a problem is solved from, and how well other designs are solved from it."""
+"""`starts`: the start portfolios of a problem, and how well they serve other designs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["starts"]
 
 
 def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
-    """What a problem is solved from: its seeds, and how well they lead other designs."""
+    """The starts from which a problem is solved, and how well they serve other designs."""
     from evodesign.cli.output import console, print_json
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.starts import starts_json, starts_tables

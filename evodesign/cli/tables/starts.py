@@ -35,8 +35,8 @@ def _portfolios(problem: Problem, known: Precomputed) -> Iterator[tuple[str, Sta
 
 
 def _starts_table(problem: Problem, known: Precomputed) -> Table:
-    columns = [*names("problem"), *numbers("seeds", "designs tried", "led well", "worst miss")]
-    table = titled("seeds, and designs that they were not made from", columns)
+    columns = [*names("problem"), *numbers("starts", "designs tried", "within 1 %", "worst miss")]
+    table = titled("start portfolios, and designs that they were not made from", columns)
     for name, found, unit in _portfolios(problem, known):
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
@@ -66,12 +66,12 @@ def starts_json(problem: Problem, known: Precomputed) -> dict[str, Any]:
     """The same as a JSON object; its shape is a promise."""
     return {
         "problem": problem.name,
-        "seeds": [
+        "portfolios": [
             {
                 "for": name,
-                "seeds": len(found.starts),
+                "starts": len(found.starts),
                 "designs_tried": found.coverage.designs,
-                "designs_led_well": found.coverage.good,
+                "designs_good": found.coverage.good,
                 "worst_miss": found.coverage.worst,
                 "unit": unit,
             }

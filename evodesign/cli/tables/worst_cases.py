@@ -1,4 +1,4 @@
-"""What joints and contacts bear: at each height, or of many cases the worst."""
+"""Joint torques and contact forces: at each height, or of many cases the worst."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evodesign.report.ranked_joints import ranked_joints
 __all__ = ["forces_by_height", "torques_by_height", "worst_forces", "worst_torques"]
 
 JOINTS_SHOWN = 6
-"""Rows of joints per agent; the others bear less."""
+"""Rows of joints per agent; the others have smaller torques."""
 
 ValuesOf = Callable[[Sequence[AgentDetail]], dict[str, Sequence[float | None]]]
 """From an agent's postures to the values of each row of a table."""
