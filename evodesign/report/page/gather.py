@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 
+from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.front import front
-from evodesign.analysis.infeasible import causes_of_infeasibility
 from evodesign.errors import EvodesignError
 from evodesign.problem.build import Problem, build_problem
 from evodesign.records import Case, Detail, Evaluation
