@@ -24,8 +24,7 @@ from typing import NoReturn
 import msgspec
 
 from evodesign.analysis.front import RunningFront
-from evodesign.analysis.run_state import RunState
-from evodesign.analysis.stagnation import stagnant
+from evodesign.analysis.run_state import RunState, stagnant
 from evodesign.asynchronous import evolve_asynchronously
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Pool
