@@ -14,9 +14,8 @@ from itertools import combinations
 import msgspec
 
 from evodesign.analysis.attainment import AttainmentSurface, attainment_surfaces
-from evodesign.analysis.curves import Curve, curve
 from evodesign.analysis.front import front
-from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.analysis.hypervolume import Curve, best, curve, hypervolume, reference_point
 from evodesign.analysis.rank_tests import RankTest, rank_tests
 from evodesign.records import Evaluation, Objective, RunHeader
 from evodesign.runlog.run import Run
