@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import msgspec
 
 from evodesign.analysis.comparison import Compared, Comparison
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front, to_minimise
-from evodesign.analysis.knees import knees
 from evodesign.records import Evaluation, Objective
 
 __all__ = ["MOST_KNEES", "BestDesign", "best_designs"]

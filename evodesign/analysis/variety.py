@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from evodesign.analysis.scaling import Matrix
+from evodesign.analysis.decision_making import Matrix
 from evodesign.records import Evaluation
 
 __all__ = ["most_different", "spread_out"]

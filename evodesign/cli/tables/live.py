@@ -11,8 +11,8 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
-from evodesign.analysis.knees import knees
 from evodesign.analysis.live_state import LiveState
 from evodesign.cli.output import figure, heading, shown, visible
 from evodesign.records import Generation

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
-from evodesign.analysis.knees import knees
 from evodesign.analysis.live_state import LiveState
 from evodesign.records import Evaluation, RunHeader
 

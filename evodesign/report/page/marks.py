@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import to_minimise
-from evodesign.analysis.knees import knees
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem
 from evodesign.records import Evaluation, Objective, Sense
