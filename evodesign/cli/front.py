@@ -76,9 +76,8 @@ def _choice(
 ) -> Choice:
     """What the options choose."""
     from evodesign.analysis.choice import Choice, Order
-    from evodesign.analysis.conditions import conditions
+    from evodesign.analysis.conditions import conditions, quantities
     from evodesign.analysis.decision_making import aspiration_of
-    from evodesign.analysis.quantities import quantities
 
     orders = {"--knee": Order.KNEE, "--different": Order.DIFFERENT, "--near": Order.NEAR}
     order = orders[asked[0]] if asked else Order.FIRST_OBJECTIVE
