@@ -13,10 +13,9 @@ from rich.text import Text
 
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
-from evodesign.analysis.live_state import LiveState
 from evodesign.cli.output import figure, heading, shown, visible
 from evodesign.records import Generation
-from evodesign.report.live.state import MOST_KNEES, word
+from evodesign.report.live.state import MOST_KNEES, LiveState, word
 
 __all__ = ["generation_line", "screen", "sparkline"]
 

@@ -7,9 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from evodesign.analysis.live_state import LiveRun, LiveState
 from evodesign.errors import RunError
-from evodesign.report.live.state import state_of
+from evodesign.report.live.state import LiveRun, LiveState, state_of
 from evodesign.runlog.follow import Follower
 
 __all__ = ["FollowedRun"]
