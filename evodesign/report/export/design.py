@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from evodesign.records import CaseDetail, CaseOutcome, Evaluation, RunHeader, hold_names, materials_of
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneSet
 from evodesign.tree.model import Tree
 
 __all__ = ["ExportedDesign", "design_json"]

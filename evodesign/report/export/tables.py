@@ -13,8 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import CaseDetail
-from evodesign.report.scene_models import SceneModels
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneModels, SceneSet
 from evodesign.tree.model import JointKind, Tree
 
 __all__ = ["postures_csv", "wrenches_csv"]

@@ -16,8 +16,7 @@ from evodesign.records import CaseDetail
 from evodesign.report.ranked_joints import ranked_joints
 from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
 from evodesign.report.replay.times import several, time_scale
-from evodesign.report.scene_models import LOAD
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import LOAD, SceneSet
 
 __all__ = ["layout_text"]
 

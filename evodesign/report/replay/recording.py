@@ -14,7 +14,7 @@ from evodesign.records import CaseDetail
 from evodesign.report.replay.messages import TOPICS, messages
 from evodesign.report.replay.schemas import descriptor_set
 from evodesign.report.replay.times import timed
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneSet
 
 __all__ = ["write_replay"]
 
