@@ -18,7 +18,7 @@ from evodesign.cli.tables.worst_cases import JOINTS_SHOWN, worst_forces, worst_t
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, CaseDetail, Parameter, materials_of
 from evodesign.report.opened_design import OpenedDesign
-from evodesign.report.ranked_joints import ranked_joints
+from evodesign.report.subset import ranked_joints
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from evodesign.cli.output import figure, shown
 from evodesign.records import AgentDetail, CaseDetail
-from evodesign.report.ranked_joints import ranked_joints
+from evodesign.report.subset import ranked_joints
 
 __all__ = ["JOINTS_SHOWN", "worst_forces", "worst_torques"]
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 from evodesign.records import Evaluation, RunHeader
 from evodesign.report.page.content import Points
-from evodesign.report.subsample import subsample
+from evodesign.report.subset import subsample
 
 __all__ = ["MOST_POINTS", "chosen_points", "points"]
 
