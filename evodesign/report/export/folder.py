@@ -18,8 +18,7 @@ from evodesign.report.export.design import ExportedDesign, design_json
 from evodesign.report.export.readme import readme_text
 from evodesign.report.export.tables import postures_csv, wrenches_csv
 from evodesign.report.replay.layout import layout_text
-from evodesign.report.replay.recording import write_replay
-from evodesign.report.replay.times import time_scale
+from evodesign.report.replay.recording import time_scale, write_replay
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.urdf_write import urdf_text
 

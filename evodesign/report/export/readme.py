@@ -9,7 +9,7 @@ from evodesign.errors import on_one_line
 from evodesign.records import Objective, materials_of
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
-from evodesign.report.replay.times import SECONDS_PER_CASE, several, timed
+from evodesign.report.replay.recording import SECONDS_PER_CASE, several, timed
 
 __all__ = ["FILES", "readme_text"]
 
