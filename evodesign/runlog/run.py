@@ -9,8 +9,8 @@ from typing import TypeVar
 
 from evodesign.errors import RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
-from evodesign.runlog.difference import differences
 from evodesign.runlog.directory import run_segments
+from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
 
 __all__ = ["Run", "read_run"]

@@ -3,7 +3,7 @@ from __future__ import annotations
 import msgspec
 
 from evodesign.records import RunHeader
-from evodesign.runlog.difference import differences, version_differences
+from evodesign.runlog.header import differences, version_differences
 from tests.runlog.toys import toy_header
 
 HEADER = toy_header()
