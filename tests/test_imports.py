@@ -25,7 +25,6 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.report.front_figure",
         "evodesign.report.figures.joint_torques",
         "evodesign.report.figures.posture_figure",
-        "evodesign.report.figures.joint_torques",
         "evodesign.report.replay.layout",
         "evodesign.report.replay.recording",
         "evodesign.api.opened_run",

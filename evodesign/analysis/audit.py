@@ -13,7 +13,6 @@ from evodesign.runlog.run import Run
 __all__ = ["audit", "losses"]
 
 TOLERANCE = 1e-9
-
 """Relative difference of a hypervolume that rounding on another processor may cause."""
 
 

@@ -33,7 +33,6 @@ __all__ = [
 ]
 
 MOST_KNEES = 5
-
 """Knees of the common front that are named."""
 
 

@@ -29,11 +29,9 @@ from evodesign.records import Case, CaseOutcome, Evaluation, RunHeader, Task
 __all__ = ["Condition", "Quantity", "conditions", "meeting", "quantities", "quantity"]
 
 Quantity = Callable[[Evaluation], float | None]
-
 """A number of an evaluation; None where it does not exist."""
 
 Norm = Callable[[CaseOutcome], float | None]
-
 """The torque norm of one of the agents [N m]."""
 
 OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
@@ -44,7 +42,6 @@ OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
 }
 
 FORM = re.compile(r"\s*(?P<name>.+?)\s*(?P<sign><=|>=|<|>)\s*(?P<bound>\S+)\s*")
-
 """A condition; a name may hold anything but the signs."""
 
 

@@ -67,17 +67,14 @@ __all__ = [
 ]
 
 NEGLIGIBLE = 1e-4
-
 """Range, as a share of the largest value's size, below which an objective counts as equal."""
 
 Matrix = NDArray[np.floating[Any]]
 
 NEIGHBOURHOOD = 0.1
-
 """Largest difference in any objective, as a share of its range, of designs that are near each other."""
 
 AUGMENTATION = 1e-3
-
 """rho: small, so that it only decides between designs whose worst shortfall is nearly equal."""
 
 

@@ -24,11 +24,9 @@ from evodesign.records import Evaluation, Objective
 __all__ = ["PLACES", "Curve", "best", "curve", "hypervolume", "reference_point"]
 
 MARGIN = 0.1
-
 """Share of the range by which the reference is worse than the worst value, so that the ends count."""
 
 PLACES = 40
-
 """Numbers of evaluations at which a curve is drawn, at most."""
 
 

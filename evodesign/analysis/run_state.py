@@ -17,7 +17,6 @@ from evodesign.records import Evaluation, Front, Generation, Objective
 __all__ = ["LEAST_GROWTH", "RunState", "stagnant"]
 
 LEAST_GROWTH = 1e-3
-
 """Share of its value by which a hypervolume must grow to count as growing."""
 
 

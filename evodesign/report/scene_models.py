@@ -25,11 +25,9 @@ from evodesign.tree.model import Link, Tree
 __all__ = ["LOAD", "ContactWrench", "PlacedScene", "SceneModels", "SceneSet", "looks_of", "placed_scene"]
 
 LOAD = "load"
-
 """Name of the load beside those of the agents."""
 
 LEAST_FORCE = 1e-6
-
 """A foot with less normal force [N] has no centre of pressure."""
 
 

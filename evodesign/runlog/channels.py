@@ -36,13 +36,9 @@ __all__ = [
 ]
 
 RUN: Final = "/run"
-
 EVALUATION: Final = "/evaluation"
-
 GENERATION: Final = "/generation"
-
 FRONT: Final = "/front"
-
 DETAIL: Final = "/detail"
 
 RECORDS: Final[Mapping[str, type[msgspec.Struct]]] = {
@@ -52,25 +48,19 @@ RECORDS: Final[Mapping[str, type[msgspec.Struct]]] = {
     FRONT: Front,
     DETAIL: Detail,
 }
-
 """The record that each topic carries."""
 
 AGENTS: Final = ("robot", "human")
-
 """Names of the agents, as fields of the schema."""
 
 HEADER_COPY: Final = "run.json.zst"
-
 """Attachment that repeats the header, compressed: without a header a log cannot be interpreted."""
 
 MESSAGE_ENCODING: Final = "json"
-
 SCHEMA_ENCODING: Final = "jsonschema"
 
 Schema = dict[str, Any]
-
 Names = Mapping[str, tuple[str, ...]]
-
 """Keys known beforehand of the maps in a record, by the name of the field that holds the map."""
 
 SCALARS = ("boolean", "integer", "number", "string")

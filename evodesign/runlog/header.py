@@ -40,7 +40,6 @@ __all__ = [
 PACKAGES = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
 DECISIVE = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore")
-
 """Packages on whose versions the results of a search depend."""
 
 

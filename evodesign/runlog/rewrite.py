@@ -29,7 +29,6 @@ from evodesign.runlog.writer import RunWriter, add_header_copy, encoded, registe
 __all__ = ["begin_branch", "merge", "recover"]
 
 CHUNK_BYTES = 65536
-
 """Records are compressed together in chunks of this size: about 0.5 kB per evaluation instead of 1.0 kB."""
 
 UNFINISHED = "merged.part"

@@ -22,17 +22,13 @@ from evodesign.report.figures.paint import INK, clean, color_of, new_figure
 __all__ = ["joint_torques", "torque_boxes"]
 
 BOX, CLOUD = 0.36, 0.30
-
 """Width of a box, and distance of its dots."""
 
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
-
 TorquesAt = tuple[float, Mapping[str, float]]
-
 """A height [m] and torques [N m] by joint."""
 
 ROW = 0.21
-
 """Height of a joint's row [inches]."""
 
 

@@ -23,23 +23,18 @@ from evodesign.records import Evaluation, Generation, RunHeader, Status
 __all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "LiveRun", "LiveState", "state_of", "word"]
 
 SAMPLE = 1000
-
 """Most evaluations that are kept beside the front; then every second one is dropped, again and again."""
 
 PACE_OVER = 200
-
 """Evaluations over which the pace is measured."""
 
 MOST_KNEES = 8
-
 """Knees of the front that are shown."""
 
 MOST_POINTS = 2000
-
 """Designs of the front that are drawn; more are thinned out evenly, and the page says so."""
 
 SILENCE = 60.0
-
 """Seconds without a new evaluation after which a search is called silent."""
 
 

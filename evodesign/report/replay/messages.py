@@ -55,15 +55,12 @@ __all__ = [
 WORLD: Final = "world"
 
 METRES_PER_NEWTON: Final = {True: 0.001, False: 0.02}
-
 """Length of a force's arrow: of the ground's (True) and of the load's (False), which are far smaller."""
 
 ABOVE_LOAD: Final = (0.0, 0.0, 0.25)
-
 """Where a case's name stands, in the load's frame [m]."""
 
 METRES_PER_NEWTON_METRE: Final = 0.02
-
 """Length of a moment's arrow."""
 
 TOPICS: Final[Mapping[str, Any]] = {
@@ -75,7 +72,6 @@ TOPICS: Final[Mapping[str, Any]] = {
     "/joint_states/robot": JointStates,
     "/joint_states/human": JointStates,
 }
-
 """The class of each topic's messages."""
 
 Rgba = tuple[float, float, float, float]
@@ -91,11 +87,9 @@ COLORS: Final[Mapping[str, Rgba]] = {
 }
 
 SHAFT, HEAD = 0.015, 0.04
-
 """Diameters of an arrow [m]; its head is as long as it is wide, or a third of a short arrow."""
 
 LETTERS = 0.07
-
 """Height of letters [m]."""
 
 

@@ -34,17 +34,13 @@ __all__ = [
 ]
 
 NANOSECONDS: Final = 1_000_000_000
-
 NANOSECONDS_PER_METRE: Final = 10 * NANOSECONDS
-
 SECONDS_PER_CASE: Final = 2
 
 Timed = tuple[int, CaseDetail]
-
 """Time [ns] and what is shown from then on."""
 
 HOLD: Final = 1_000_000_000
-
 """How long the last posture stays [ns]."""
 
 
