@@ -38,13 +38,12 @@ from evodesign.records import (
 )
 from evodesign.runlog.directory import locked, make_directory, run_segments
 from evodesign.runlog.observer import Observer, Silent
-from evodesign.runlog.outcome import evaluation_outcome
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.session_log import SessionLog
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
 from evodesign.search.base import Search
-from evodesign.session import Evaluate, Session, conclude, remember, search_outcome
+from evodesign.session import Evaluate, Session, conclude, evaluation_outcome, remember, search_outcome
 
 __all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 
