@@ -30,12 +30,7 @@ from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Pool
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.pool.worker import SerialPool
-from evodesign.records import (
-    Evaluation,
-    Genome,
-    RunHeader,
-    SearchSettings,
-)
+from evodesign.records import Evaluation, Genome, RunHeader, SearchSettings
 from evodesign.runlog.directory import locked, make_directory, run_segments
 from evodesign.runlog.observer import Observer, Silent
 from evodesign.runlog.run import Run, read_run

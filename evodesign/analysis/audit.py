@@ -18,12 +18,7 @@ TOLERANCE = 1e-9
 
 def audit(run: Run) -> list[str]:
     """A sentence for each contradiction; none in a sound run."""
-    return [
-        *_evaluations(run),
-        *_holes(run),
-        *_generations(run),
-        *_details(run),
-    ]
+    return [*_evaluations(run), *_holes(run), *_generations(run), *_details(run)]
 
 
 def _evaluations(run: Run) -> Iterator[str]:

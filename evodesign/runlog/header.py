@@ -18,14 +18,7 @@ from typing import Protocol
 import msgspec
 
 from evodesign.errors import RunError
-from evodesign.records import (
-    FORMAT_VERSION,
-    Objective,
-    Parameter,
-    ProblemSource,
-    RunHeader,
-    SearchSettings,
-)
+from evodesign.records import FORMAT_VERSION, Objective, Parameter, ProblemSource, RunHeader, SearchSettings
 
 __all__ = [
     "DECISIVE",
