@@ -32,9 +32,8 @@ from evodesign.pool.dispatch import run_stoppable
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, Genome, RunHeader, SearchSettings
 from evodesign.runlog.directory import locked, make_directory, run_segments
-from evodesign.runlog.observer import Observer, Silent
 from evodesign.runlog.run import Run, read_run
-from evodesign.runlog.session_log import SessionLog
+from evodesign.runlog.session_log import Observer, SessionLog, Silent
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
 from evodesign.search.base import Search

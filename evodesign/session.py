@@ -30,8 +30,7 @@ from evodesign.records import (
     Turn,
     design_of,
 )
-from evodesign.runlog.observer import Observer
-from evodesign.runlog.session_log import SessionLog
+from evodesign.runlog.session_log import Observer, SessionLog
 from evodesign.search.base import Outcome
 
 __all__ = [

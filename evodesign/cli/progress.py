@@ -30,8 +30,8 @@ from evodesign.cli.output import console, figure, heading, show_notes
 from evodesign.cli.tables.live import generation_line
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
-from evodesign.runlog.observer import Observer
 from evodesign.runlog.run import Run
+from evodesign.runlog.session_log import Observer
 
 __all__ = ["precompute_progress", "search_progress"]
 

@@ -1,8 +1,8 @@
-"""What a run remembers while it goes on: the log of earlier sessions, and this session's, which is written.
+"""What a run remembers while it goes on, and someone who watches it: a progress bar, a test.
 
-A resumed search asks again for everything that it asked for before; memory answers what is known, checks
-that it was asked for the same, and writes down what is new. The new segment is opened at the first new
-record, so that a run with nothing left to do is left as it is.
+A resumed search asks again for everything that it asked for before; memory, the log of earlier sessions and
+this session's, answers what is known, checks that it was asked for the same, and writes down what is new. The
+new segment is opened at the first new record, so that a run with nothing left to do is left as it is.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from evodesign.errors import ResumeMismatch, RunError
-from evodesign.records import Detail, Evaluation, Front, Generation, Genome, Turn
+from evodesign.records import Detail, Evaluation, Front, Generation, Genome, RunHeader, Turn
 from evodesign.runlog.run import Run
 from evodesign.runlog.writer import RunWriter
 
-__all__ = ["SessionLog"]
+__all__ = ["Observer", "SessionLog", "Silent"]
 
 LONGEST_WAIT = 0.1
 """Longest time [s] for which evaluations wait for others to reach the disk with them."""
@@ -115,3 +115,23 @@ class SessionLog:
     ) -> None:
         if self._opened is not None:
             self._opened.close()
+
+
+class Observer(Protocol):
+    """Someone who watches a session; what it is shown is in the log already."""
+
+    def started(self, header: RunHeader, evaluations_done: int) -> None:
+        """A session begins, with so many evaluations known."""
+
+    def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
+        """A new evaluation is logged; `done` of `budget` are."""
+
+    def generation_done(self, generation: Generation) -> None:
+        """A new generation is concluded."""
+
+    def finished(self, run: Run) -> None:
+        """The budget is used up."""
+
+
+class Silent(Observer):
+    """An observer that keeps still."""
