@@ -1,4 +1,4 @@
-"""Deciding among the designs of a front: its knees, and those closest to what somebody hopes for.
+"""Deciding among the designs of a front: knees, those closest to an aspiration, the k most different.
 
 Objectives are made comparable, each as a share of its range over the designs that are compared. A minimised
 value f becomes (f - least) / (greatest - least): 0 is the best of the designs, 1 the worst. The corners are
@@ -32,11 +32,19 @@ designs of equal shortfall: among those that meet every aspiration the best over
 Unlike a distance, s never prefers a dominated design to one that dominates it, and never punishes a design
 for being better than the aspiration.
 
+Variety: as many designs as asked for, with the least distance between any two large. Designs are compared by
+their parameters, each as a share of its range (the genome), so that lengths and densities weigh the same. The
+best choice of k would take for ever on a large front. So the two designs that are furthest apart come first,
+and then again and again the one that is furthest from its nearest chosen one: its least distance is at least
+half of what any choice reaches, and no fast method promises more.
+
 Source: Das 1999, On characterizing the "knee" of the Pareto curve based on normal-boundary intersection;
 Rachmawati and Srinivasan 2009, Multiobjective evolutionary algorithm with controllable focus on the knees of
 the Pareto front; Wierzbicki 1980, The use of reference objectives in multiobjective optimization, augmented
 as in Miettinen 1999, Section 5.7. There the first term goes on below zero; here it stops, so that objectives
-that nobody names count as soon as the named ones are good enough.
+that nobody names count as soon as the named ones are good enough. Ravi, Rosenkrantz and Tayi 1994, Heuristic
+and special case algorithms for dispersion problems (Theorem 2, for distances that satisfy the triangle
+inequality).
 """
 
 from __future__ import annotations
@@ -63,7 +71,9 @@ __all__ = [
     "bulges",
     "closest",
     "knees",
+    "most_different",
     "scaled",
+    "spread_out",
 ]
 
 NEGLIGIBLE = 1e-4
@@ -76,6 +86,9 @@ NEIGHBOURHOOD = 0.1
 
 AUGMENTATION = 1e-3
 """rho: small, so that it only decides between designs whose worst shortfall is nearly equal."""
+
+ROWS_AT_ONCE = 1000
+"""Rows of the matrix of distances that are held at the same time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,3 +230,54 @@ def _check(objectives: Sequence[Objective], aspiration: Mapping[str, float], sou
             raise InputError(source, "", f"objectives among {', '.join(names)}", found)
         if not np.isfinite(value):
             raise InputError(source, name, "a finite number", f"{value}")
+
+
+def most_different(designs: Sequence[Evaluation], count: int) -> tuple[Evaluation, ...]:
+    """The designs that differ most in their parameters, in the order in which they are chosen.
+
+    Args:
+        designs: to choose from; equal genomes count once, so that fewer than asked for may come back.
+        count: how many, at least one; one alone is the earliest design.
+    """
+    genomes = np.array([design.genome for design in designs])
+    return tuple(designs[row] for row in spread_out(genomes, count)) if len(designs) else ()
+
+
+def spread_out(points: Matrix, count: int) -> list[int]:
+    """Rows of points far from each other: the two furthest apart, then always the most remote one.
+
+    Args:
+        points: (points, dimensions), at least one row.
+        count: at most so many rows; copies of a chosen point are not chosen.
+    """
+    if count < 2 or len(points) < 2:
+        return list(range(len(points)))[: max(count, 0)]
+    first, second = _furthest_pair(points)
+    chosen = [first]
+    nearest = _distances(points[[first]], points)[0]
+    following = second
+    while len(chosen) < count and nearest[following] > 0.0:
+        chosen.append(following)
+        nearest = np.minimum(nearest, _distances(points[[following]], points)[0])
+        following = int(np.argmax(nearest))
+    return chosen
+
+
+def _furthest_pair(points: Matrix) -> tuple[int, int]:
+    """The first of the pairs of rows that are furthest apart."""
+    best, pair = -1.0, (0, 0)
+    for start in range(0, len(points), ROWS_AT_ONCE):
+        block = _distances(points[start : start + ROWS_AT_ONCE], points)
+        row, column = divmod(int(np.argmax(block)), len(points))
+        if block[row, column] > best:
+            best, pair = float(block[row, column]), (start + row, column)
+    return pair
+
+
+def _distances(some: Matrix, points: Matrix) -> Matrix:
+    """Euclidean distances, (some, points); exactly zero between equal points."""
+    squares = np.zeros((len(some), len(points)))
+    for coordinate, coordinates in zip(some.T, points.T, strict=True):
+        squares += (coordinate[:, None] - coordinates) ** 2
+    distances: Matrix = np.sqrt(squares)
+    return distances

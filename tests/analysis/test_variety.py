@@ -5,8 +5,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.analysis import variety
-from evodesign.analysis.variety import most_different, spread_out
+from evodesign.analysis import decision_making
+from evodesign.analysis.decision_making import most_different, spread_out
 from tests.analysis.designs import design, numbers
 
 coordinate = st.integers(0, 10).map(lambda step: step / 10.0)
@@ -53,5 +53,5 @@ def test_few_designs_or_none_are_all_there_is():
 def test_the_furthest_pair_does_not_depend_on_how_many_rows_are_held(monkeypatch):
     rows = np.random.default_rng(1).random((50, 3))
     whole = spread_out(rows, 8)
-    monkeypatch.setattr(variety, "ROWS_AT_ONCE", 7)
+    monkeypatch.setattr(decision_making, "ROWS_AT_ONCE", 7)
     assert spread_out(rows, 8) == whole
