@@ -13,11 +13,10 @@ from itertools import combinations
 
 import msgspec
 
-from evodesign.analysis.attainment import AttainmentSurface, attainment_surfaces
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front, to_minimise
 from evodesign.analysis.hypervolume import Curve, best, curve, hypervolume, reference_point
-from evodesign.analysis.rank_tests import RankTest, rank_tests
+from evodesign.analysis.seed_statistics import AttainmentSurface, RankTest, attainment_surfaces, rank_tests
 from evodesign.records import Evaluation, Objective, RunHeader
 from evodesign.runlog.run import Run
 

@@ -6,8 +6,8 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
-from evodesign.analysis.attainment import AttainmentSurface
 from evodesign.analysis.comparison import Compared, Comparison, best_designs
+from evodesign.analysis.seed_statistics import AttainmentSurface
 
 __all__ = ["comparison_json", "hypervolume_summary"]
 
