@@ -29,7 +29,7 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.report.replay.recording",
         "evodesign.api.opened_run",
         "evodesign.report.opened_design",
-        "evodesign.report.live.followed_run",
+        "evodesign.report.live.state",
     ],
 )
 def test_module_loads_without_casadi(module: str) -> None:

@@ -1,4 +1,4 @@
-"""Where a running search stands, kept up to date one record at a time, and as a JSON object.
+"""Where a running search stands: its log followed, kept up to date record by record, and as a JSON object.
 
 Of the evaluations only the front and a thinned sample of the others are kept, so that a look at a long search
 costs no more than one at a short one.
@@ -9,8 +9,11 @@ shape is a promise.
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -18,9 +21,11 @@ import msgspec
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front
 from evodesign.analysis.hypervolume import best
+from evodesign.errors import RunError
 from evodesign.records import Evaluation, Generation, RunHeader, Status
+from evodesign.runlog.follow import Follower
 
-__all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "LiveRun", "LiveState", "state_of", "word"]
+__all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "FollowedRun", "LiveRun", "LiveState", "state_of", "word"]
 
 SAMPLE = 1000
 """Most evaluations that are kept beside the front; then every second one is dropped, again and again."""
@@ -204,3 +209,44 @@ def _point(header: RunHeader, evaluation: Evaluation) -> list[float]:
     """Number and objectives of a design."""
     values = evaluation.assessment.objectives
     return [evaluation.number, *(values[objective.name] for objective in header.objectives)]
+
+
+class FollowedRun:
+    """A run that is being written, looked at again and again.
+
+    Args:
+        directory: of the run.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = directory
+        self._follower = Follower(directory)
+        self._live_run = LiveRun()
+        self._lock = threading.Lock()
+
+    def look(self) -> LiveState:
+        """Where the search stands now.
+
+        Raises:
+            RunError: the log's header cannot be read.
+        """
+        with self._lock:
+            self._live_run.learn([(logged.record, logged.time) for logged in self._follower.look()])
+        live_state = self._live_run.state
+        if live_state is None:
+            raise RunError(f"{self.directory}: the log has no header yet, so there is nothing to watch")
+        return live_state
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last session closed its log."""
+        return self._follower.ended
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What cannot be read."""
+        return self._follower.notes
+
+    def state(self) -> dict[str, Any]:
+        """Where the search stands now, as the JSON object of the page."""
+        return state_of(self.look(), ended=self.ended, now=time.time())
