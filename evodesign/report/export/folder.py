@@ -14,9 +14,8 @@ import msgspec
 from evodesign.errors import InputError, ModelError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT
-from evodesign.report.export.design import ExportedDesign, design_json
+from evodesign.report.export.design import ExportedDesign, design_json, postures_csv, wrenches_csv
 from evodesign.report.export.readme import readme_text
-from evodesign.report.export.tables import postures_csv, wrenches_csv
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.recording import time_scale, write_replay
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
