@@ -12,7 +12,7 @@ from evodesign.records import Case, Detail, Evaluation
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
 from evodesign.report.page.content import CauseContent, Content, DesignContent, Facts, Mark
-from evodesign.report.page.points import MOST_POINTS, chosen_points, points
+from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import Run
 
