@@ -59,7 +59,7 @@ def precompute_progress() -> Iterator[PrecomputeProgress]:
         progress.close()
 
 
-class SearchLines:
+class SearchLines(Observer):
     """One line when a session starts and one per generation."""
 
     def __init__(self, stream: TextIO) -> None:
@@ -95,7 +95,7 @@ class SearchLines:
         """Nothing: the result follows."""
 
 
-class SearchPanel:
+class SearchPanel(Observer):
     """A bar and the state of the search, redrawn in place."""
 
     def __init__(self) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Self
 
 from evodesign.errors import ResumeMismatch, RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, Genome, RunHeader, Turn
@@ -117,8 +117,8 @@ class SessionLog:
             self._opened.close()
 
 
-class Observer(Protocol):
-    """Someone who watches a session; what it is shown is in the log already."""
+class Observer:
+    """Someone who watches a session; what it is shown is in the log already. Its methods do nothing here."""
 
     def started(self, header: RunHeader, evaluations_done: int) -> None:
         """A session begins, with so many evaluations known."""

@@ -92,14 +92,14 @@ class LiveRun:
     def learn(self, records: Sequence[tuple[msgspec.Struct, float]]) -> None:
         """Take in new records, each with the time when it was written."""
         born: list[Evaluation] = []
-        for record, time in records:
+        for record, written in records:
             if isinstance(record, RunHeader):
                 self._header = record
                 self._times = []
             elif isinstance(record, Generation):
                 self._generations[record.number] = record
             elif isinstance(record, Evaluation) and record.number not in self._numbers:
-                self._count(record, time)
+                self._count(record, written)
                 born.append(record)
         if self._header is not None and born:
             self._sort(self._header, born)
@@ -123,13 +123,13 @@ class LiveRun:
             pace=(len(times) - 1) / span if span > 0.0 else None,
         )
 
-    def _count(self, evaluation: Evaluation, time: float) -> None:
+    def _count(self, evaluation: Evaluation, written: float) -> None:
         self._numbers.add(evaluation.number)
         self._feasible += evaluation.feasible
         status = evaluation.assessment.status
         if status is not Status.SOLVED:
             self._causes[status] = self._causes.get(status, 0) + 1
-        self._times = [*self._times[-PACE_OVER:], time]
+        self._times = [*self._times[-PACE_OVER:], written]
 
     def _sort(self, header: RunHeader, born: Sequence[Evaluation]) -> None:
         """Put new evaluations on the front or into the sample of the others."""
