@@ -1,6 +1,6 @@
 from evodesign.analysis.front import front
 from evodesign.records import Status
-from evodesign.report.live import state
+from evodesign.report.live import state as live_state
 from evodesign.report.live.state import LiveRun
 from tests.analysis.designs import numbers
 from tests.runlog.toys import toy_evaluations, toy_generation, toy_header
@@ -41,7 +41,7 @@ def test_an_evaluation_that_comes_twice_counts_once():
 
 
 def test_the_sample_of_the_others_stays_small_and_even(monkeypatch):
-    monkeypatch.setattr(state, "SAMPLE", 10)
+    monkeypatch.setattr(live_state, "SAMPLE", 10)
     others = learnt([[HEADER], *([each] for each in RUN)]).others
     assert 0 < len(others) <= 10
     assert {number % 4 for number in numbers(others)} == {0}
