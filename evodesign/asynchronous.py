@@ -11,13 +11,11 @@ import time
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import closing
 
-from evodesign.analysis.run_state import RunState
-from evodesign.analysis.stagnation import stagnant
+from evodesign.analysis.run_state import RunState, stagnant
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.records import Evaluation, Genome, Turn
-from evodesign.runlog.outcome import evaluation_outcome
 from evodesign.search.base import AsynchronousSearch
-from evodesign.session import Session, conclude, remember, search_outcome
+from evodesign.session import Session, conclude, evaluation_outcome, remember, search_outcome
 
 __all__ = ["evolve_asynchronously"]
 

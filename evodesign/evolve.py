@@ -24,28 +24,20 @@ from typing import NoReturn
 import msgspec
 
 from evodesign.analysis.front import RunningFront
-from evodesign.analysis.run_state import RunState
-from evodesign.analysis.stagnation import stagnant
+from evodesign.analysis.run_state import RunState, stagnant
 from evodesign.asynchronous import evolve_asynchronously
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Pool
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.pool.worker import SerialPool
-from evodesign.records import (
-    Evaluation,
-    Genome,
-    RunHeader,
-    SearchSettings,
-)
+from evodesign.records import Evaluation, Genome, RunHeader, SearchSettings
 from evodesign.runlog.directory import locked, make_directory, run_segments
-from evodesign.runlog.observer import Observer, Silent
-from evodesign.runlog.outcome import evaluation_outcome
 from evodesign.runlog.run import Run, read_run
-from evodesign.runlog.session_log import SessionLog
+from evodesign.runlog.session_log import Observer, SessionLog, Silent
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
 from evodesign.search.base import Search
-from evodesign.session import Evaluate, Session, conclude, remember, search_outcome
+from evodesign.session import Evaluate, Session, conclude, evaluation_outcome, remember, search_outcome
 
 __all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 

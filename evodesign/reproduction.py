@@ -36,8 +36,8 @@ from evodesign.records import Evaluation, SearchSettings
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.header import header_of
-from evodesign.runlog.observer import Observer
 from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.session_log import Observer
 from evodesign.search.base import JOINT_STARTS
 from evodesign.search.registry import make_search
 

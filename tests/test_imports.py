@@ -25,12 +25,11 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.report.front_figure",
         "evodesign.report.figures.joint_torques",
         "evodesign.report.figures.posture_figure",
-        "evodesign.report.figures.torque_boxes",
         "evodesign.report.replay.layout",
         "evodesign.report.replay.recording",
         "evodesign.api.opened_run",
         "evodesign.report.opened_design",
-        "evodesign.report.live.followed_run",
+        "evodesign.report.live.state",
     ],
 )
 def test_module_loads_without_casadi(module: str) -> None:

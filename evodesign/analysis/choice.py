@@ -10,11 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from evodesign.analysis.aspiration import closest
 from evodesign.analysis.conditions import Condition, meeting
+from evodesign.analysis.decision_making import closest, knees, most_different
 from evodesign.analysis.front import front, to_minimise
-from evodesign.analysis.knees import knees
-from evodesign.analysis.variety import most_different
 from evodesign.records import Evaluation, Objective
 
 __all__ = ["Choice", "Chosen", "Order", "choose"]

@@ -13,15 +13,26 @@ from itertools import combinations
 
 import msgspec
 
-from evodesign.analysis.attainment import AttainmentSurface, attainment_surfaces
-from evodesign.analysis.curves import Curve, curve
-from evodesign.analysis.front import front
-from evodesign.analysis.hypervolume import best, hypervolume, reference_point
-from evodesign.analysis.rank_tests import RankTest, rank_tests
+from evodesign.analysis.decision_making import knees
+from evodesign.analysis.front import front, to_minimise
+from evodesign.analysis.hypervolume import Curve, best, curve, hypervolume, reference_point
+from evodesign.analysis.seed_statistics import AttainmentSurface, RankTest, attainment_surfaces, rank_tests
 from evodesign.records import Evaluation, Objective, RunHeader
 from evodesign.runlog.run import Run
 
-__all__ = ["Attainment", "Compared", "Comparison", "compare", "search_name"]
+__all__ = [
+    "MOST_KNEES",
+    "Attainment",
+    "BestDesign",
+    "Compared",
+    "Comparison",
+    "best_designs",
+    "compare",
+    "search_name",
+]
+
+MOST_KNEES = 5
+"""Knees of the common front that are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,3 +231,39 @@ def _notes(runs: Sequence[Compared], count: int) -> tuple[str, ...]:
             notes.append(f"{each.run.directory}: seed {key[1]} of {key[0]} came before, and counts once")
         seen.add(key)
     return tuple(notes)
+
+
+@dataclass(frozen=True, slots=True)
+class BestDesign:
+    """A design to look at first.
+
+    Args:
+        reason: what it is best at, in words.
+        run: that found it.
+        evaluation: its number is that of its run.
+    """
+
+    reason: str
+    run: Compared
+    evaluation: Evaluation
+
+
+def best_designs(comparison: Comparison) -> tuple[BestDesign, ...]:
+    """The best designs of a comparison's runs, after the evaluations that are counted."""
+    found = [(run, evaluation) for run in comparison.runs for evaluation in run.front]
+    if not found:
+        return ()
+    numbered = [
+        msgspec.structs.replace(evaluation, number=place) for place, (_, evaluation) in enumerate(found)
+    ]
+    objectives = comparison.objectives
+    places = [(f"best {each.name}", _best_in(each, numbered)) for each in objectives]
+    common = front(objectives, numbered)
+    places += [("knee", knee.number) for knee in knees(objectives, common)[:MOST_KNEES]]
+    return tuple(BestDesign(reason, *found[place]) for reason, place in places)
+
+
+def _best_in(objective: Objective, numbered: Sequence[Evaluation]) -> int:
+    """Place of the design that is best in an objective."""
+    values = {each.number: each.assessment.objectives[objective.name] for each in numbered}
+    return min(values, key=lambda place: to_minimise(objective, values[place]))

@@ -6,8 +6,7 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
-from evodesign.analysis.best_designs import best_designs
-from evodesign.analysis.comparison import Compared, Comparison
+from evodesign.analysis.comparison import Compared, Comparison, best_designs
 
 __all__ = ["comparison_json", "hypervolume_summary"]
 

@@ -1,7 +1,17 @@
 """Conditions on designs, as a user writes them: `reach_height >= 1.5 and robot_torque@1.2 < 10`.
 
-A condition is NAME OPERATOR NUMBER with an operator among < <= > >= and a name of `quantities`; several are
-joined by `and`. A number that does not exist (the torque of a height that was not reached) meets none.
+A condition is NAME OPERATOR NUMBER with an operator among < <= > >=; several are joined by `and`. A number
+that does not exist (the torque of a height that was not reached) meets none. The names, also those of axes
+and tables, are:
+
+    robot_torque                an objective of the run, natural value
+    length.thigh                a parameter of the design
+    lowest_reach, highest_reach ends of the interval of load heights that the robot can hold [m]
+    robot_torque@1.2            |tau|_2 of an agent at a required height [N m]; human_torque@1.2 likewise
+    robot_torque@short@5 kg@1.2 that of one case, where a problem has several people or loads; then
+                                robot_torque@1.2 is the largest at that height, if all of them are solved
+
+An objective of the same name goes before the others.
 """
 
 from __future__ import annotations
@@ -11,12 +21,24 @@ import operator
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from operator import attrgetter
 
-from evodesign.analysis.quantities import Quantity, quantity
-from evodesign.errors import InputError
-from evodesign.records import Evaluation
+from evodesign.errors import InputError, nearest_name
+from evodesign.records import Case, CaseOutcome, Evaluation, RunHeader, Task
 
-__all__ = ["Condition", "conditions", "meeting"]
+__all__ = ["Condition", "Quantity", "conditions", "meeting", "quantities", "quantity"]
+
+Quantity = Callable[[Evaluation], float | None]
+"""A number of an evaluation; None where it does not exist."""
+
+Norm = Callable[[CaseOutcome], float | None]
+
+NORMS: Mapping[str, Norm] = {
+    "robot_torque": attrgetter("robot_torque_norm"),
+    "human_torque": attrgetter("human_torque_norm"),
+}
+"""The torque norm of each agent [N m]."""
 
 OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
     "<": operator.lt,
@@ -27,6 +49,74 @@ OPERATORS: Mapping[str, Callable[[float, float], bool]] = {
 
 FORM = re.compile(r"\s*(?P<name>.+?)\s*(?P<sign><=|>=|<|>)\s*(?P<bound>\S+)\s*")
 """A condition; a name may hold anything but the signs."""
+
+
+def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quantity]:
+    """All quantities of a run, by name.
+
+    Args:
+        header: of the run; its objectives and parameters have names.
+        example: any evaluation of the run, for its cases; None for a run that has none yet.
+    """
+    cases = () if example is None else tuple(outcome.case for outcome in example.assessment.cases)
+    found: dict[str, Quantity] = {"lowest_reach": _lowest_reach, "highest_reach": _highest_reach}
+    for case in cases:
+        for name, norm in NORMS.items():
+            found[f"{name}@{case.task.height_m:g}"] = partial(_largest, norm, case.task)
+    for case in cases if any(case.label for case in cases) else ():
+        place = "@".join(part for part in (*case.pair, f"{case.task.height_m:g}") if part)
+        for name, norm in NORMS.items():
+            found[f"{name}@{place}"] = partial(_of_case, norm, case)
+    for parameter in header.parameters:
+        found[parameter.name] = partial(_parameter, parameter.name)
+    for objective in header.objectives:
+        found[objective.name] = partial(_objective, objective.name)
+    return found
+
+
+def quantity(known: Mapping[str, Quantity], name: str, source: str) -> Quantity:
+    """The quantity of a name.
+
+    Raises:
+        InputError: there is none; it names the nearest.
+    """
+    if name not in known:
+        short = [each for each in known if each.count("@") < 2]
+        wanted = f"one of {', '.join(short)}"
+        if len(short) < len(known):
+            wanted += ", robot_torque@WHO@WHAT@HEIGHT, human_torque@WHO@WHAT@HEIGHT"
+        raise InputError(source, "", wanted, f"'{name}'{nearest_name(name, known)}")
+    return known[name]
+
+
+def _objective(name: str, evaluation: Evaluation) -> float | None:
+    return evaluation.assessment.objectives.get(name)
+
+
+def _parameter(name: str, evaluation: Evaluation) -> float | None:
+    return evaluation.assessment.design.get(name)
+
+
+def _lowest_reach(evaluation: Evaluation) -> float | None:
+    reach = evaluation.assessment.reach
+    return None if reach is None else reach.lowest_m
+
+
+def _highest_reach(evaluation: Evaluation) -> float | None:
+    reach = evaluation.assessment.reach
+    return None if reach is None else reach.highest_m
+
+
+def _largest(norm: Norm, task: Task, evaluation: Evaluation) -> float | None:
+    """The largest over all cases of a task; None unless each of them has one."""
+    outcomes = [outcome for outcome in evaluation.assessment.cases if outcome.case.task == task]
+    norms = [norm(outcome) for outcome in outcomes]
+    known = [value for value in norms if value is not None]
+    return max(known) if known and len(known) == len(norms) else None
+
+
+def _of_case(norm: Norm, case: Case, evaluation: Evaluation) -> float | None:
+    return next((norm(outcome) for outcome in evaluation.assessment.cases if outcome.case == case), None)
 
 
 @dataclass(frozen=True, slots=True)

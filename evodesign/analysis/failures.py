@@ -1,13 +1,19 @@
-"""How many evaluations of a run failed, and of what: a design that is merely infeasible has not failed."""
+"""How evaluations of a run failed, and why designs of it are not feasible, counted by cause.
+
+A design that is merely infeasible has not failed. The cause of infeasibility is the log's own status with the
+tasks that ended so: "infeasible at 1.2 m", and with whom, where others could do them with their load. A
+design counts once, whatever the number of cases that it misses.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
-from evodesign.records import Evaluation, Status
+from evodesign.records import Assessment, Evaluation, Status
 
-__all__ = ["causes", "failed", "failures"]
+__all__ = ["Cause", "causes", "causes_of_infeasibility", "failed", "failures"]
 
 
 def failed(evaluation: Evaluation) -> bool:
@@ -23,3 +29,48 @@ def failures(evaluations: Iterable[Evaluation]) -> Counter[Status]:
 def causes(counts: Mapping[Status, int]) -> str:
     """Counts in words, the gravest last: `time limit 2, worker lost 1`; `none` without any."""
     return ", ".join(f"{status.value} {counts[status]}" for status in Status if counts.get(status)) or "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """A cause and the designs that failed by it.
+
+    Args:
+        cause: status and tasks, in words.
+        count: designs.
+        example: number of the first of them.
+        reason: the log's sentence on that one.
+    """
+
+    cause: str
+    count: int
+    example: int
+    reason: str
+
+
+def causes_of_infeasibility(evaluations: Iterable[Evaluation]) -> tuple[Cause, ...]:
+    """Causes of the designs that are not feasible, the most frequent first; of equal ones the earliest."""
+    by_cause: dict[str, list[Evaluation]] = {}
+    for evaluation in evaluations:
+        if not evaluation.feasible:
+            by_cause.setdefault(_cause(evaluation.assessment), []).append(evaluation)
+    found = [
+        Cause(cause, len(same), same[0].number, same[0].assessment.reason) for cause, same in by_cause.items()
+    ]
+    return tuple(sorted(found, key=lambda cause: (-cause.count, cause.example)))
+
+
+def _cause(assessment: Assessment) -> str:
+    """A design's status, with the tasks that ended in it if some ended well."""
+    ended = [outcome.case for outcome in assessment.cases if outcome.status is assessment.status]
+    if assessment.status is Status.SOLVED or not ended:
+        return str(assessment.status)
+    if len(ended) == len(assessment.cases) > 1:
+        return f"{assessment.status} at every height"
+    tasks = dict.fromkeys(case.task for case in ended)
+    place = f"{assessment.status} at {' and '.join(f'{task.height_m:g}' for task in tasks)} m"
+    there = [outcome for outcome in assessment.cases if outcome.case.task in tasks]
+    if len(there) == len(ended):
+        return place
+    pairs = [*dict.fromkeys(case.label for case in ended)]
+    return f"{place} with {pairs[0] if len(pairs) == 1 else f'{len(pairs)} pairs of person and load'}"

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from evodesign.analysis.choice import Choice, Order, choose
-from evodesign.analysis.conditions import conditions
-from evodesign.analysis.quantities import Quantity, quantities
+from evodesign.analysis.conditions import Quantity, conditions, quantities
 from evodesign.api.design import Design
 from evodesign.errors import InputError
 from evodesign.records import CaseDetail, Evaluation, Objective, Parameter

@@ -35,8 +35,8 @@ def branch(
 
     from evodesign.cli.output import show_notes
     from evodesign.cli.session import given, new_directory
-    from evodesign.runlog.branch import begin_branch
     from evodesign.runlog.directory import name_in_path
+    from evodesign.runlog.rewrite import begin_branch
     from evodesign.runlog.run import read_run
 
     old = read_run(run)

@@ -75,10 +75,9 @@ def _choice(
     run: Run, asked: Sequence[str], near: str | None, where: Sequence[str], limit: int | None
 ) -> Choice:
     """What the options choose."""
-    from evodesign.analysis.aspiration import aspiration_of
     from evodesign.analysis.choice import Choice, Order
-    from evodesign.analysis.conditions import conditions
-    from evodesign.analysis.quantities import quantities
+    from evodesign.analysis.conditions import conditions, quantities
+    from evodesign.analysis.decision_making import aspiration_of
 
     orders = {"--knee": Order.KNEE, "--different": Order.DIFFERENT, "--near": Order.NEAR}
     order = orders[asked[0]] if asked else Order.FIRST_OBJECTIVE

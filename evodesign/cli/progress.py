@@ -30,7 +30,7 @@ from evodesign.cli.output import console, figure, heading, show_notes
 from evodesign.cli.tables.live import generation_line
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
-from evodesign.runlog.observer import Observer, Silent
+from evodesign.runlog.session_log import Observer
 
 __all__ = ["precompute_progress", "search_progress"]
 
@@ -58,7 +58,7 @@ def precompute_progress() -> Iterator[PrecomputeProgress]:
         progress.close()
 
 
-class SearchLines(Silent):
+class SearchLines(Observer):
     """One line when a session starts and one per generation."""
 
     def __init__(self, stream: TextIO) -> None:
@@ -98,7 +98,7 @@ class SearchLines(Silent):
         return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-class SearchPanel(Silent):
+class SearchPanel(Observer):
     """A bar and the state of the search, redrawn in place."""
 
     def __init__(self) -> None:

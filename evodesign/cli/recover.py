@@ -20,7 +20,7 @@ def recover(
     json: Json = False,
 ) -> None:
     """Write all that can be read of a damaged run to a new directory, and say what is lost."""
-    from evodesign.analysis.loss import losses
+    from evodesign.analysis.audit import losses
     from evodesign.cli.output import print_json, print_lines
     from evodesign.cli.tables.run import run_json, run_lines
     from evodesign.runlog import rewrite

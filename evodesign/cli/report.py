@@ -41,7 +41,7 @@ def report(
     content = page_content(opened, asked)
     if sensitivities:
         from evodesign.cli.progress import precompute_progress
-        from evodesign.report.page.gradients import with_gradients  # CasADi takes its time to load
+        from evodesign.report.page.gather import with_gradients  # CasADi takes its time to load
 
         with precompute_progress() as progress:
             content = with_gradients(content, opened, jobs, progress)

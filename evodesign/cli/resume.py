@@ -67,7 +67,7 @@ def _note_changed_problem(source: ProblemSource) -> None:
     """Say so if the files that a run was started with hold something else now."""
     from evodesign.cli.output import show_notes
     from evodesign.problem.source import read_source
-    from evodesign.runlog.difference import source_differences
+    from evodesign.runlog.header import source_differences
 
     try:
         now = read_source(Path(source.path), source.symmetry)
@@ -79,8 +79,7 @@ def _note_changed_problem(source: ProblemSource) -> None:
 
 def _explained(mismatch: ResumeMismatch, header: RunHeader) -> ResumeMismatch:
     """The mismatch with the versions that may have caused it."""
-    from evodesign.runlog.difference import version_differences
-    from evodesign.runlog.header import versions
+    from evodesign.runlog.header import version_differences, versions
 
     differing = version_differences(header.versions, versions())
     return ResumeMismatch(f"{mismatch}; the log is of {', '.join(differing)}") if differing else mismatch

@@ -12,7 +12,7 @@ import typer
 from evodesign.cli.options import RunPath
 
 if TYPE_CHECKING:
-    from evodesign.report.live.followed_run import FollowedRun
+    from evodesign.report.live.state import FollowedRun
 
 __all__ = ["watch"]
 
@@ -30,7 +30,7 @@ def watch(
     """Follow a running search; Ctrl-C leaves, and the search goes on."""
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.tables.live import screen
-    from evodesign.report.live.followed_run import FollowedRun
+    from evodesign.report.live.state import FollowedRun
 
     followed = FollowedRun(run)
     live_state = followed.look()

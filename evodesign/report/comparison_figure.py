@@ -9,8 +9,8 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from evodesign.analysis.attainment import AttainmentSurface
 from evodesign.analysis.comparison import Attainment, Compared, Comparison
+from evodesign.analysis.seed_statistics import AttainmentSurface
 from evodesign.records import Objective, Sense
 
 __all__ = ["comparison_html"]

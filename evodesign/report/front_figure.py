@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
-from evodesign.report.subsample import subsample
+from evodesign.report.subset import subsample
 
 __all__ = ["front_html"]
 

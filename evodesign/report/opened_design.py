@@ -11,7 +11,7 @@ from evodesign.analysis.front import front
 from evodesign.errors import InputError, RunError
 from evodesign.mechanics.scene import HUMAN
 from evodesign.records import CaseDetail, Evaluation, RunHeader
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import Run
 from evodesign.search.base import JOINT_STARTS
 

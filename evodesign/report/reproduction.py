@@ -28,9 +28,9 @@ from evodesign.analysis.paper_claims import (
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import CaseDetail, Status
+from evodesign.report.figures.joint_torques import torque_boxes
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
-from evodesign.report.figures.torque_boxes import torque_boxes
 from evodesign.report.scene_models import SceneModels, placed_scene
 from evodesign.runlog.run import Run
 from evodesign.tree.urdf_write import urdf_text

@@ -22,7 +22,7 @@ from evodesign.records import AgentDetail, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Tree
 
-__all__ = ["LOAD", "ContactWrench", "PlacedScene", "SceneModels", "looks_of", "placed_scene"]
+__all__ = ["LOAD", "ContactWrench", "PlacedScene", "SceneModels", "SceneSet", "looks_of", "placed_scene"]
 
 LOAD = "load"
 """Name of the load beside those of the agents."""
@@ -169,3 +169,45 @@ def _at_center_of_pressure(force: Vector, moment: Vector) -> tuple[Vector, Vecto
 
 def _halves(wrench: Sequence[float]) -> tuple[Vector, Vector]:
     return (wrench[0], wrench[1], wrench[2]), (wrench[3], wrench[4], wrench[5])
+
+
+@dataclass(frozen=True, slots=True)
+class SceneSet:
+    """Everyone who holds a load with the robot of a design.
+
+    Args:
+        casts: every person with every load, all of them with the same robot; at least one.
+    """
+
+    models: tuple[SceneModels, ...]
+
+    @classmethod
+    def of(cls, scenes: Sequence[Scene], robot_tree: Tree) -> SceneSet:
+        """The casts of scenes with the robot of a design."""
+        return cls(tuple(SceneModels.of(scene, robot_tree) for scene in scenes))
+
+    @property
+    def robot(self) -> Tree:
+        """The design's robot."""
+        return self.models[0].trees[ROBOT]
+
+    @property
+    def people(self) -> tuple[tuple[Agent, Tree], ...]:
+        """Each person once, with the tree of numbers, in the problem's order."""
+        found = {
+            models.agent(HUMAN).label: (models.agent(HUMAN), models.trees[HUMAN]) for models in self.models
+        }
+        return tuple(found.values())
+
+    @property
+    def payloads(self) -> tuple[Payload, ...]:
+        """Each load once, in the problem's order."""
+        return tuple({models.payload.label: models.payload for models in self.models}.values())
+
+    def models_of(self, detail: CaseDetail) -> SceneModels:
+        """Who stands there in a logged case."""
+        return next(models for models in self.models if models.pair == detail.case.pair)
+
+    def placed_scene(self, detail: CaseDetail) -> PlacedScene:
+        """The stage of a logged case."""
+        return placed_scene(self.models_of(detail), detail)

@@ -1,19 +1,26 @@
-"""Opening a run: all its segments as one."""
+"""Opening a run: all its segments as one; and one short text that stands for everything it has found.
+
+Two runs have the same digest exactly when their evaluations agree in number, generation, genome and outcome:
+times, names of workers, order of arrival and number of sessions do not count.
+"""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
+import msgspec
+
 from evodesign.errors import RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
-from evodesign.runlog.difference import differences
 from evodesign.runlog.directory import run_segments
+from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
 
-__all__ = ["Run", "read_run"]
+__all__ = ["Run", "digest", "read_run"]
 
 R = TypeVar("R")
 
@@ -113,3 +120,12 @@ def _first_of_each(numbered: Iterable[tuple[int, R]]) -> tuple[R, ...]:
     for number, record in numbered:
         kept.setdefault(number, record)
     return tuple(kept[number] for number in sorted(kept))
+
+
+def digest(evaluations: Iterable[Evaluation]) -> str:
+    """SHA-256, in hexadecimal, of the evaluations in the order given, without times and workers."""
+    found = hashlib.sha256()
+    for evaluation in evaluations:
+        bare = msgspec.structs.replace(evaluation, seconds=0.0, worker="")
+        found.update(msgspec.json.encode(bare, order="deterministic") + b"\n")
+    return found.hexdigest()

@@ -1,8 +1,8 @@
-"""What a run remembers while it goes on: the log of earlier sessions, and this session's, which is written.
+"""What a run remembers while it goes on, and someone who watches it: a progress bar, a test.
 
-A resumed search asks again for everything that it asked for before; memory answers what is known, checks
-that it was asked for the same, and writes down what is new. The new segment is opened at the first new
-record, so that a run with nothing left to do is left as it is.
+A resumed search asks again for everything that it asked for before; memory, the log of earlier sessions and
+this session's, answers what is known, checks that it was asked for the same, and writes down what is new. The
+new segment is opened at the first new record, so that a run with nothing left to do is left as it is.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from types import TracebackType
 from typing import Self
 
 from evodesign.errors import ResumeMismatch, RunError
-from evodesign.records import Detail, Evaluation, Front, Generation, Genome, Turn
+from evodesign.records import Detail, Evaluation, Front, Generation, Genome, RunHeader, Turn
 from evodesign.runlog.run import Run
 from evodesign.runlog.writer import RunWriter
 
-__all__ = ["SessionLog"]
+__all__ = ["Observer", "SessionLog", "Silent"]
 
 LONGEST_WAIT = 0.1
 """Longest time [s] for which evaluations wait for others to reach the disk with them."""
@@ -111,10 +111,27 @@ class SessionLog:
         return self
 
     def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        where: TracebackType | None,
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
         if self._opened is not None:
             self._opened.close()
+
+
+class Observer:
+    """Someone who watches a session; what it is shown is in the log already. Its methods do nothing here."""
+
+    def started(self, header: RunHeader, evaluations_done: int) -> None:
+        """A session begins, with so many evaluations known."""
+
+    def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
+        """A new evaluation is logged; `done` of `budget` are."""
+
+    def generation_done(self, generation: Generation) -> None:
+        """A new generation is concluded."""
+
+    def finished(self, run: Run) -> None:
+        """The budget is used up."""
+
+
+class Silent(Observer):
+    """An observer that keeps still."""

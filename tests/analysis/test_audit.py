@@ -8,8 +8,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from evodesign.analysis.audit import audit
-from evodesign.analysis.loss import losses
+from evodesign.analysis.audit import audit, losses
 from evodesign.evolve import Silent, start
 from evodesign.runlog.run import Run
 from tests.runlog.toys import OrderedPool, ToySearch, ToyTask, shuffled, toy_header

@@ -1,7 +1,6 @@
 from evodesign.analysis.choice import Choice, Order, choose
-from evodesign.analysis.conditions import conditions
+from evodesign.analysis.conditions import conditions, quantities
 from evodesign.analysis.front import front
-from evodesign.analysis.quantities import quantities
 from tests.analysis.designs import numbers
 from tests.runlog.toys import toy_evaluations, toy_header
 

@@ -3,11 +3,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from evodesign.analysis.best_designs import best_designs
-from evodesign.analysis.comparison import compare
-from evodesign.analysis.curves import PLACES, curve
+from evodesign.analysis.comparison import best_designs, compare
 from evodesign.analysis.front import front
-from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.analysis.hypervolume import PLACES, best, curve, hypervolume, reference_point
 from evodesign.records import Objective, Sense
 from evodesign.runlog.run import Run
 from tests.runlog.toys import toy_evaluations, toy_header

@@ -1,8 +1,7 @@
 import msgspec
 import pytest
 
-from evodesign.analysis.conditions import conditions, meeting
-from evodesign.analysis.quantities import quantities
+from evodesign.analysis.conditions import conditions, meeting, quantities
 from evodesign.errors import InputError
 from evodesign.records import Parameter
 from tests.analysis.designs import numbers

@@ -1,3 +1,5 @@
+"""The state of a run, carried on from generation to generation, and its standstill."""
+
 from __future__ import annotations
 
 import pytest
@@ -6,7 +8,7 @@ from hypothesis import strategies as st
 
 from evodesign.analysis.front import front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
-from evodesign.analysis.run_state import RunState
+from evodesign.analysis.run_state import RunState, stagnant
 from tests.runlog.toys import toy_evaluations, toy_header
 
 
@@ -34,3 +36,24 @@ def test_standing_carried_on_equals_standing_looked_up_anew(
             assert record.hypervolume == pytest.approx(hypervolume(header.objectives, known, reference))
         members = tuple(each.number for each in front(header.objectives, known))
         assert run_state.front(number).evaluations == members
+
+
+@pytest.mark.parametrize(
+    ("hypervolumes", "generations", "expected"),
+    [
+        ([1.0, 1.0, 1.0], 2, True),
+        ([1.0, 1.0005, 1.0009], 2, True),
+        ([1.0, 1.0005, 1.0011], 2, False),
+        ([0.5, 1.0, 1.0], 2, False),
+        ([1.0, 1.0], 2, False),
+        ([None, None, None], 2, False),
+        ([None, 1.0, 1.0], 2, False),
+        ([1.0, 1.0, 1.0], 0, False),
+        ([1.0, 1.0, 1.0], None, False),
+        ([], 1, False),
+    ],
+)
+def test_a_standstill_is_growth_below_a_thousandth_over_so_many_generations(
+    hypervolumes: list[float | None], generations: int | None, expected: bool
+) -> None:
+    assert stagnant(hypervolumes, generations) is expected

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 
 import evodesign
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front
-from evodesign.analysis.knees import knees
 from evodesign.api.opened_run import OpenedRun
 from evodesign.errors import InputError, RunError
 from evodesign.runlog.writer import RunWriter

@@ -13,8 +13,8 @@ import msgspec
 import pytest
 from rich.console import Console
 
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front
-from evodesign.analysis.knees import knees
 from evodesign.cli.front import front as command
 from evodesign.cli.tables.card import card
 from evodesign.errors import InputError

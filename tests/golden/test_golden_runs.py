@@ -14,10 +14,9 @@ from evodesign.analysis.audit import audit
 from evodesign.analysis.front import front
 from evodesign.evolve import Silent, replay, resume
 from evodesign.records import FORMAT_VERSION
-from evodesign.runlog.digest import digest
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.rewrite import merge, recover
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import Run, digest, read_run
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 FOLDER = Path(__file__).parent

@@ -11,8 +11,7 @@ import numpy as np
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.problem.build import Problem
 from evodesign.records import AgentDetail, CaseDetail, CaseOutcome, Detail, Hold, InstantDetail
-from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import PlacedScene, SceneModels, SceneSet, placed_scene
 
 
 def random_values(problem: Problem, seed: int) -> tuple[float, ...]:

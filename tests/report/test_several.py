@@ -18,8 +18,7 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from mcap.reader import make_reader
 
 import evodesign
-from evodesign.analysis.conditions import conditions, meeting
-from evodesign.analysis.quantities import quantities
+from evodesign.analysis.conditions import conditions, meeting, quantities
 from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel

@@ -13,11 +13,9 @@ from mcap.reader import make_reader
 from evodesign.errors import InputError, RunError
 from evodesign.evolve import Silent, replay, resume, start
 from evodesign.records import RunHeader
-from evodesign.runlog.branch import begin_branch
-from evodesign.runlog.digest import digest
 from evodesign.runlog.directory import locked
-from evodesign.runlog.rewrite import merge, recover
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.rewrite import begin_branch, merge, recover
+from evodesign.runlog.run import Run, digest, read_run
 from evodesign.search.registry import make_search
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence, shuffled

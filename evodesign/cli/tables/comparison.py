@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 from rich.table import Table
 
-from evodesign.analysis.best_designs import best_designs
-from evodesign.analysis.comparison import Comparison
+from evodesign.analysis.comparison import Comparison, best_designs
 from evodesign.analysis.comparison_json import hypervolume_summary
 from evodesign.cli.output import figure, heading, shown
 from evodesign.cli.tables.table import names, numbers, titled

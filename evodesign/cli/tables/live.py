@@ -11,13 +11,12 @@ from rich.progress_bar import ProgressBar
 from rich.table import Column, Table
 from rich.text import Text
 
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
-from evodesign.analysis.knees import knees
-from evodesign.analysis.live_state import LiveState
 from evodesign.cli.output import figure, heading, shown, visible
 from evodesign.cli.tables.table import designs_table, names, numbers
 from evodesign.records import Generation
-from evodesign.report.live.state import MOST_KNEES, word
+from evodesign.report.live.state import MOST_KNEES, LiveState, word
 
 __all__ = ["generation_line", "screen", "sparkline"]
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from evodesign.runlog.digest import digest
 from evodesign.runlog.directory import run_segments
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import Run, digest
 
 __all__ = ["run_json", "run_lines"]
 

@@ -10,7 +10,7 @@ from rich.table import Table
 from evodesign.cli.output import figure, shown
 from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.records import AgentDetail, CaseDetail
-from evodesign.report.ranked_joints import ranked_joints
+from evodesign.report.subset import ranked_joints
 
 __all__ = ["forces_by_height", "torques_by_height", "worst_forces", "worst_torques"]
 

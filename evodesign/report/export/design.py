@@ -1,17 +1,37 @@
-"""What is exported: one evaluation of a run with its robot and postures."""
+"""What is exported: one evaluation of a run with its robot and postures, as JSON and as CSV.
+
+CSV has one row per number, or per wrench, as the log has them. Where a problem has several people or loads,
+columns `human` and `payload` with their names come first. Numbers are written with as many digits as read
+back to the same double.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import msgspec
 
+from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import CaseDetail, CaseOutcome, Evaluation, RunHeader, hold_names, materials_of
-from evodesign.report.scene_set import SceneSet
-from evodesign.tree.model import Tree
+from evodesign.report.scene_models import SceneModels, SceneSet
+from evodesign.tree.model import JointKind, Tree
 
-__all__ = ["ExportedDesign", "design_json"]
+__all__ = ["ExportedDesign", "design_json", "postures_csv", "wrenches_csv"]
+
+Row = Sequence[str | float]
+
+POSTURE_COLUMNS = ("height_m", "agent", "kind", "name", "position", "position_unit", "torque", "torque_unit")
+WRENCH_COLUMNS = (
+    *("height_m", "agent", "contact", "frame"),
+    *("force_x_n", "force_y_n", "force_z_n", "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"),
+)
+NAME_COLUMNS = ("human", "payload")
+BASE = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
+"""Coordinates of the root link in its agent's frame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,3 +95,58 @@ def _hold(part: CaseOutcome | CaseDetail) -> dict[str, Any]:
     (instant,) = told.pop("instants", [{}])
     del told["case"]
     return {**hold_names(part.case), **told, **{key: instant[key] for key in instant if key != "time_s"}}
+
+
+def postures_csv(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
+    """Base coordinates, joint positions and torques of robot and person."""
+    return _text(POSTURE_COLUMNS, cases, [_posture_rows(scene_set.models_of(each), each) for each in cases])
+
+
+def wrenches_csv(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
+    """Wrenches on hands (about the grasp point) and feet (about the sole's origin)."""
+    return _text(WRENCH_COLUMNS, cases, [_wrench_rows(scene_set.models_of(each), each) for each in cases])
+
+
+def _posture_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
+    height = detail.case.task.height_m
+    for name, tree in models.trees.items():
+        posture = detail.agents[name]
+        base = (*posture.base_position_m, *posture.base_rpy_rad)
+        for (coordinate, unit), value in zip(BASE, base, strict=True):
+            yield height, name, "base", coordinate, value, unit, "", ""
+        for joint, position in posture.joints_rad.items():
+            kind, *units = _joint(tree, joint)
+            torque = posture.torques_n_m[joint]
+            yield height, name, kind, joint, position, units[0], torque, units[1]
+
+
+def _joint(tree: Tree, name: str) -> tuple[str, str, str]:
+    """Kind of a joint, unit of its position, unit of its torque or force."""
+    kind = tree.joint_by_name[name].kind
+    return (kind, "m", "N") if kind is JointKind.PRISMATIC else (kind, "rad", "N m")
+
+
+def _wrench_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
+    for agent in models.agents:
+        yield from _wrenches_of(agent, detail)
+
+
+def _wrenches_of(agent: Agent, detail: CaseDetail) -> Iterator[Row]:
+    height, posture = detail.case.task.height_m, detail.agents[agent.name]
+    for side in SIDES:
+        frame = f"{agent.name}'s own, x at the load"
+        yield height, agent.name, f"{side}_hand", frame, *posture.hand_wrenches[side]
+    for side in SIDES:
+        yield height, agent.name, f"{side}_foot", agent.soles[side], *posture.foot_wrenches[side]
+
+
+def _text(columns: Row, cases: Sequence[CaseDetail], rows_of: Iterable[Iterable[Row]]) -> str:
+    """The rows of each case under their columns, with names of people and loads where they are needed."""
+    named = any(detail.case.label for detail in cases)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow((*NAME_COLUMNS, *columns) if named else columns)
+    for detail, rows in zip(cases, rows_of, strict=True):
+        names = detail.case.pair if named else ()
+        writer.writerows((*names, *row) for row in rows)
+    return stream.getvalue()

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from evodesign.report.figures.joint_torques import joint_torques
+from evodesign.report.figures.joint_torques import joint_torques, torque_boxes
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
-from evodesign.report.figures.torque_boxes import torque_boxes
 from evodesign.report.opened_design import OpenedDesign
 
 __all__ = ["write_design_figures"]

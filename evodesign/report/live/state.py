@@ -1,18 +1,37 @@
-"""Where a search stands, as the JSON object that the page and `watch --json` show.
+"""Where a running search stands: its log followed, kept up to date record by record, and as a JSON object.
 
-Numbers are the log's, in natural values; times in seconds. Its shape is a promise.
+Of the evaluations only the front and a thinned sample of the others are kept, so that a look at a long search
+costs no more than one at a short one.
+
+The page and `watch --json` show the object: numbers are the log's, in natural values; times in seconds. Its
+shape is a promise.
 """
 
 from __future__ import annotations
 
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from evodesign.analysis.hypervolume import best
-from evodesign.analysis.knees import knees
-from evodesign.analysis.live_state import LiveState
-from evodesign.records import Evaluation, RunHeader
+import msgspec
 
-__all__ = ["MOST_KNEES", "MOST_POINTS", "state_of", "word"]
+from evodesign.analysis.decision_making import knees
+from evodesign.analysis.front import front
+from evodesign.analysis.hypervolume import best
+from evodesign.errors import RunError
+from evodesign.records import Evaluation, Generation, RunHeader, Status
+from evodesign.runlog.follow import Follower
+
+__all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "FollowedRun", "LiveRun", "LiveState", "state_of", "word"]
+
+SAMPLE = 1000
+"""Most evaluations that are kept beside the front; then every second one is dropped, again and again."""
+
+PACE_OVER = 200
+"""Evaluations over which the pace is measured."""
 
 MOST_KNEES = 8
 """Knees of the front that are shown."""
@@ -22,6 +41,113 @@ MOST_POINTS = 2000
 
 SILENCE = 60.0
 """Seconds without a new evaluation after which a search is called silent."""
+
+
+@dataclass(frozen=True, slots=True)
+class LiveState:
+    """Where a search stands.
+
+    Args:
+        header: of the last session.
+        done: evaluations so far.
+        feasible: how many of them are.
+        causes: how many ended in each status that is not solved.
+        generations: all so far, in order.
+        front: of all evaluations so far, in order of number.
+        others: a sample of the feasible ones that are not on the front.
+        latest: when the last evaluation was written, in seconds since 1970; None before the first.
+        pace: evaluations per second of the last ones of this session; None before there are two.
+    """
+
+    header: RunHeader
+    done: int
+    feasible: int
+    causes: dict[Status, int]
+    generations: tuple[Generation, ...]
+    front: tuple[Evaluation, ...]
+    others: tuple[Evaluation, ...]
+    latest: float | None
+    pace: float | None
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Until the budget is used up, at this pace; None while the pace is unknown."""
+        return None if not self.pace else max(0, self.header.budget - self.done) / self.pace
+
+
+class LiveRun:
+    """Learns the records of a log in the order in which they are written."""
+
+    def __init__(self) -> None:
+        self._header: RunHeader | None = None
+        self._numbers: set[int] = set()
+        self._feasible = 0
+        self._causes: dict[Status, int] = {}
+        self._generations: dict[int, Generation] = {}
+        self._front: tuple[Evaluation, ...] = ()
+        self._others: list[Evaluation] = []
+        self._every = 1
+        self._times: list[float] = []
+
+    def learn(self, records: Sequence[tuple[msgspec.Struct, float]]) -> None:
+        """Take in new records, each with the time when it was written."""
+        born: list[Evaluation] = []
+        for record, written in records:
+            if isinstance(record, RunHeader):
+                self._header = record
+                self._times = []
+            elif isinstance(record, Generation):
+                self._generations[record.number] = record
+            elif isinstance(record, Evaluation) and record.number not in self._numbers:
+                self._count(record, written)
+                born.append(record)
+        if self._header is not None and born:
+            self._sort(self._header, born)
+
+    @property
+    def state(self) -> LiveState | None:
+        """Where the search stands; None before the log's header is known."""
+        if self._header is None:
+            return None
+        times = self._times
+        span = times[-1] - times[0] if len(times) > 1 else 0.0
+        return LiveState(
+            header=self._header,
+            done=len(self._numbers),
+            feasible=self._feasible,
+            causes=dict(self._causes),
+            generations=tuple(self._generations[number] for number in sorted(self._generations)),
+            front=self._front,
+            others=tuple(self._others),
+            latest=times[-1] if times else None,
+            pace=(len(times) - 1) / span if span > 0.0 else None,
+        )
+
+    def _count(self, evaluation: Evaluation, written: float) -> None:
+        self._numbers.add(evaluation.number)
+        self._feasible += evaluation.feasible
+        status = evaluation.assessment.status
+        if status is not Status.SOLVED:
+            self._causes[status] = self._causes.get(status, 0) + 1
+        self._times = [*self._times[-PACE_OVER:], written]
+
+    def _sort(self, header: RunHeader, born: Sequence[Evaluation]) -> None:
+        """Put new evaluations on the front or into the sample of the others."""
+        before = self._front
+        self._front = front(header.objectives, [*before, *born])
+        kept = {evaluation.number for evaluation in self._front}
+        names = {objective.name for objective in header.objectives}
+        self._others += [
+            each
+            for each in (*before, *born)
+            if each.number not in kept
+            and each.number % self._every == 0
+            and each.feasible
+            and names <= set(each.assessment.objectives)
+        ]
+        while len(self._others) > SAMPLE:
+            self._every *= 2
+            self._others = [each for each in self._others if each.number % self._every == 0]
 
 
 def state_of(live_state: LiveState, *, ended: bool, now: float) -> dict[str, Any]:
@@ -83,3 +209,44 @@ def _point(header: RunHeader, evaluation: Evaluation) -> list[float]:
     """Number and objectives of a design."""
     values = evaluation.assessment.objectives
     return [evaluation.number, *(values[objective.name] for objective in header.objectives)]
+
+
+class FollowedRun:
+    """A run that is being written, looked at again and again.
+
+    Args:
+        directory: of the run.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = directory
+        self._follower = Follower(directory)
+        self._live_run = LiveRun()
+        self._lock = threading.Lock()
+
+    def look(self) -> LiveState:
+        """Where the search stands now.
+
+        Raises:
+            RunError: the log's header cannot be read.
+        """
+        with self._lock:
+            self._live_run.learn([(logged.record, logged.time) for logged in self._follower.look()])
+        live_state = self._live_run.state
+        if live_state is None:
+            raise RunError(f"{self.directory}: the log has no header yet, so there is nothing to watch")
+        return live_state
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last session closed its log."""
+        return self._follower.ended
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What cannot be read."""
+        return self._follower.notes
+
+    def state(self) -> dict[str, Any]:
+        """Where the search stands now, as the JSON object of the page."""
+        return state_of(self.look(), ended=self.ended, now=time.time())

@@ -4,22 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 
+from msgspec.structs import replace
+
+from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.front import front
-from evodesign.analysis.infeasible import causes_of_infeasibility
 from evodesign.errors import EvodesignError
 from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.factory import evaluator_of
+from evodesign.problem.progress import PrecomputeProgress
+from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Case, Detail, Evaluation
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
 from evodesign.report.page.content import CauseContent, Content, DesignContent, Facts, Mark
-from evodesign.report.page.points import MOST_POINTS, chosen_points, points
-from evodesign.report.subsample import subsample
+from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
+from evodesign.report.subset import subsample
 from evodesign.runlog.run import Run
 
-__all__ = ["MOST_POSTURES", "page_content"]
+__all__ = ["MOST_POSTURES", "Gradients", "gradients_of", "page_content", "with_gradients"]
 
 MOST_POSTURES = 300
 """Designs whose postures are in the page: the marked ones, then the front, evenly."""
+
+Gradients = dict[str, dict[str, float]]
+"""Derivatives by objective, then by parameter."""
 
 
 def page_content(run: Run, asked: Collection[int] = ()) -> Content:
@@ -157,3 +165,38 @@ def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | No
     values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
     links, joints = changes(problem, values)
     return DesignContent(cases=cases, postures=detail.cases, links=links, joints=joints)
+
+
+def with_gradients(content: Content, run: Run, jobs: int, progress: PrecomputeProgress) -> Content:
+    """The page with the gradients of its marked designs; arguments as in `gradients_of`."""
+    numbers = dict.fromkeys(mark.number for mark in content.marks if mark.number in content.designs)
+    found = gradients_of(run, numbers, jobs, progress)
+    designs = {
+        number: replace(design, gradients=found.get(number, {})) for number, design in content.designs.items()
+    }
+    return replace(content, designs=designs)
+
+
+def gradients_of(
+    run: Run, numbers: Iterable[int], jobs: int, progress: PrecomputeProgress
+) -> dict[int, Gradients]:
+    """The gradients of some designs of a run, solved anew; objectives that have none are left out.
+
+    Args:
+        run: whose problem is built again.
+        numbers: of evaluations.
+        jobs: that work out what the problem needs once.
+        progress: is shown what is worked out.
+    """
+    problem = build_problem(run.header.problem)
+    evaluator = evaluator_of(problem, jobs, progress)
+    derivatives = Sensitivities(problem, evaluator.known)
+    genomes = {evaluation.number: evaluation.genome for evaluation in run.evaluations}
+    found = {}
+    for number in numbers:
+        values = problem.space.values(genomes[number])
+        sensitivities = derivatives.at(values, evaluator.solve(values)).sensitivities()
+        found[number] = {
+            name: dict(each.gradient) for name, each in sensitivities.items() if each.gradient is not None
+        }
+    return found

@@ -1,21 +1,28 @@
-"""Marked designs: the unscaled robot, the best of each objective, knees, and what the user asks for."""
+"""Designs of a page: which evaluations it holds, and which of them it marks.
+
+Marked are the unscaled robot, the best of each objective, knees, and what the user asks for.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
 
+from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import to_minimise
-from evodesign.analysis.knees import knees
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem
-from evodesign.records import Evaluation, Objective, Sense
-from evodesign.report.page.content import Mark
+from evodesign.records import Evaluation, Objective, RunHeader, Sense
+from evodesign.report.page.content import Mark, Points
+from evodesign.report.subset import subsample
 
-__all__ = ["asked", "chosen", "nearest_to_feasible", "unscaled"]
+__all__ = ["MOST_POINTS", "asked", "chosen", "chosen_points", "nearest_to_feasible", "points", "unscaled"]
 
 MOST_KNEES = 3
 MOST_NEAR = 5
+
+MOST_POINTS = 10_000
+"""Evaluations in the page; beyond this number they are thinned out evenly, and a note says so."""
 
 
 def unscaled(problem: Problem, evaluations: Sequence[Evaluation]) -> tuple[Mark, ...]:
@@ -69,3 +76,60 @@ def nearest_to_feasible(evaluations: Sequence[Evaluation]) -> tuple[Mark, ...]:
         Mark(number=number, kind="near", label="nearest to feasible")
         for _, number in sorted(known)[:MOST_NEAR]
     )
+
+
+def chosen_points(
+    evaluations: Sequence[Evaluation], front: Collection[int], needed: Collection[int], most: int
+) -> list[Evaluation]:
+    """At most so many evaluations, in order of number: the needed, then the front, the feasible, the rest.
+
+    Args:
+        evaluations: of the run.
+        front: numbers of the front.
+        needed: numbers that must be there.
+        most: how many may be.
+    """
+    groups: tuple[list[Evaluation], ...] = ([], [], [], [])
+    for evaluation in evaluations:
+        if evaluation.number in needed:
+            groups[0].append(evaluation)
+        elif evaluation.number in front:
+            groups[1].append(evaluation)
+        else:
+            groups[2 if evaluation.feasible else 3].append(evaluation)
+    chosen: list[Evaluation] = list(groups[0])
+    for group in groups[1:]:
+        chosen += subsample(group, max(0, most - len(chosen)))
+    return sorted(chosen, key=lambda evaluation: evaluation.number)
+
+
+def points(header: RunHeader, shown: Sequence[Evaluation], front: Collection[int]) -> Points:
+    """Columns of evaluations.
+
+    Args:
+        header: of the run.
+        shown: the evaluations, in order.
+        front: numbers of the front.
+    """
+    worth = [evaluation.assessment for evaluation in shown]
+    return Points(
+        number=[evaluation.number for evaluation in shown],
+        kind=[_kind(evaluation, front) for evaluation in shown],
+        objectives={
+            objective.name: [each.objectives.get(objective.name) for each in worth]
+            for objective in header.objectives
+        },
+        parameters={
+            parameter.name: [each.design[parameter.name] for each in worth] for parameter in header.parameters
+        },
+        violation_m=[each.violation for each in worth],
+        lowest_m=[None if each.reach is None else each.reach.lowest_m for each in worth],
+        highest_m=[None if each.reach is None else each.reach.highest_m for each in worth],
+        reason=["" if evaluation.feasible else evaluation.assessment.reason for evaluation in shown],
+    )
+
+
+def _kind(evaluation: Evaluation, front: Collection[int]) -> str:
+    if evaluation.number in front:
+        return "front"
+    return "feasible" if evaluation.feasible else "infeasible"

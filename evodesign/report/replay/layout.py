@@ -13,11 +13,10 @@ from typing import Any, Final
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import CaseDetail
-from evodesign.report.ranked_joints import ranked_joints
 from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
-from evodesign.report.replay.times import several, time_scale
-from evodesign.report.scene_models import LOAD
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.replay.recording import several, time_scale
+from evodesign.report.scene_models import LOAD, SceneSet
+from evodesign.report.subset import ranked_joints
 
 __all__ = ["layout_text"]
 

@@ -1,25 +1,72 @@
 """The replay as an MCAP file: heights or cases as time, the models attached as URDF.
 
-The last posture comes once more a second later, so that a recording of one height has a length, too.
+Heights are time, ten seconds per metre, where a problem has one person and one load. Otherwise the cases come
+one after the other, in the problem's order, two seconds each: all loads of a person in a row. The last
+posture comes once more a second later, so that a recording of one height has a length, too.
+
+The schemas of the messages stand in the file as MCAP wants them: a protobuf `FileDescriptorSet` with
+everything needed.
+
+Source: MCAP registry, schema encoding `protobuf`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import IO, Final
+from collections.abc import Iterator, Mapping, Sequence
+from typing import IO, Any, Final
 
+from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.writer import CompressionType, Writer
 
 from evodesign.records import CaseDetail
 from evodesign.report.replay.messages import TOPICS, messages
-from evodesign.report.replay.schemas import descriptor_set
-from evodesign.report.replay.times import timed
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneSet
 
-__all__ = ["write_replay"]
+__all__ = [
+    "SECONDS_PER_CASE",
+    "Timed",
+    "descriptor_set",
+    "nanoseconds_at",
+    "several",
+    "time_scale",
+    "timed",
+    "write_replay",
+]
+
+NANOSECONDS: Final = 1_000_000_000
+NANOSECONDS_PER_METRE: Final = 10 * NANOSECONDS
+SECONDS_PER_CASE: Final = 2
+
+Timed = tuple[int, CaseDetail]
+"""Time [ns] and what is shown from then on."""
 
 HOLD: Final = 1_000_000_000
 """How long the last posture stays [ns]."""
+
+
+def nanoseconds_at(height: float) -> int:
+    """Time of a height's messages."""
+    return round(height * NANOSECONDS_PER_METRE)
+
+
+def several(cases: Sequence[CaseDetail]) -> bool:
+    """Whether they are of several people or loads, so that a height does not tell them apart."""
+    return any(detail.case.label for detail in cases)
+
+
+def timed(cases: Sequence[CaseDetail]) -> list[Timed]:
+    """All cases with their times, in rising order."""
+    if several(cases):
+        return [(count * SECONDS_PER_CASE * NANOSECONDS, detail) for count, detail in enumerate(cases)]
+    ordered = sorted(cases, key=lambda detail: detail.case.task.height_m)
+    return [(nanoseconds_at(detail.case.task.height_m), detail) for detail in ordered]
+
+
+def time_scale(cases: Sequence[CaseDetail]) -> str:
+    """What time means, in words."""
+    if several(cases):
+        return f"{SECONDS_PER_CASE} s per case: person, load and height in the problem's order"
+    return "10 s per metre of the load's height"
 
 
 def write_replay(
@@ -70,3 +117,19 @@ def _channels(writer: Writer) -> dict[str, int]:
         topic: writer.register_channel(topic, "protobuf", schemas[kind.DESCRIPTOR.full_name])
         for topic, kind in TOPICS.items()
     }
+
+
+def descriptor_set(message: Any) -> bytes:
+    """The files that describe a class of messages, imported ones before those that import them, each once."""
+    files = {file.name: file for file in _files(message.DESCRIPTOR.file)}
+    described = FileDescriptorSet()
+    for file in files.values():
+        file.CopyToProto(described.file.add())
+    serialized: bytes = described.SerializeToString(deterministic=True)
+    return serialized
+
+
+def _files(file: Any) -> Iterator[Any]:
+    for imported in file.dependencies:
+        yield from _files(imported)
+    yield file

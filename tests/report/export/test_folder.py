@@ -27,8 +27,7 @@ from evodesign.records import (
 )
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
-from evodesign.report.scene_models import SceneModels
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneModels, SceneSet
 from tests.report.scenes import hold_json, random_detail, random_values
 from tests.tree.crane import crane
 

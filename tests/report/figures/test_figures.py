@@ -11,11 +11,9 @@ from matplotlib.text import Annotation
 
 from evodesign.errors import InputError
 from evodesign.problem.build import Problem
-from evodesign.report.figures.faces import Camera, faces_of
-from evodesign.report.figures.joint_torques import joint_torques
+from evodesign.report.figures.joint_torques import joint_torques, torque_boxes
 from evodesign.report.figures.paint import write_figure
-from evodesign.report.figures.posture_figure import posture_figure
-from evodesign.report.figures.torque_boxes import torque_boxes
+from evodesign.report.figures.posture_figure import Camera, faces_of, posture_figure
 from tests.report.scenes import random_stages
 
 TORQUES = {

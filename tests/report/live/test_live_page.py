@@ -13,10 +13,9 @@ import msgspec
 import pytest
 
 from evodesign.analysis.front import front
-from evodesign.analysis.live_state import LiveRun
 from evodesign.errors import InputError, RunError
 from evodesign.report.live.server import ADDRESS, LiveServer
-from evodesign.report.live.state import state_of
+from evodesign.report.live.state import LiveRun, state_of
 from tests.machine import chromium
 from tests.runlog.toys import toy_evaluations, toy_generation, toy_header
 

@@ -17,7 +17,7 @@ from evodesign.problem.build import Problem
 from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html
 from evodesign.report.page.content import Content
-from evodesign.report.page.points import chosen_points
+from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
 from evodesign.runlog.run import Run, read_run
 from evodesign.runlog.writer import RunWriter

@@ -10,7 +10,7 @@ from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.progress import SILENT
 from evodesign.records import Evaluation
-from evodesign.report.page.gradients import gradients_of
+from evodesign.report.page.gather import gradients_of
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import Run
 

@@ -24,8 +24,7 @@ from evodesign.records import Detail
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 from evodesign.report.replay.recording import write_replay
-from evodesign.report.scene_models import SceneModels, looks_of, placed_scene
-from evodesign.report.scene_set import SceneSet
+from evodesign.report.scene_models import SceneModels, SceneSet, looks_of, placed_scene
 from tests.report.scenes import random_cast, random_company, random_detail
 from tests.report.test_scene_models import posture_of
 

@@ -7,7 +7,7 @@ import itertools
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.report.subsample import subsample
+from evodesign.report.subset import subsample
 
 
 @given(st.integers(0, 300), st.integers(0, 50))

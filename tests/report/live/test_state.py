@@ -1,7 +1,7 @@
-from evodesign.analysis import live_state
 from evodesign.analysis.front import front
-from evodesign.analysis.live_state import LiveRun
 from evodesign.records import Status
+from evodesign.report.live import state as live_state
+from evodesign.report.live.state import LiveRun
 from tests.analysis.designs import numbers
 from tests.runlog.toys import toy_evaluations, toy_generation, toy_header
 

@@ -9,7 +9,7 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
-from evodesign.report.figures.faces import AROUND, Camera, Face, faces_of
+from evodesign.report.figures.posture_figure import AROUND, Camera, Face, faces_of
 
 PLACE = Placement.from_xyz_rpy((0.3, -0.2, 0.9), (0.4, -0.7, 1.9))
 

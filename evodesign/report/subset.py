@@ -1,10 +1,20 @@
-"""The joints of largest torque: what a card, a plot or a layout shows where there is no space for all."""
+"""What is shown where there is no space for all: points evenly, joints by their largest torque."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
-__all__ = ["ranked_joints"]
+__all__ = ["ranked_joints", "subsample"]
+
+T = TypeVar("T")
+
+
+def subsample(items: Sequence[T], most: int) -> list[T]:
+    """At most so many of the items, in order, evenly over the whole: item i of n is floor(i len / n)."""
+    if len(items) <= most:
+        return list(items)
+    return [items[i * len(items) // most] for i in range(most)]
 
 
 def ranked_joints(torques: Sequence[Mapping[str, float]]) -> list[str]:
