@@ -1,20 +1,41 @@
-"""Files of named designs: the unscaled robot, starting populations."""
+"""Files of named designs: the unscaled robot, starting populations; as a user writes them, and as values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-
+from typing import Annotated
 import msgspec
-
+from msgspec import Meta
+from evodesign.problem.table import Name, Positive, Table
+from collections.abc import Mapping, Sequence
 from evodesign.design.space import ALLOCATIONS, DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.decode import decode_toml
-from evodesign.problem.design_file import DesignEntry, PopulationFile
 from evodesign.problem.materials import refuse_no_choice
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
-__all__ = ["designs_text", "read_designs", "start_genomes"]
+__all__ = ['DesignEntry', 'PopulationFile', 'designs_text', 'read_designs', 'start_genomes']
+
+
+class DesignEntry(Table, frozen=True):
+    """`[[design]]` of a population file: values by group; what is left out stays unscaled.
+
+    `material` names the material of a density that has materials, in place of `density_kg_per_m3`.
+    """
+
+    name: Name
+    length: dict[str, Positive] = msgspec.field(default_factory=dict)
+    density_kg_per_m3: dict[str, Positive] = msgspec.field(default_factory=dict)
+    allocation: dict[str, float] = msgspec.field(default_factory=dict)
+    material: dict[str, Name] = msgspec.field(default_factory=dict)
+
+
+class PopulationFile(Table, frozen=True):
+    """A whole population file."""
+
+    name: Name
+    design: Annotated[tuple[DesignEntry, ...], Meta(min_length=1)]
+
 
 TABLES = {
     ParameterKind.LENGTH: "length",

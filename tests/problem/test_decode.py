@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from evodesign.errors import InputError
 from evodesign.problem.decode import decode_toml
-from evodesign.problem.design_file import PopulationFile
+from evodesign.problem.designs import PopulationFile
 from evodesign.problem.file import ProblemFile
 
 
