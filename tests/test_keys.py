@@ -27,11 +27,10 @@ from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.pieces import NO_PART_OF, Piece, PrecomputeSetting, Subject, key_of
 from evodesign.problem import evaluation_cache
 from evodesign.problem.build import build_problem
-from evodesign.problem.decode import decode_toml
 from evodesign.problem.evaluation_cache import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.precompute import precompute_setting
-from evodesign.problem.source import read_source
+from evodesign.problem.source import decode_toml, read_source
 from evodesign.records import Hold, ProblemSource
 
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Annotated
+
 import msgspec
 from msgspec import Meta
-from evodesign.problem.table import Name, Positive, Table
-from collections.abc import Mapping, Sequence
+
 from evodesign.design.space import ALLOCATIONS, DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
-from evodesign.problem.decode import decode_toml
 from evodesign.problem.materials import refuse_no_choice
+from evodesign.problem.source import decode_toml
+from evodesign.problem.table import Name, Positive, Table
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
-__all__ = ['DesignEntry', 'PopulationFile', 'designs_text', 'read_designs', 'start_genomes']
+__all__ = ["DesignEntry", "PopulationFile", "designs_text", "read_designs", "start_genomes"]
 
 
 class DesignEntry(Table, frozen=True):

@@ -21,9 +21,9 @@ import msgspec
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Limits
-from evodesign.problem.decode import decode_toml
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.file import ProblemFile, SolverTable
+from evodesign.problem.source import decode_toml
 from evodesign.records import Assessed, Genome, ProblemSource, Status
 
 __all__ = ["Remembering", "problem_digest"]

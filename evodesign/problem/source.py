@@ -1,15 +1,24 @@
-"""Reading a problem and the files that it names."""
+"""Reading a problem and the files that it names: as text, and strictly decoded into tables.
+
+Errors name file, key, what was wanted and what was found, so that a user can act on them.
+"""
 
 from __future__ import annotations
 
+import math
+import re
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, TypeVar, get_args
 
-from evodesign.errors import InputError
-from evodesign.problem.decode import decode_toml
+import msgspec
+
+from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 
-__all__ = ["read_source", "read_text"]
+__all__ = ["decode_toml", "read_source", "read_text"]
 
 
 def read_source(path: Path, symmetry: str | None = None) -> ProblemSource:
@@ -54,3 +63,120 @@ def read_text(path: Path, source: str, key: str) -> str:
         raise InputError(source, key, "UTF-8 text", f"other bytes in '{path}'") from error
     except (OSError, ValueError) as error:
         raise InputError(source, key, "a readable file", f"'{path}' ({error})") from error
+
+
+RENAMED = {"policy": "allocation", "seeds": "start_portfolio"}
+"""Keys of earlier versions, and what they are called now."""
+
+DEEPEST = 16
+"""Tables and arrays inside each other; a problem has four."""
+
+T = TypeVar("T", bound=msgspec.Struct)
+
+
+def decode_toml(text: str, source: str, table: type[T]) -> T:
+    """Decode TOML text into a table.
+
+    Args:
+        text: the file's text.
+        source: the file's name, for messages.
+        table: a strict msgspec struct.
+    Raises:
+        InputError: broken TOML, unknown key, wrong type, value out of range, number that is not finite.
+    """
+    try:
+        raw = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # a ValueError for an integer of thousands of digits
+        raise InputError(source, "", "valid TOML", str(error) or "tables nested too deeply") from error
+    _refuse_depth(raw, source)
+    _refuse_unknown_keys(raw, table, source, "")
+    for key, value in _leaves(raw, ""):
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(source, key, "a finite number", repr(value))
+    try:
+        return msgspec.convert(raw, table)
+    except msgspec.ValidationError as error:
+        raise _explained(error, raw, source) from error
+
+
+def _refuse_depth(raw: Any, source: str) -> None:
+    """Refuse nesting that no table asks for: dotted keys nest without limit, and what follows recurs."""
+    layer = [raw]
+    for _ in range(DEEPEST):
+        layer = [
+            inner
+            for outer in layer
+            if isinstance(outer, dict | list)
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+        ]
+    if layer:
+        raise InputError(source, "", f"tables nested at most {DEEPEST} deep", "deeper ones")
+
+
+def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
+    if isinstance(raw, list):
+        for position, item in enumerate(raw):
+            _refuse_unknown_keys(item, kind, source, f"{prefix}[{position}]")
+        return
+    struct = _struct_in(kind)
+    if struct is None or not isinstance(raw, dict):
+        return
+    fields = {field.encode_name: field for field in msgspec.structs.fields(struct)}
+    for key, value in raw.items():
+        path = f"{prefix}.{key}" if prefix else key
+        if key not in fields:
+            now = RENAMED.get(key)
+            hint = f"; it is called '{now}' now" if now in fields else nearest_name(key, fields)
+            raise InputError(source, path, f"one of the keys {', '.join(fields)}", f"'{key}'{hint}")
+        _refuse_unknown_keys(value, fields[key].type, source, path)
+
+
+def _struct_in(kind: Any) -> type[msgspec.Struct] | None:
+    """The table type inside an annotation such as `X | None` or `tuple[X, ...]`."""
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        return kind
+    if getattr(kind, "__origin__", None) is dict:
+        return None
+    return next((found for part in get_args(kind) if (found := _struct_in(part))), None)
+
+
+def _leaves(raw: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(raw, dict):
+        for key, value in raw.items():
+            yield from _leaves(value, f"{path}.{key}" if path else key)
+    elif isinstance(raw, list):
+        for position, value in enumerate(raw):
+            yield from _leaves(value, f"{path}[{position}]")
+    else:
+        yield path, raw
+
+
+def _explained(error: msgspec.ValidationError, raw: Any, source: str) -> InputError:
+    """The library's message, taken apart into key, wanted and found."""
+    text = str(error)
+    match = re.fullmatch(r"(.*?)(?: - at `(?:key in )?\$\.?(.*)`)?", text, re.DOTALL)
+    message, key = (match.group(1), match.group(2) or "") if match else (text, "")
+    key = key.replace("[...]", "")  # a value under some key of a free table
+    missing = re.fullmatch(r"Object missing required field `(.*)`", message)
+    if missing:
+        where = f"{key}.{missing.group(1)}" if key else missing.group(1)
+        return InputError(source, where, "this key", "nothing")
+    wanted = re.sub(r", got .*", "", message.removeprefix("Expected ")).replace("`", "")
+    wanted = wanted.replace("Invalid enum value", "another word than").replace(
+        "str of length", "text of length"
+    )
+    return InputError(source, key, wanted, _shown(_at(raw, key)))
+
+
+def _at(raw: Any, key: str) -> Any:
+    for name, position in re.findall(r"([^.\[\]]+)|\[(\d+)\]", key):
+        try:
+            raw = raw[name] if name else raw[int(position)]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return raw
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -41,8 +41,8 @@ class RebuiltProblem:
     def people(self) -> Mapping[str, Agent]:
         """Its people by what they are called; faster than the whole problem, whose robot is a URDF."""
         from evodesign.problem.agents import human_agents  # CasADi takes its time to load
-        from evodesign.problem.decode import decode_toml
         from evodesign.problem.file import ProblemFile
+        from evodesign.problem.source import decode_toml
 
         source = self._header.problem
         tables = decode_toml(source.text, source.path, ProblemFile)

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evodesign.errors import InputError
-from evodesign.problem.decode import decode_toml
 from evodesign.problem.designs import PopulationFile
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.source import decode_toml
 
 
 @pytest.mark.parametrize(
