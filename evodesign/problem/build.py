@@ -20,10 +20,9 @@ from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
 from evodesign.problem.allocation import check_allocations, effort_weights, robot_share
 from evodesign.problem.designs import read_designs, start_genomes
-from evodesign.problem.disturbances import scene_disturbances
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
-from evodesign.problem.loads import payloads
+from evodesign.problem.loads import payloads, scene_disturbances
 from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.people import refuse_unrated
