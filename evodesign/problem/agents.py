@@ -1,25 +1,40 @@
-"""The robot and the person of a problem file, with every frame and joint they name resolved."""
+"""Robot and people of a problem file: frames and joints resolved, populations unfolded, strengths, limits.
+
+A population's table stands for one person per sex and percentile. Limits of the robot's joint torques are the
+URDF's effort limits, or what the problem file says instead.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from fnmatch import fnmatchcase
+
+import msgspec
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent
 from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable, TorqueLimits
-from evodesign.problem.people import everyone
-from evodesign.problem.torque_limits import torque_limits
-from evodesign.records import ProblemSource
+from evodesign.records import ProblemSource, Sense
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
-__all__ = ["human_agents", "refuse_unknown", "robot_agent"]
+__all__ = [
+    "everyone",
+    "human_agents",
+    "refuse_unknown",
+    "refuse_unlimited",
+    "refuse_unrated",
+    "robot_agent",
+    "torque_limits",
+]
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
@@ -158,3 +173,130 @@ def refuse_unknown(
     if name not in known:
         hint = nearest_name(name, known)
         raise InputError(source.path, key, f"the name of a {noun} of '{where}'", f"'{name}'{hint}")
+
+
+OF_ONE = ("stature_m", "mass_kg", "sex", "urdf")
+"""Keys that describe one person and so do not go with a population."""
+
+
+def everyone(tables: ProblemFile, source: ProblemSource) -> list[tuple[str, HumanTable]]:
+    """A table for each person, with its key for messages, in the file's order.
+
+    Raises:
+        InputError: a population that cannot be, or one that is also a single person.
+    """
+    return [one for key, table in tables.people.items() for one in _members(key, table, source)]
+
+
+def _members(key: str, table: HumanTable, source: ProblemSource) -> list[tuple[str, HumanTable]]:
+    if table.population is None:
+        return [(key, table)]
+    for other in OF_ONE:
+        if getattr(table, other) is not None:
+            raise InputError(source.path, f"{key}.{other}", "either this key or population", "both")
+    try:
+        people = population(table.population.sex, table.population.percentiles)
+    except InputError as error:
+        raise InputError(source.path, f"{key}.{error.key}", error.wanted, error.found) from error
+    group = f"{table.name} " if table.name else ""
+    return [
+        (
+            key,
+            msgspec.structs.replace(
+                table,
+                population=None,
+                name=group + name,
+                stature_m=person.stature,
+                mass_kg=person.mass,
+                sex=person.sex,
+            ),
+        )
+        for name, person in people.items()
+    ]
+
+
+def refuse_unrated(key: str, name: str, source: ProblemSource, people: Sequence[Agent]) -> None:
+    """Refuse an objective that needs strengths where a person has none.
+
+    Args:
+        key: of the objective.
+        name: of the objective.
+        source: the problem, for messages.
+        people: all that the problem has.
+    Raises:
+        InputError: none of a person's moving joints has a strength.
+    """
+    for person in people:
+        if not any(joint in person.strengths for joint in person.joints):
+            wanted = "people of known strength (stature_m, mass_kg and sex, or strengths_n_m)"
+            found = f"'{name}' with a person '{person.tree.name}' of unknown strength"
+            raise InputError(source.path, key, wanted, found)
+
+
+LIMITS_KEY = "robot.torque_limits_n_m"
+
+PEAK_TORQUE = "peak_torque"
+"""How the names of objectives end that need a limit of every joint."""
+
+
+def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> Mapping[str, float]:
+    """The largest torque [N m] of each of the robot's moving joints that has a positive, finite one.
+
+    A key of `[robot.torque_limits_n_m]` is a joint's name, or a pattern such as `*_knee` for all joints that
+    it fits; a name counts more than a pattern.
+
+    Raises:
+        InputError: a key that no joint answers to, or a joint that answers to two patterns; limits that shall
+            hold and are not positive, or are not there.
+    """
+    given, hard = tables.robot.torque_limits_n_m, tables.robot.torque_limits is TorqueLimits.HARD
+    asked = {name: _asked_limit(name, given, source) for name in robot.joints}
+    _refuse_unanswered(given, source, robot)
+    limits: dict[str, float] = {}
+    for name, limit in asked.items():
+        effort = robot.tree.joint_by_name[name].effort if limit is None else limit
+        if hard and not effort > 0.0:
+            wanted = f"a positive effort limit of the joint '{name}', or one in {LIMITS_KEY}"
+            raise InputError(source.path, "robot.urdf", wanted, f"{effort:g}")
+        if 0.0 < effort < math.inf:
+            limits[name] = effort
+    if hard and not limits:
+        wanted = f"'none', or a joint with an effort limit in '{tables.robot.urdf}' or in {LIMITS_KEY}"
+        raise InputError(source.path, "robot.torque_limits", wanted, "'hard' and no limits")
+    return limits
+
+
+def refuse_unlimited(tables: ProblemFile, source: ProblemSource, robot: Agent) -> None:
+    """Refuse to take torques relative to their limits where a joint of the robot has none.
+
+    Raises:
+        InputError: naming objective and joint.
+    """
+    unlimited = [joint for joint in robot.joints if joint not in robot.torque_limits]
+    asked = tables.objectives
+    for sense, names in ((Sense.MINIMISE, asked.minimise), (Sense.MAXIMISE, asked.maximise)):
+        for position, name in enumerate(names):
+            if unlimited and name.endswith(PEAK_TORQUE):
+                wanted = (
+                    f"a torque limit of every joint of the robot for '{name}', in its URDF or in {LIMITS_KEY}"
+                )
+                key = f"objectives.{sense}[{position}]"
+                raise InputError(source.path, key, wanted, f"none of '{unlimited[0]}'")
+
+
+def _asked_limit(joint: str, given: Mapping[str, float], source: ProblemSource) -> float | None:
+    """The limit that the problem file gives a joint."""
+    if joint in given:
+        return given[joint]
+    patterns = [pattern for pattern in given if fnmatchcase(joint, pattern)]
+    if len(patterns) > 1:
+        found = f"'{joint}' in '{patterns[0]}' and '{patterns[1]}'"
+        raise InputError(source.path, LIMITS_KEY, "patterns that share no joint", found)
+    return given[patterns[0]] if patterns else None
+
+
+def _refuse_unanswered(given: Mapping[str, float], source: ProblemSource, robot: Agent) -> None:
+    for key in given:
+        if not any(joint == key or fnmatchcase(joint, key) for joint in robot.joints):
+            wanted = f"the name of a joint of '{robot.tree.name}' that moves, or a pattern of such names"
+            raise InputError(source.path, LIMITS_KEY, wanted, f"'{key}'{nearest_name(key, robot.joints)}")

@@ -17,7 +17,13 @@ from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.problem.agents import human_agents, refuse_unknown, robot_agent
+from evodesign.problem.agents import (
+    human_agents,
+    refuse_unknown,
+    refuse_unlimited,
+    refuse_unrated,
+    robot_agent,
+)
 from evodesign.problem.allocation import check_allocations, effort_weights, robot_share
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
@@ -25,9 +31,7 @@ from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, scene_disturbances
 from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
-from evodesign.problem.people import refuse_unrated
 from evodesign.problem.source import decode_toml
-from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, SearchSettings, Sense, Task
 from evodesign.search.base import JOINT_STARTS
 from evodesign.tree.model import Tree

@@ -9,9 +9,9 @@ from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.scene import Agent, Payload
+from evodesign.problem.agents import everyone
 from evodesign.problem.build import Problem
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.people import everyone
 from evodesign.problem.source import decode_toml
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of

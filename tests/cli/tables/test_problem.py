@@ -16,7 +16,7 @@ from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
-from tests.problem.test_disturbances import TABLES, source_with
+from tests.problem.test_loads import TABLES, source_with
 
 
 @pytest.fixture(scope="module")
