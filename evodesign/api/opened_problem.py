@@ -12,9 +12,9 @@ from evodesign.design.space import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem
+from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.materials import refuse_no_choice
 from evodesign.problem.source import read_source
 from evodesign.records import Objective, Parameter, ProblemSource
 

@@ -24,12 +24,17 @@ from evodesign.problem.agents import (
     refuse_unrated,
     robot_agent,
 )
-from evodesign.problem.allocation import check_allocations, effort_weights, robot_share
+from evodesign.problem.design_space import (
+    check_allocations,
+    density_parameters,
+    effort_weights,
+    refuse_choices,
+    robot_share,
+)
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, scene_disturbances
-from evodesign.problem.materials import density_parameters, refuse_choices
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
 from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, SearchSettings, Sense, Task

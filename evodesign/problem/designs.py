@@ -10,7 +10,7 @@ from msgspec import Meta
 
 from evodesign.design.space import ALLOCATIONS, DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
-from evodesign.problem.materials import refuse_no_choice
+from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.source import decode_toml
 from evodesign.problem.table import Name, Positive, Table
 from evodesign.records import Genome

@@ -1,20 +1,41 @@
-"""Densities of a problem file: within bounds, or those of materials from a catalogue.
+"""The design space of a problem file: densities and materials, and how robot and person divide the work.
 
-The catalogue is `body.material.CATALOGUE` and the problem's own `[[material]]` tables together.
+A density lies within bounds or is that of a material, from `body.material.CATALOGUE` and the problem's own
+`[[material]]` tables together. Every contradiction is refused.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from evodesign.body.material import CATALOGUE, Material
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.space import (
+    ALLOCATIONS,
+    EFFORT_RATIO,
+    ROBOT_SHARE,
+    DesignParameter,
+    DesignSpace,
+    ParameterKind,
+)
 from evodesign.errors import InputError, nearest_name
-from evodesign.problem.file import DensityTable, ProblemFile
+from evodesign.mechanics.load_share import share_interval
+from evodesign.mechanics.scene import Scene
+from evodesign.posture.allocation import EffortWeights
+from evodesign.problem.file import AllocationTable, DensityTable, ProblemFile
 from evodesign.records import ProblemSource
 
-__all__ = ["density_parameters", "known_materials", "refuse_choices", "refuse_no_choice"]
+__all__ = [
+    "check_allocations",
+    "density_parameters",
+    "effort_weights",
+    "known_materials",
+    "refuse_choices",
+    "refuse_no_choice",
+    "robot_share",
+]
+
 
 BOUNDS = ("lower_kg_per_m3", "upper_kg_per_m3")
 
@@ -115,3 +136,86 @@ def refuse_no_choice(parameter: DesignParameter, value: float, source: str, key:
         wanted = f"the density of a material of {parameter.name}"
         found = f"{value:g} kg/m^3; the nearest material is '{near.name}' with {near.density:g}"
         raise InputError(source, key, wanted, found)
+
+
+SAME = 1e-6
+"""Difference of two shares that counts as none."""
+
+
+def check_allocations(tables: ProblemFile, source: ProblemSource) -> None:
+    """Refuse allocation parameters that do not exist, exceed their range, or are fixed as well.
+
+    Raises:
+        InputError: naming the allocation parameter.
+    """
+    fixed = {ROBOT_SHARE: tables.task.robot_share, EFFORT_RATIO: tables.task.effort_weights}
+    keys = {ROBOT_SHARE: "task.robot_share", EFFORT_RATIO: "task.effort_weights"}
+    for position, table in enumerate(tables.design.allocation):
+        key = f"design.allocation[{position}]"
+        if table.name not in ALLOCATIONS:
+            wanted = f"one of {', '.join(ALLOCATIONS)}"
+            found = f"'{table.name}'{nearest_name(table.name, ALLOCATIONS)}"
+            raise InputError(source.path, f"{key}.name", wanted, found)
+        allocation = ALLOCATIONS[table.name]
+        for bound, value in (("lower", table.lower), ("upper", table.upper)):
+            if not allocation.means(value):
+                raise InputError(source.path, f"{key}.{bound}", allocation.wanted, f"{value:g}")
+        if fixed[table.name] is not None:
+            found = f"both this and [[design.allocation]] {table.name}"
+            raise InputError(source.path, keys[table.name], "either a fixed value or an allocation", found)
+
+
+def effort_weights(tables: ProblemFile) -> EffortWeights:
+    """The fixed weights of the efforts."""
+    given = tables.task.effort_weights
+    return EffortWeights() if given is None else EffortWeights(given.robot, given.human)
+
+
+def robot_share(tables: ProblemFile, source: ProblemSource, scene: Scene) -> float | None:
+    """The share that the scene's programs must be given; None where statics, the solver or a design decides.
+
+    Args:
+        tables: the problem file; its allocation parameters are sound.
+        source: the problem, for messages.
+        scene: agents and load.
+    Raises:
+        InputError: a share that the load's balance does not allow.
+    """
+    asked = _asked(tables)
+    if not asked:
+        return None
+    low, high = share_interval(scene)
+    free = high - low > SAME
+    for disturbance in scene.disturbances.cases if free else ():
+        ends = share_interval(replace(scene, payload=scene.payload.disturbed(disturbance)))
+        low, high = max(low, ends[0]), min(high, ends[1])
+    for key, share in asked.items():
+        if not low - SAME <= share <= high + SAME:
+            raise InputError(source.path, key, _allowed(scene, low, high), f"{share:g}")
+    return tables.task.robot_share if free else None
+
+
+def _asked(tables: ProblemFile) -> Mapping[str, float]:
+    """Every share that is asked for, by its key."""
+    if tables.task.robot_share is not None:
+        return {"task.robot_share": tables.task.robot_share}
+    allocations = [
+        (i, table) for i, table in enumerate(tables.design.allocation) if table.name == ROBOT_SHARE
+    ]
+    return {key: value for i, table in allocations for key, value in _ends(i, table)}
+
+
+def _ends(position: int, table: AllocationTable) -> tuple[tuple[str, float], ...]:
+    key = f"design.allocation[{position}]"
+    return (f"{key}.lower", table.lower), (f"{key}.upper", table.upper)
+
+
+def _allowed(scene: Scene, low: float, high: float) -> str:
+    """The shares that balance the load, in words."""
+    label = scene.payload.label
+    grasps = f"{scene.payload.grasp} grasps of '{label}'" if label else f"{scene.payload.grasp} grasps"
+    if high < low:
+        return f"{grasps} that balance the load at all"
+    if high - low <= SAME:
+        return f"the robot's share that {grasps} leave here, {low:g}"
+    return f"a share from {max(low, 0.0):g} to {min(high, 1.0):g}, which {grasps} can hold here"
