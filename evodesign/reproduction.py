@@ -26,11 +26,10 @@ from evodesign.analysis.paper_claims import (
 from evodesign.errors import Interrupted
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.codesign import JointSolution
-from evodesign.problem.baseline import GENERATION, Baseline
+from evodesign.problem.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluation_factory, evaluator_of
-from evodesign.problem.paper_setting import broken_limits, held_at, torque_difference
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, SearchSettings
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction

@@ -3,6 +3,11 @@
 A start is a genome, as any other evaluation's is, and the assessment is that of the design in which its solve
 ended. So a baseline is a run like any other, whose genomes are starts and whose designs are optima. A start
 that fails leaves an assessment without objectives, with its status and reason.
+
+The published setting of the paper is the joint problem without limits: here it is solved at a design that is
+held, compared with the paper's torque formula, and asked which limits it breaks.
+
+Source: Sartore et al. 2022, Eq. 12 and 14.
 """
 
 from __future__ import annotations
@@ -10,8 +15,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from evodesign.design.space import EFFORT_RATIO
 from evodesign.errors import InputError
+from evodesign.mechanics.coupled import PAYLOAD, CoupledModel, level_load
+from evodesign.mechanics.floating_base import Configuration
+from evodesign.mechanics.projected import projected_torques
 from evodesign.pool.base import Limits
 from evodesign.posture.check import TOLERANCE
 from evodesign.posture.formulations.codesign import JointProblem, JointSolution
@@ -23,9 +33,18 @@ from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.result import DesignResult
-from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
+from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status, Task
 
-__all__ = ["GENERATION", "Baseline", "BaselineFactory", "refuse_unsuited"]
+__all__ = [
+    "GENERATION",
+    "Baseline",
+    "BaselineFactory",
+    "broken_limits",
+    "held_at",
+    "refuse_unsuited",
+    "torque_difference",
+]
+
 
 GENERATION = 10
 """Starts after which a log says how things stand."""
@@ -144,3 +163,34 @@ class BaselineFactory:
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the joint problem and return the function from start to its result."""
         return Baseline(build_problem(self.source)).assess
+
+
+def held_at(problem: Problem, genome: Genome, tasks: Sequence[Task]) -> JointSolution:
+    """The joint problem with the design held at a genome, over some tasks, from the standard start."""
+    return Baseline(replace(problem, tasks=tuple(tasks), joint_start=(genome,)), fixed=genome).solve(genome)
+
+
+def torque_difference(problem: Problem, solution: JointSolution) -> float:
+    """Largest difference of a solution's torques from the paper's formula at its postures [N m]."""
+    tree = problem.space.resized(problem.scene.robot.tree, solution.design)
+    model = CoupledModel(problem.scene, tree)
+    worst = 0.0
+    for case in solution.cases:
+        places = {
+            n: Configuration(p.base_position, p.base_angles, p.joints) for n, p in case.postures.items()
+        }
+        system = model.at({**places, PAYLOAD: level_load(case.case.task.height_m)})
+        torques = [case.postures[agent].torques[joint] for agent, joint in system.joints]
+        worst = max(worst, float(np.abs(projected_torques(system) - torques).max()))
+    return worst
+
+
+def broken_limits(solutions: Sequence[JointSolution]) -> str:
+    """In words, the limits that the check found broken; empty for none."""
+    found: dict[tuple[str, str], float] = {}
+    for residual in (r for solution in solutions for of in solution.violations for r in of):
+        kind = (residual.words, residual.unit)
+        found[kind] = max(found.get(kind, 0.0), residual.size)
+    return ", ".join(
+        f"{words} by up to {size:.2g} {unit}" for (words, unit), size in found.items() if size > TOLERANCE
+    )

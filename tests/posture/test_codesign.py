@@ -26,8 +26,8 @@ from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.paper_tasks import Tasks, TaskWeights, density_task, mass_height_task
+from evodesign.problem.baseline import broken_limits, torque_difference
 from evodesign.problem.build import Problem, build_problem
-from evodesign.problem.paper_setting import broken_limits, torque_difference
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
 
