@@ -39,8 +39,7 @@ from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.objectives import objective_values
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Evaluation, Genome, Objective, SearchSettings, Sense, Status
 from evodesign.search.base import JOINT_STARTS, Outcome

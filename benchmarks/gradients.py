@@ -23,8 +23,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import evaluator_of
-from evodesign.problem.objectives import objective_kinds
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_kinds
 from evodesign.problem.sensitivities import DesignDerivative, Sensitivities
 from evodesign.problem.source import read_source
 

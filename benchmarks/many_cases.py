@@ -25,7 +25,7 @@ from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_des
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult
 from evodesign.problem.source import read_source
 from evodesign.records import Status
 

@@ -14,10 +14,9 @@ import pytest
 
 from evodesign.mechanics.scene import ROBOT, SIDES, Scene
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.aggregate import CaseQuantity
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import QUANTITIES
+from evodesign.problem.objectives import QUANTITIES, CaseQuantity
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Genome, SearchSettings
 from evodesign.search.base import Outcome

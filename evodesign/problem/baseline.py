@@ -31,8 +31,7 @@ from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
-from evodesign.problem.objectives import objective_values
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status, Task
 
 __all__ = [

@@ -19,8 +19,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
 from evodesign.problem.build import Problem
-from evodesign.problem.objectives import objective_values
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import (
     AgentDetail,
     Assessed,

@@ -39,7 +39,7 @@ from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment, hold_names, materials_of
 

@@ -1,42 +1,150 @@
 """Objectives: pure functions of a design's results.
 
-Adding one is a function here and a line in `QUANTITIES`, for a value of every case (a person with a load at
-a task, undisturbed or not), or in `WHOLE`, for one of the design; the problem file then knows its name.
-What does not exist (no posture, no reach) is absent, never large.
+A case is a person with a load at a task, undisturbed or under one of the problem's disturbances. A quantity
+has a value in every case; an objective is its mean over the cases, its largest value, or a quantile, so that
+a front may be asked to hold for everyone and not only on average. The way stands before the quantity's name:
+`human_torque` is the mean, and there are `worst_human_torque` and `q90_human_torque`.
+
+Adding one is a function here and a line in `QUANTITIES`, for a value of every case, or in `WHOLE`, for one of
+the design; the problem file then knows its name. What does not exist (no posture, no reach) is absent, never
+large.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
+from evodesign.design.space import DesignSpace
 from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.balance import standing_height_of_mass
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.posture.results import AgentPosture
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene, scene_of
+from evodesign.posture.formulations.codesign import JointSettings
+from evodesign.posture.formulations.reach import Reach
+from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
-from evodesign.problem.aggregate import (
-    WORST,
-    CaseQuantity,
-    ObjectiveKind,
-    aggregate,
-    values_over_cases,
-)
-from evodesign.problem.result import DesignResult
-from evodesign.records import Objective
+from evodesign.records import Case, Objective
+from evodesign.tree.model import Tree
 
 __all__ = [
     "HUMAN_EFFORT",
     "QUANTITIES",
     "SHARED_REACH",
+    "WORST",
+    "CaseQuantity",
+    "CaseValue",
+    "DesignResult",
+    "ObjectiveKind",
+    "aggregate",
     "objective_kind",
     "objective_kinds",
     "objective_value",
     "objective_values",
+    "values_over_cases",
 ]
+
+
+@dataclass(frozen=True, slots=True)
+class DesignResult:
+    """Everything that was computed of one design.
+
+    Args:
+        scenes: every person with every load.
+        space: design parameters.
+        values: one number per design parameter.
+        tree: the robot of the design.
+        reach: interval of load heights that it can hold, whatever the load.
+        people_highest: highest load that all of the people can hold [m]; None where that was not asked for.
+        cases: one solution per undisturbed case of the problem, in its order.
+        paper: the paper's tasks and their weights.
+    """
+
+    scenes: tuple[Scene, ...]
+    space: DesignSpace
+    values: Sequence[float]
+    tree: Tree
+    reach: Reach
+    cases: tuple[CaseSolution, ...]
+    paper: JointSettings
+    people_highest: float | None = None
+
+    @property
+    def robot(self) -> Agent:
+        """The robot as the file describes it."""
+        return self.scenes[0].robot
+
+    def scene_of(self, case: Case) -> Scene:
+        """The scene of a case."""
+        return scene_of(self.scenes, case.pair)
+
+    def every_case(self) -> Iterator[tuple[Case, Mapping[str, AgentPosture]]]:
+        """Every solved case with its postures, each undisturbed one followed by its disturbed ones."""
+        for solution in self.cases:
+            for instant in solution.instants:
+                yield solution.case, instant.postures
+                for name, postures in instant.disturbed.items():
+                    yield msgspec.structs.replace(solution.case, disturbance=name), postures
+
+
+WORST = "worst_"
+"""What stands before the name of a quantity whose largest value counts."""
+
+CaseValue = Callable[[Scene, Mapping[str, AgentPosture]], float]
+"""From a scene and the postures in it, by agent name, to a value."""
+
+
+@dataclass(frozen=True, slots=True)
+class CaseQuantity:
+    """A value of every case: its unit and formula."""
+
+    unit: str
+    value: CaseValue
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectiveKind:
+    """An objective's unit and formula."""
+
+    unit: str
+    value: Callable[[DesignResult], float | None]
+
+
+def values_over_cases(
+    value: CaseValue, result: DesignResult, *, disturbed: bool = True
+) -> list[float] | None:
+    """A quantity in every case, or in every undisturbed one, in their order; None unless all are solved."""
+    if not all(solution.solved for solution in result.cases):
+        return None
+    return [
+        value(result.scene_of(case), postures)
+        for case, postures in result.every_case()
+        if disturbed or not case.disturbance
+    ]
+
+
+def aggregate(quantity: CaseQuantity, way: str) -> ObjectiveKind:
+    """The objective that a quantity is over all cases.
+
+    Args:
+        quantity: of single cases.
+        way: nothing for the mean, `worst_` for the largest, `q90_` for the 90 % quantile (interpolated
+            linearly between the values on both sides of it).
+    """
+
+    def value(result: DesignResult) -> float | None:
+        values = values_over_cases(quantity.value, result)
+        if values is None:
+            return None
+        if way == WORST:
+            return max(values)
+        return float(np.quantile(values, float(way[1:-1]) / 100.0) if way else np.mean(values))
+
+    return ObjectiveKind(quantity.unit, value)
 
 
 def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:

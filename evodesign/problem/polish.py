@@ -19,7 +19,7 @@ from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Assessment, Genome, Sense
 from evodesign.search.descent import Iterate, Slopes, descend

@@ -31,8 +31,7 @@ from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
 from evodesign.problem.derivative_notes import posture_notes, reach_notes
-from evodesign.problem.objectives import objective_value
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.records import Status
 
 __all__ = ["DesignDerivative", "ObjectiveSensitivity", "Sensitivities"]

@@ -14,7 +14,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult
 from evodesign.records import Status
 from tests.posture.violations import violations
 

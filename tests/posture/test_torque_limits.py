@@ -13,7 +13,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Hold
 from tests.posture.violations import violations

@@ -16,9 +16,8 @@ from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
-from evodesign.problem.objectives import objective_value
+from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.problem.precompute import precompute_setting
-from evodesign.problem.result import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import CaseDetail, CaseOutcome, ProblemSource
 

@@ -11,8 +11,7 @@ import pytest
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import Problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import objective_kinds
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_kinds
 from evodesign.records import Status
 from evodesign.tree.urdf_write import urdf_text
 

@@ -14,8 +14,7 @@ from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import objective_value
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.records import ProblemSource
 from evodesign.tree.urdf_write import urdf_text
 

@@ -15,7 +15,7 @@ from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import Problem
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import detail_of
-from evodesign.problem.result import DesignResult
+from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment
 
