@@ -1,8 +1,8 @@
-"""How a design's objectives move with its parameters.
+"""How a design's objectives move with its parameters, and where they stop moving smoothly.
 
-Postures and reach have exact derivatives (`posture.derivative`), so the results of a neighbouring design are
-known to first order. An objective is a function of such results; its derivative is that function's along the
-exact tangent, by five-point differences,
+Postures and reach have exact derivatives (`posture.solution_derivative`), so the results of a neighbouring
+design are known to first order. An objective is a function of such results; its derivative is that function's
+along the exact tangent, by five-point differences,
 
     f' = (f(-2t) - 8 f(-t) + 8 f(t) - f(2t)) / 12 t        t = one part in 10^4 of the parameter's range
 
@@ -10,18 +10,20 @@ which for formulas of a few operations agree with the exact derivative to about 
 nothing beyond its function to have a gradient.
 
 What an objective depends on shows when it is taken away: an objective that does not exist without a case's
-posture gets that case's notes.
+posture gets that case's notes. A solution is one of several local optima, held by some of its limits. Its
+derivative holds as long as the same optimum wins and the same limits hold; the notes say how far that is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from evodesign.nlp.optimality import Array, NotDifferentiable
+from evodesign.nlp.sensitivity import Limit
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
@@ -30,11 +32,11 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import Problem
-from evodesign.problem.derivative_notes import posture_notes, reach_notes
 from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.records import Status
 
-__all__ = ["DesignDerivative", "ObjectiveSensitivity", "Sensitivities"]
+__all__ = ["DesignDerivative", "ObjectiveSensitivity", "Sensitivities", "posture_notes", "reach_notes"]
+
 
 STEP = 1e-4
 """Step of the differences, as a share of a parameter's range."""
@@ -200,3 +202,75 @@ def _not_smooth(values: Sequence[float]) -> bool:
     """Whether second differences grow with the step, as without a derivative, and not with its square."""
     near, far = (abs(values[2 - k] - 2.0 * values[2] + values[2 + k]) for k in (1, 2))
     return near > 1e-9 * max(1.0, abs(values[2])) and far < 3.0 * near
+
+
+NEAR = 0.01
+"""Share of a parameter's range within which a change of limits gets a sentence."""
+
+DISTINCT = 1e-5
+"""Relative difference of costs above which two optima are not the same."""
+
+
+def posture_notes(
+    problem: Problem, solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable
+) -> Iterator[str]:
+    """What is to be said of the posture in one case that was solved."""
+    place = ", ".join(part for part in (f"at {solution.case.task}", solution.case.label) if part)
+    yield f"{place}: {_winner(solution, derivative)}"
+    if isinstance(derivative, NotDifferentiable):
+        yield f"{place}: no gradient, for {derivative.reason}"
+    else:
+        yield from _near(problem, place, derivative.limits)
+
+
+def reach_notes(
+    problem: Problem, which: str, derivative: ReachDerivative | NotDifferentiable
+) -> Iterator[str]:
+    """What is to be said of the highest or the lowest load."""
+    place = f"{which} load"
+    if isinstance(derivative, NotDifferentiable):
+        yield f"{place}: no gradient, for {derivative.reason}"
+        return
+    other = (
+        "the starts agree"
+        if derivative.runner_up is None
+        else f"the next best is {derivative.runner_up:.2g} m off"
+    )
+    yield f"{place}: start {derivative.start + 1} of {derivative.starts} won, {other}"
+    yield from _near(problem, place, derivative.limits)
+
+
+def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
+    """Which start won, and how far behind the next best optimum of the same program is."""
+    best = solution.attempt
+    won = f"{best.name if best else 'no start'} won"
+    if best is None or isinstance(derivative, NotDifferentiable):
+        return won
+    others = [a for a in solution.attempts if a.formulation == best.formulation and a.start != best.start]
+    behind = [a.cost / derivative.compared - 1.0 for a in others if a.status is Status.SOLVED]
+    distinct = [share for share in behind if share > DISTINCT]
+    if not others:
+        return f"{won}, the only start"
+    return (
+        f"{won}, the next best optimum costs {min(distinct):.2%} more"
+        if distinct
+        else f"{won}, no other was met"
+    )
+
+
+def _near(problem: Problem, place: str, limits: Sequence[Limit]) -> Iterator[str]:
+    """The change of limits that the least change of one parameter brings about, if it is near."""
+    parameters = problem.space.parameters
+    ranges = np.array([parameter.upper - parameter.lower for parameter in parameters])
+    nearest, which, where = np.inf, None, 0
+    for limit in limits:
+        with np.errstate(divide="ignore"):
+            shares = limit.margin / np.abs(limit.slope * ranges)
+        position = int(np.argmin(shares))
+        if shares[position] < nearest:
+            nearest, which, where = float(shares[position]), limit, position
+    if which is not None and nearest < NEAR:
+        verb = "leaves" if which.active else "reaches"
+        toward = "less" if which.slope[where] > 0.0 else "more"
+        much = f"{nearest * ranges[where]:.2g} {toward} {parameters[where].name}"
+        yield f"{place}: {which.name} {verb} its limit with {much} ({nearest:.1%} of its range)"
