@@ -25,9 +25,8 @@ from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.pieces import NO_PART_OF, Piece, PrecomputeSetting, Subject, key_of
-from evodesign.problem import evaluation_cache
 from evodesign.problem.build import build_problem
-from evodesign.problem.evaluation_cache import NO_PART_OF_EVALUATIONS, problem_digest
+from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.source import decode_toml, read_source
@@ -225,7 +224,7 @@ def test_every_field_of_a_problem_file_counts_in_the_key_of_its_evaluations(
     files = {name: text for name, text in source.files.items() if name != tables.search.start}
 
     def key(whole: tuple[ProblemFile, ProblemSource]) -> str:
-        monkeypatch.setattr(evaluation_cache, "decode_toml", lambda *_: whole[0])
+        monkeypatch.setattr("evodesign.problem.factory.decode_toml", lambda *_: whole[0])
         return problem_digest(whole[1])
 
     whole = (tables, msgspec.structs.replace(source, files=files))

@@ -13,8 +13,7 @@ from evodesign.cli.output import show_notes
 from evodesign.cli.progress import precompute_progress
 from evodesign.pool.base import Pool
 from evodesign.problem.evaluate import AssessmentFactory
-from evodesign.problem.evaluation_cache import Remembering
-from evodesign.problem.factory import evaluation_factory
+from evodesign.problem.factory import Remembering, evaluation_factory
 from evodesign.records import RunHeader
 from evodesign.runlog.run import Run
 from evodesign.session import Evaluate

@@ -1,28 +1,42 @@
-"""The evaluation of a problem, with everything that its workers share precomputed and compiled.
+"""The evaluation of a problem, with all that is kept in the user's cache: nothing is worked out twice.
 
-That is kept in the user's cache, so that only the first evaluation of a problem pays for it, and it never
-changes a result.
+Pieces that workers share are precomputed and compiled, so that only the first evaluation of a problem pays
+for them; they never change a result. Evaluations may be kept between runs as well. What is kept stands under
+a digest of everything that it follows from: the problem's tables but for named exceptions, the texts of the
+files that they name, the genome, and the code that evaluates with what it stands on. A change of any of these
+is another key. Each machine keeps its own, in its user's cache; where that is shared, so is what is kept.
+
+A result that another machine or another day might not give (a time limit) is not kept.
 """
 
 from __future__ import annotations
 
+import functools
 import os
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass
 
-from evodesign.identity import code_digest, digest
+import msgspec
+
+from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
-from evodesign.pool.base import Pool
+from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import Problem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
+from evodesign.problem.file import ProblemFile, SolverTable
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
-from evodesign.records import RunHeader
+from evodesign.problem.source import decode_toml
+from evodesign.records import Assessed, Genome, ProblemSource, RunHeader, Status
 from evodesign.search.base import JOINT_STARTS
 
-__all__ = ["cached_precomputed", "evaluation_factory", "evaluator_of"]
+__all__ = ["Remembering", "cached_precomputed", "evaluation_factory", "evaluator_of", "problem_digest"]
+
 
 Evaluations = AssessmentFactory | BaselineFactory
 
@@ -83,10 +97,99 @@ def _mark(factory: Evaluations, compiler: Compiler) -> str:
     return digest((factory.digest, code_digest(type(factory).__module__), compiler))
 
 
-def _cache(subject: str, progress: PrecomputeProgress) -> Cache | None:
+def _cache(subject: str, progress: PrecomputeProgress = SILENT) -> Cache | None:
     """The user's cache of a subject; None where nothing can be kept."""
     try:
         return user_cache(subject, os.environ)
     except OSError as error:
         progress.note(f"nothing can be kept for the next time: {error}")
+        return None
+
+
+NO_PART_OF_EVALUATIONS: Exceptions = {
+    ProblemFile: {"name": "is a word for results", "search": "says which designs are evaluated, and when"},
+    SolverTable: {
+        "evaluation_seconds": "what such a limit ended is not kept",
+        "evaluation_memory_gb": "what such a limit ended is not kept",
+    },
+    ProblemSource: {"path": "is for messages", "text": "counts as the tables that it holds"},
+}
+
+EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
+"""The modules that evaluate, and that work out what is known beforehand."""
+
+PASSING = frozenset({Status.TIME_LIMIT, Status.WORKER_LOST})
+"""What another try might not give."""
+
+Task = Callable[[Genome], Assessed]
+
+
+@dataclass(frozen=True, slots=True)
+class Remembering:
+    """Builds an evaluation that looks first whether it knows the design.
+
+    Args:
+        factory: of the evaluation; its task is built when a design is not known.
+    """
+
+    factory: AssessmentFactory
+
+    @property
+    def limits(self) -> Limits:
+        """Those of the factory inside."""
+        return self.factory.limits
+
+    def __call__(self) -> Task:
+        """The function from genome to what it is worth."""
+        shelf = f"evaluations/{problem_digest(self.factory.source)}"
+        return functools.partial(_remembered, functools.cache(self.factory), shelf)
+
+
+def problem_digest(source: ProblemSource) -> str:
+    """Digest of everything but the genome that an evaluation follows from.
+
+    The designs that a search starts from are no part of it, although the problem names their file.
+    """
+    tables = decode_toml(source.text, source.path, ProblemFile)
+    files = {name: text for name, text in source.files.items() if name != tables.search.start}
+    named = msgspec.structs.replace(source, files=files)
+    return digest((tables, named, code_digest(*EVALUATING)), without=NO_PART_OF_EVALUATIONS)
+
+
+def _remembered(task: Callable[[], Task], shelf: str, genome: Genome) -> Assessed:
+    """What a genome is worth: as kept, or worked out by one process while others wait for it."""
+    key = digest(genome)
+    cache = _cache(f"{shelf}/{key[:2]}")
+    if cache is None:
+        return task()(genome)
+    with ExitStack() as held:
+        with suppress(OSError):  # without the lock, at worst the work is done twice
+            held.enter_context(cache.lock(key, keep=False))
+        known = _read(cache, key)
+        return known if known is not None else _kept(cache, key, task()(genome))
+
+
+def _kept(cache: Cache, key: str, assessed: Assessed) -> Assessed:
+    content = msgspec.json.encode(assessed)
+    if _lasts(assessed) and _decoded(content) == assessed:
+        with suppress(OSError):
+            cache.store(key, content)
+    return assessed
+
+
+def _lasts(assessed: Assessed) -> bool:
+    assessment = assessed.assessment
+    parts = (*assessment.cases, *((assessment.reach,) if assessment.reach else ()))
+    return PASSING.isdisjoint({assessment.status, *(part.status for part in parts)})
+
+
+def _read(cache: Cache, key: str) -> Assessed | None:
+    content = cache.read(key)
+    return None if content is None else _decoded(content)
+
+
+def _decoded(content: bytes) -> Assessed | None:
+    try:
+        return msgspec.json.decode(content, type=Assessed)
+    except msgspec.DecodeError:
         return None

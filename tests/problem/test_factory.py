@@ -12,8 +12,7 @@ import pytest
 from evodesign import identity
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.problem import evaluation_cache
-from evodesign.problem.evaluation_cache import Remembering, problem_digest
+from evodesign.problem.factory import Remembering, problem_digest
 from evodesign.problem.source import read_source
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
@@ -174,7 +173,7 @@ def test_where_nothing_can_be_kept_evaluations_go_on(
     def refuse(*_: object) -> None:
         raise OSError("no directory to keep files in")
 
-    monkeypatch.setattr(evaluation_cache, "user_cache", refuse)
+    monkeypatch.setattr("evodesign.problem.factory.user_cache", refuse)
     factory = Counting(source, str(tmp_path / "calls"))
     assert Remembering(factory)()((0.1,)) == factory.assess((0.1,))
 
