@@ -78,7 +78,7 @@ class PaperPostures:
         agents = (self._scene.robot, self._scene.human)
         own = {a.name: {part: raw.values[f"{a.name}.{part}"] for part in POSTURE} for a in agents}
         columns = [np.concatenate(list(own[agent.name].values())) for agent in agents]
-        found = Statics(*[np.array(part).ravel() for part in self._statics(*columns, values, height)])
+        found = Statics(*[np.array(part).ravel() for part in self._statics(*columns, [*values, height])])
         torques = np.split(found.torques, [len(self._scene.robot.joints)])
         postures = {
             agent.name: _posture(agent, own[agent.name], torques[place], found, place)
@@ -103,7 +103,7 @@ def paper_program(problem: Problem) -> PaperProgram:
     postures, matrices = [robot.posture, human.posture], [robot.matrices, human.matrices]
     found = projected_statics(scene, matrices, postures, parameters[:-1], DAMPING)
     outputs = [found.torques, found.wrenches]
-    statics = ca.Function("statics", [*postures, names["design"], names["height"]], outputs)
+    statics = ca.Function("statics", [*postures, parameters], outputs)
     return PaperProgram(_program(problem, (robot, human), found, names), statics)
 
 

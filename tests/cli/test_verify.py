@@ -41,7 +41,7 @@ def test_a_sound_run_is_verified_with_its_digest(run: Path) -> None:
     assert "40 evaluations, 4 generations" in out
     assert "digest " in out
     found = json.loads(call("verify", str(run), "--json")[1])
-    assert (found["sound"], found["faults"], found["format_version"]) == (True, [], 1)
+    assert (found["sound"], found["faults"], found["format_version"]) == (True, [], 2)
     assert len(found["digest"]) == 64
 
 

@@ -219,7 +219,7 @@ def sound(problem: Problem) -> bool:
     middle = space.resized(tree, space.values((0.5,) * len(space.parameters)))
     figures = [
         *space.unscaled(tree),
-        *problem.tasks,
+        *(height for task in problem.tasks for height in task.heights),
         *problem.scene.payload.size,
         problem.scene.payload.mass,
     ]
