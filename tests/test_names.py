@@ -17,13 +17,6 @@ import pytest
 REPOSITORY = Path(__file__).parents[1]
 PACKAGE = REPOSITORY / "evodesign"
 
-EXEMPT = (
-    "evodesign/problem/agents.py",
-    "evodesign/problem/evaluate.py",
-    "evodesign/problem/evaluation_json.py",
-)
-"""Where names are still to be changed."""
-
 INSTEAD = {
     "answer": "result",
     "arrival": "outcome",
@@ -134,12 +127,7 @@ def faults(found: Named) -> list[str]:
 
 
 def test_names_are_words_of_the_field() -> None:
-    assert [fault for found in names() if not found.place.startswith(EXEMPT) for fault in faults(found)] == []
-
-
-def test_every_exemption_is_needed() -> None:
-    faulty = [found.place for found in names() if faults(found)]
-    assert [place for place in EXEMPT if not any(found.startswith(place) for found in faulty)] == []
+    assert [fault for found in names() for fault in faults(found)] == []
 
 
 @pytest.mark.parametrize(

@@ -55,14 +55,14 @@ def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...
         return tuple(people)
     labels: list[str] = []
     for (key, table), person in zip(entries, people, strict=True):
-        label = table.name or _told(table, person)
+        label = table.name or _description(table, person)
         if label in labels:
             raise InputError(source.path, f"{key}.name", "a name of its own", f"'{label}' twice")
         labels.append(label)
     return tuple(replace(person, label=label) for person, label in zip(people, labels, strict=True))
 
 
-def _told(table: HumanTable, person: Agent) -> str:
+def _description(table: HumanTable, person: Agent) -> str:
     """What a person without a name is called."""
     if table.urdf is not None:
         return person.tree.name

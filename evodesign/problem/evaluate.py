@@ -202,13 +202,13 @@ def _instant_detail(instant: Instant) -> InstantDetail:
         for name, posture in instant.postures.items()
     }
     disturbed = {
-        disturbance: {name: _borne(posture) for name, posture in postures.items()}
+        disturbance: {name: _load_case(posture) for name, posture in postures.items()}
         for disturbance, postures in instant.disturbed.items()
     }
     return InstantDetail(time_s=instant.time, agents=agents, disturbed=disturbed)
 
 
-def _borne(posture: AgentPosture) -> LoadCaseDetail:
+def _load_case(posture: AgentPosture) -> LoadCaseDetail:
     return LoadCaseDetail(
         torques_n_m=dict(posture.torques),
         hand_wrenches=_numbers(posture.hand_wrenches),

@@ -95,14 +95,14 @@ def _shown(solution: CaseSolution, result: DesignResult) -> dict[str, Any]:
         shown.update({name: _agent(posture) for name, posture in solution.postures.items()})
         shown["wrenches"] = _contacts(solution.postures)
         if solution.disturbed:
-            shown["disturbed"] = {name: _borne(postures) for name, postures in solution.disturbed.items()}
+            shown["disturbed"] = {name: _load_case(postures) for name, postures in solution.disturbed.items()}
         shown["residuals"] = dict(solution.residuals)
         person, posture = result.scene_of(solution.case).human, detail_of(solution).agents[HUMAN]
         shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
     return shown
 
 
-def _borne(postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
+def _load_case(postures: Mapping[str, AgentPosture]) -> dict[str, Any]:
     """Torques and wrenches of agents in a posture that is shown elsewhere."""
     strained = {
         name: {"torque_norm": posture.torque_norm, "torques": dict(posture.torques)}
