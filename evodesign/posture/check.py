@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -72,7 +72,7 @@ class Checker:
         for disturbance in self._scene.disturbances.cases:
             own = instant.disturbed[disturbance.name]
             found += [
-                replace(residual, name=f"{disturbance.name}: {residual.name}")
+                residual.named(f"{disturbance.name}: {residual.name}")
                 for residual in self._load_case(disturbance, instant.postures, own, load_height)
                 if not residual.posture_only
             ]
@@ -85,7 +85,8 @@ class Checker:
         found: list[Residual] = []
         for number, (instant, height) in enumerate(zip(instants, load_heights, strict=True)):
             place = f"instant {number}, " if len(instants) > 1 else ""
-            found += [replace(each, name=place + each.name) for each in self.residuals(instant, height)]
+            here = self.residuals(instant, height)
+            found += [each.named(place + each.name) for each in here] if place else here
         return tuple(found)
 
     def _load_case(
@@ -111,7 +112,7 @@ class Checker:
             if isinstance(term, BodyTerm):
                 for name, body in bodies.items():
                     for residual in term.residuals(body):
-                        yield replace(residual, name=f"{name}.{residual.name}")
+                        yield residual.named(f"{name}.{residual.name}")
             else:
                 yield from term.residuals(system)
 
