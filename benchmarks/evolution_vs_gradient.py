@@ -43,7 +43,7 @@ from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Evaluation, Genome, Objective, SearchSettings, Sense, Status
 from evodesign.search.base import JOINT_STARTS, Outcome
-from evodesign.search.cma_es import default_population
+from evodesign.search.cma_instances import default_population
 from evodesign.search.registry import make_search
 
 HERE = Path(__file__).parent
