@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 
 from benchmarks.search_quality import HERE, read_options, report, search_all
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 PROBLEM = HERE.parent / "problems" / "icub_materials.toml"
 
@@ -28,7 +28,7 @@ def main() -> None:
     report(PROBLEM, runs, options, "catalogue_quality.json")
 
 
-def _strangers(run: Run) -> list[float]:
+def _strangers(run: RunLog) -> list[float]:
     """Densities of evaluated designs that are none of their parameter's materials."""
     return [
         value

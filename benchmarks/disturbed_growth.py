@@ -28,7 +28,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold
 
 HEIGHT = 1.0
@@ -54,7 +54,7 @@ def disturbances_of(size: float, effort: OverCases) -> Disturbances:
 class Bench:
     """A scene's posture problem with its check."""
 
-    def __init__(self, problem: Problem, scene: Scene) -> None:
+    def __init__(self, problem: DesignProblem, scene: Scene) -> None:
         self._problem, self._scene, self._solvers = problem, scene, SolverCache()
         options = replace(problem.options, compiled=False)
         self._setting = Setting(scene, problem.space, problem.weights, options)

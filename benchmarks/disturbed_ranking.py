@@ -30,7 +30,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold
 from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure
 
@@ -74,7 +74,7 @@ class Row:
 class Judge:
     """A problem with one load, undisturbed and disturbed."""
 
-    def __init__(self, problem: Problem, load: str, starts: int) -> None:
+    def __init__(self, problem: DesignProblem, load: str, starts: int) -> None:
         grasp, mass = LOADS[load]
         payload = replace(problem.scene.payload, grasp=grasp, mass=mass)
         undisturbed = replace(problem.scene, payload=payload)
@@ -116,7 +116,7 @@ def _norms(solution: CaseSolution, agent: str) -> dict[str, float]:
     return {name: postures[agent].torque_norm for name, postures in cases.items()}
 
 
-def _with_starts(problem: Problem, scene: Scene, count: int) -> PostureProblem:
+def _with_starts(problem: DesignProblem, scene: Scene, count: int) -> PostureProblem:
     """A posture problem whose solves begin at the program's own starts and at some random ones."""
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     landscape = PostureProblem(setting, problem.symmetry).landscape(HOLDS[0])

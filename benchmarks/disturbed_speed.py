@@ -23,7 +23,7 @@ from evodesign.mechanics.scene import Scene
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 
 DISTURBANCES = (
@@ -54,7 +54,7 @@ class Cost:
     solved: float
 
 
-def measured(problem: Problem, scene: Scene, designs: list[Design]) -> Cost:
+def measured(problem: DesignProblem, scene: Scene, designs: list[Design]) -> Cost:
     """The cost of a scene's programs."""
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     postures = PostureProblem(setting, problem.symmetry)

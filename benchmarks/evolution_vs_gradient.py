@@ -36,7 +36,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import Baseline
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.objectives import DesignResult, objective_values
@@ -62,7 +62,7 @@ Row = dict[str, float | None]
 Step = tuple[Genome, dict[str, float], float | None, float, DesignResult | None]
 
 
-def _known(problem: Problem) -> Precomputed:
+def _known(problem: DesignProblem) -> Precomputed:
     """Seeds and the person's part, from the cache or worked out now."""
     with make_pool("joblib", 2) as pool:
         return cached_precomputed(problem, pool)
@@ -76,7 +76,7 @@ class Bench:
         source = msgspec.structs.replace(
             source, text=source.text.replace("[baseline]\n", "[baseline]\ncompile = true\n")
         )
-        self.problem: Problem = build_problem(source)
+        self.problem: DesignProblem = build_problem(source)
         people = _known(self.problem)
         self.evaluator = Evaluator(self.problem, people)
         self.baseline = Baseline(self.problem)

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.objectives import DesignResult, objective_kinds
@@ -58,7 +58,7 @@ class Comparison:
 class Comparer:
     """Gradients and differences of a problem's designs."""
 
-    def __init__(self, problem: Problem, known: Precomputed) -> None:
+    def __init__(self, problem: DesignProblem, known: Precomputed) -> None:
         self._problem = replace(
             problem, options=replace(problem.options, tolerance=TOLERANCE, compiled=False)
         )

@@ -12,7 +12,7 @@ import numpy as np
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 
@@ -23,7 +23,7 @@ HEIGHTS = (0.8, 1.0, 1.2, 1.5)
 Design = tuple[float, ...]
 
 
-def problem_at(heights: Sequence[float]) -> Problem:
+def problem_at(heights: Sequence[float]) -> DesignProblem:
     """The default problem, its load at other heights."""
     source = read_source(PROBLEM)
     wanted = f"heights_m = {list(heights)}"
@@ -31,20 +31,20 @@ def problem_at(heights: Sequence[float]) -> Problem:
     return build_problem(msgspec.structs.replace(source, text="\n".join(lines)))
 
 
-def known_at(problem: Problem, jobs: int) -> Precomputed:
+def known_at(problem: DesignProblem, jobs: int) -> Precomputed:
     """What is known of the problem beforehand, from the user's cache or worked out now."""
     with JoblibPool(jobs) as pool:
         return cached_precomputed(problem, pool)
 
 
-def random_designs(problem: Problem, count: int) -> list[Design]:
+def random_designs(problem: DesignProblem, count: int) -> list[Design]:
     """Designs drawn uniformly between the problem's bounds, the same ones every time."""
     rng = np.random.default_rng(2022)
     points = rng.uniform(size=(count, len(problem.space.parameters))).tolist()
     return [problem.space.values(tuple(point)) for point in points]
 
 
-def checker_of(problem: Problem, design: Design) -> Checker:
+def checker_of(problem: DesignProblem, design: Design) -> Checker:
     """The independent check of a design's postures."""
     scene = problem.scene
     tree = problem.space.resized(scene.robot.tree, design)

@@ -22,7 +22,7 @@ from evodesign.nlp.start_portfolio import Landscape, random_start
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 
@@ -51,7 +51,7 @@ class Row:
 class Judge:
     """Evaluates designs, and searches for something better with many random starts."""
 
-    def __init__(self, problem: Problem, known: Precomputed, starts: int) -> None:
+    def __init__(self, problem: DesignProblem, known: Precomputed, starts: int) -> None:
         self.problem = problem
         self._starts = starts
         self._evaluator = Evaluator(problem, known)

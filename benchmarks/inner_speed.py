@@ -33,7 +33,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.records import Hold, Status
 
@@ -68,7 +68,7 @@ def main() -> None:
 
 
 def _landscapes(
-    problem: Problem, known: Precomputed, compiled: bool
+    problem: DesignProblem, known: Precomputed, compiled: bool
 ) -> Iterator[tuple[str, Landscape, Sequence[Start]]]:
     """The programs with their starts."""
     options = replace(problem.options, compiled=compiled)
@@ -105,7 +105,7 @@ def _per_solve(
     }
 
 
-def _evaluations(problem: Problem, known: Precomputed, designs: Sequence[Design]) -> dict[str, float]:
+def _evaluations(problem: DesignProblem, known: Precomputed, designs: Sequence[Design]) -> dict[str, float]:
     """Whole evaluations in this process."""
     evaluator = Evaluator(problem, known)
     genomes = [problem.space.genome(design) for design in designs]
@@ -141,7 +141,7 @@ def _timed_solves(inside: dict[str, float]) -> Iterator[None]:
         yield
 
 
-def _workers(problem: Problem, known: Precomputed, designs: Sequence[Design]) -> dict[str, float]:
+def _workers(problem: DesignProblem, known: Precomputed, designs: Sequence[Design]) -> dict[str, float]:
     """Throughput of two workers over that of one, and what lies between workers' work and the wall."""
     genomes = [problem.space.genome(design) for design in designs]
     rates, busy = {}, {}
@@ -156,7 +156,7 @@ def _workers(problem: Problem, known: Precomputed, designs: Sequence[Design]) ->
     return {"two_workers_over_one": rates[2] / rates[1], "busy_share_of_two_workers": busy[2]}
 
 
-def _paper(problem: Problem, known: Precomputed, count: int) -> list[dict[str, Any]]:
+def _paper(problem: DesignProblem, known: Precomputed, count: int) -> list[dict[str, Any]]:
     """The paper's formulation and ours at 1.0 m, in processor time."""
     designs = reaching_designs(problem, 1.0, count)
     paper, ours = measure(problem, designs, 1.0), measure_ours(problem, known, designs, 1.0)

@@ -30,7 +30,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
@@ -70,7 +70,7 @@ class Figures:
 
 
 def measure(
-    problem: Problem, designs: Sequence[Sequence[float]], height: float, options: IpoptOptions = BOUNDED
+    problem: DesignProblem, designs: Sequence[Sequence[float]], height: float, options: IpoptOptions = BOUNDED
 ) -> Figures:
     """What the paper's formulation costs.
 
@@ -92,7 +92,7 @@ def measure(
 
 
 def measure_ours(
-    problem: Problem, known: Precomputed, designs: Sequence[Sequence[float]], height: float
+    problem: DesignProblem, known: Precomputed, designs: Sequence[Sequence[float]], height: float
 ) -> Figures:
     """What our posture problem costs, every start and the check of the best included; as for `measure`."""
     scene, space = problem.scene, problem.space
@@ -120,7 +120,7 @@ def _figures(seconds: float, iterations: Sequence[int], solved: int, tried: int)
     )
 
 
-def reaching_designs(problem: Problem, height: float, count: int) -> list[tuple[float, ...]]:
+def reaching_designs(problem: DesignProblem, height: float, count: int) -> list[tuple[float, ...]]:
     """Uniformly random designs that reach a height [m], the same ones every time; fewer if few reach it."""
     symmetric = problem.symmetry is not Symmetry.OFF
     setting = Setting(problem.scene, problem.space, problem.weights, problem.options)

@@ -32,7 +32,7 @@ from evodesign.posture.symmetry import whole
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.load import LOAD_UNIT, force_along_x
 from evodesign.posture.terms.registry import TERMS
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Tree
 
 __all__ = ["PaperPostures", "PaperProgram", "paper_program"]
@@ -61,7 +61,7 @@ class PaperProgram:
 class PaperPostures:
     """The paper's program, ready to be solved."""
 
-    def __init__(self, problem: Problem, options: IpoptOptions) -> None:
+    def __init__(self, problem: DesignProblem, options: IpoptOptions) -> None:
         self._scene, self._space = problem.scene, problem.space
         self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
         built = paper_program(problem)
@@ -91,7 +91,7 @@ class PaperPostures:
         )
 
 
-def paper_program(problem: Problem) -> PaperProgram:
+def paper_program(problem: DesignProblem) -> PaperProgram:
     """Build the graph of a problem; a few seconds."""
     scene, space = problem.scene, problem.space
     design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
@@ -167,7 +167,7 @@ def _in_mx(variable: Variable) -> Variable:
 
 
 def _program(
-    problem: Problem, parts: tuple[_Part, _Part], statics: Statics, parameters: Mapping[str, Expression]
+    problem: DesignProblem, parts: tuple[_Part, _Part], statics: Statics, parameters: Mapping[str, Expression]
 ) -> Program:
     scene, weights = problem.scene, problem.weights
     constraints = []

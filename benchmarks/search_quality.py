@@ -17,14 +17,14 @@ import tempfile
 from pathlib import Path
 
 from evodesign.analysis.hypervolume import hypervolume, reference_point
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 
 HERE = Path(__file__).parent
 PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
 ALGORITHMS = ("random", "nsga2", "cma-es")
 
 
-Runs = dict[tuple[str, int], Run]
+Runs = dict[tuple[str, int], RunLog]
 """By algorithm and seed."""
 
 
@@ -81,7 +81,7 @@ def read_options(description: str) -> argparse.Namespace:
     return parser.parse_args()
 
 
-def _search(problem: Path, folder: Path, algorithm: str, seed: int, options: argparse.Namespace) -> Run:
+def _search(problem: Path, folder: Path, algorithm: str, seed: int, options: argparse.Namespace) -> RunLog:
     run = folder / f"{algorithm}-{seed}"
     numbers = {
         "--seed": seed,

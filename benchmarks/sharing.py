@@ -33,7 +33,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import instants_of, layout_of
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 
 HEIGHTS = (0.4, 0.6, 0.8, 1.0, 1.2, 1.3)
@@ -46,7 +46,7 @@ Point = tuple[float, float, float]
 """Robot torque, human torque [N m] and the robot's share of the load [-]."""
 
 
-def sweep(problem: Problem, allocation: str, height: float, starts: int) -> Iterator[Point | None]:
+def sweep(problem: DesignProblem, allocation: str, height: float, starts: int) -> Iterator[Point | None]:
     """A point for each value of an allocation parameter; None where nothing was found."""
     scene = problem.scene
     bounds = ALLOCATIONS[allocation]

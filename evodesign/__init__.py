@@ -14,17 +14,17 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from evodesign.api.opened_problem import open_problem
-    from evodesign.api.opened_run import open_run
+    from evodesign.api.problem import open_problem
     from evodesign.api.pymoo_problem import as_pymoo_problem
+    from evodesign.api.run import open_run
 
 __version__ = version("evodesign")
 __all__ = ["__version__", "as_pymoo_problem", "open_problem", "open_run"]
 
 HOMES = {
     "as_pymoo_problem": "evodesign.api.pymoo_problem",
-    "open_problem": "evodesign.api.opened_problem",
-    "open_run": "evodesign.api.opened_run",
+    "open_problem": "evodesign.api.problem",
+    "open_run": "evodesign.api.run",
 }
 """Where each public name lives."""
 

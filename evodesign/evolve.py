@@ -32,7 +32,7 @@ from evodesign.pool.dispatch import run_stoppable
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, Genome, RunHeader, SearchSettings
 from evodesign.runlog.directory import locked, make_directory, run_segments
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.session_log import Observer, SessionLog, Silent
 from evodesign.runlog.writer import RunWriter
 from evodesign.search import registry
@@ -58,7 +58,7 @@ def start(
     *,
     stop: Callable[[], bool] = never,
     make_search: MakeSearch = registry.make_search,
-) -> Run:
+) -> RunLog:
     """Begin a run and use up its budget.
 
     Args:
@@ -78,7 +78,7 @@ def start(
     make_directory(directory)
     with locked(directory):
         log = RunWriter(directory, header)
-        fresh = Run(directory, header, (), (), (), (), complete=False, notes=())
+        fresh = RunLog(directory, header, (), (), (), (), complete=False, notes=())
         with log, SessionLog(fresh, lambda: log) as memory:
             running = RunningFront(header.objectives)
             _work(Session(directory, header, memory, lambda: factory, pool, observer, stop, running), evolve)
@@ -95,7 +95,7 @@ def resume(
     stop: Callable[[], bool] = never,
     make_search: MakeSearch = registry.make_search,
     renew: Callable[[RunHeader], RunHeader] = lambda header: header,
-) -> Run:
+) -> RunLog:
     """Go on with a run, until its budget is used up.
 
     Args:
@@ -129,7 +129,7 @@ class _EndOfLog(Exception):
     """A replay has come to where the log ends."""
 
 
-def replay(run: Run, *, make_search: MakeSearch = registry.make_search) -> None:
+def replay(run: RunLog, *, make_search: MakeSearch = registry.make_search) -> None:
     """Ask and tell all that a run's log holds, as `resume` does, evaluating and writing nothing.
 
     Raises:
@@ -166,7 +166,7 @@ def _work(session: Session, evolve: Callable[[Session], None]) -> None:
         ) from None
 
 
-def _finished(directory: Path, observer: Observer) -> Run:
+def _finished(directory: Path, observer: Observer) -> RunLog:
     run = read_run(directory)
     observer.finished(run)
     return run

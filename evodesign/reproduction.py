@@ -27,7 +27,7 @@ from evodesign.errors import Interrupted
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluation_factory, evaluator_of
 from evodesign.problem.progress import PrecomputeProgress
@@ -35,7 +35,7 @@ from evodesign.records import Evaluation, SearchSettings
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.header import header_of
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.session_log import Observer
 from evodesign.search.base import JOINT_STARTS
 from evodesign.search.registry import make_search
@@ -103,7 +103,7 @@ class Experiment:
         progress: is shown what is being done.
     """
 
-    problem: Problem
+    problem: DesignProblem
     directory: Path
     effort: Effort
     began: float
@@ -132,7 +132,7 @@ class Experiment:
             title = f"the best robot found by {run.header.search.algorithm}"
         return self._best(run, name, title)
 
-    def _logged(self, name: str, settings: SearchSettings, budget: int, share: float) -> Run:
+    def _logged(self, name: str, settings: SearchSettings, budget: int, share: float) -> RunLog:
         """A logged run that ends with its budget, or with a share of the time."""
         directory, header = self.directory / name, header_of(self.problem, settings, budget)
         end = self.began + 60.0 * self.effort.minutes * share
@@ -153,7 +153,7 @@ class Experiment:
         self.progress.note(f"{name}: its time is over after {len(run.evaluations)} of {budget} evaluations")
         return run
 
-    def _best(self, run: Run, name: str, title: str) -> Found:
+    def _best(self, run: RunLog, name: str, title: str) -> Found:
         """The feasible evaluation of least cost."""
         scene = self.problem.scene
         best = front(run.header.objectives, run.evaluations)
@@ -169,7 +169,7 @@ class Experiment:
         return Found(robot, run, best[0].assessment.objectives[objective.name], design)
 
 
-def reproduction(experiment: Experiment, without: Problem) -> Reproduction:
+def reproduction(experiment: Experiment, without: DesignProblem) -> Reproduction:
     """Run everything.
 
     Args:
@@ -210,7 +210,7 @@ def _robot_norm(evaluation: Evaluation, height: float) -> float:
     return math.inf if found is None else found
 
 
-def _published(problem: Problem) -> Published:
+def _published(problem: DesignProblem) -> Published:
     """The setting without limits: the unscaled robot at the heights of the paper, and the optimised one."""
     unscaled = problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))
     held = held_at(problem, unscaled, [task for task in problem.tasks if task.height_m in PAPER_ORIGINAL])
@@ -232,7 +232,7 @@ def _published(problem: Problem) -> Published:
     )
 
 
-def _robot(problem: Problem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
+def _robot(problem: DesignProblem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
     tree = problem.space.resized(problem.scene.robot.tree, solution.design)
     cases = tuple(detail_of(case) for case in solution.cases if case.solved)
     return ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), cases)

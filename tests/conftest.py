@@ -14,7 +14,7 @@ from hypothesis import settings
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import PrecomputeProgress
@@ -65,7 +65,7 @@ def repository() -> Path:
 
 
 @pytest.fixture(scope="session")
-def problem() -> Problem:
+def problem() -> DesignProblem:
     """The default problem, without compiling what tests make of it: that takes longer than it saves them."""
     built = build_problem(read_source(REPOSITORY / "problems" / "icub_lifting.toml"))
     return replace(built, options=replace(built.options, compiled=False))
@@ -88,7 +88,7 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="session")
-def known(problem: Problem) -> Precomputed:
+def known(problem: DesignProblem) -> Precomputed:
     """What is worked out of the default problem beforehand, where commands started by tests find it too."""
     cache = user_cache("precomputed", os.environ)
     with cache.lock("default"), JoblibPool(2) as pool:
@@ -96,7 +96,7 @@ def known(problem: Problem) -> Precomputed:
 
 
 @pytest.fixture(scope="session")
-def evaluator(problem: Problem, known: Precomputed) -> Evaluator:
+def evaluator(problem: DesignProblem, known: Precomputed) -> Evaluator:
     """The default problem's inner problems."""
     return Evaluator(problem, known)
 

@@ -17,7 +17,7 @@ from evodesign.pool.base import Finished, Pool
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Turn
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.search.registry import ASYNCHRONOUS_SEARCHES
 from tests.pool.faulty import Slow
@@ -52,11 +52,11 @@ class JugglingPool(Pool):
         pass
 
 
-def begin(directory: Path, header: RunHeader, pool: Pool, **rest: Any) -> Run:
+def begin(directory: Path, header: RunHeader, pool: Pool, **rest: Any) -> RunLog:
     return start(directory, header, rest.pop("task", None) or ToyTask(header), pool, Silent(), **rest)
 
 
-def go_on(directory: Path, budget: int | None, pool: Pool) -> Run:
+def go_on(directory: Path, budget: int | None, pool: Pool) -> RunLog:
     return resume(directory, ToyTask, pool, Silent(), budget)
 
 
@@ -112,9 +112,9 @@ def test_one_worker_twice_n_equals_n_and_n_more(algorithm: str, tmp_path: Path) 
     whole = begin(tmp_path / "whole", header_of(algorithm, 60), SerialPool())
     begin(tmp_path / "halves", header_of(algorithm, 30), SerialPool())
     halves = go_on(tmp_path / "halves", 60, SerialPool())
-    strip: Callable[[Run], list[Evaluation]] = lambda run: essence(run)[0]  # noqa: E731
+    strip: Callable[[RunLog], list[Evaluation]] = lambda run: essence(run)[0]  # noqa: E731
     assert strip(halves) == strip(whole)
-    fronts: Callable[[Run], list[Generation]] = lambda run: essence(run)[1]  # noqa: E731
+    fronts: Callable[[RunLog], list[Generation]] = lambda run: essence(run)[1]  # noqa: E731
     assert fronts(halves) == fronts(whole)
 
 

@@ -22,7 +22,7 @@ from evodesign.evolve import Silent, resume, start
 from evodesign.pool.base import Finished
 from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Status
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.search.registry import SEARCHES
 from tests.runlog.toys import (
@@ -39,13 +39,13 @@ from tests.runlog.toys import (
 ROOT = Path(__file__).parents[1]
 
 
-def begin(directory: Path, header: RunHeader, pool: OrderedPool | None = None, **rest: Any) -> Run:
+def begin(directory: Path, header: RunHeader, pool: OrderedPool | None = None, **rest: Any) -> RunLog:
     task = rest.pop("task", None) or ToyTask(header)
     observer = rest.pop("observer", Silent())
     return start(directory, header, task, pool or OrderedPool(), observer, make_search=ToySearch, **rest)
 
 
-def go_on(directory: Path, budget: int | None = None, pool: OrderedPool | None = None, **rest: Any) -> Run:
+def go_on(directory: Path, budget: int | None = None, pool: OrderedPool | None = None, **rest: Any) -> RunLog:
     factory_of = rest.pop("factory_of", ToyTask)
     observer = rest.pop("observer", Silent())
     pool = pool or OrderedPool()
@@ -70,7 +70,7 @@ class Listener:
         assert generation in read_run(self.directory).generations
         self.seen.append(("generation", generation.number))
 
-    def finished(self, run: Run) -> None:
+    def finished(self, run: RunLog) -> None:
         self.seen.append(("finished", len(run.evaluations)))
 
 
@@ -91,7 +91,7 @@ def test_evaluations_are_what_the_task_makes_of_the_genomes(tmp_path: Path) -> N
         assert (evaluation.seconds, evaluation.worker) == (0.25, "here")
 
 
-def fronts_with_postures(run: Run) -> set[int]:
+def fronts_with_postures(run: RunLog) -> set[int]:
     """Members of all fronts, each of which must have its own postures in the log."""
     details = {detail.evaluation: detail for detail in run.details}
     members = {number for front in run.fronts for number in front.evaluations}

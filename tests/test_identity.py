@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 
 from evodesign import identity
 from evodesign.identity import code_digest, digest, import_closure
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 
 EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
 PIECES = "evodesign.posture.precompute.pieces"
@@ -133,7 +133,7 @@ def test_nan_is_itself() -> None:
     assert digest(math.nan) == digest(float("nan"))
 
 
-def test_what_a_record_works_out_for_itself_does_not_count(problem: Problem) -> None:
+def test_what_a_record_works_out_for_itself_does_not_count(problem: DesignProblem) -> None:
     tree = replace(problem.scene.robot.tree)
     before = digest(tree)
     assert tree.link_by_name

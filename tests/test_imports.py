@@ -27,7 +27,7 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.report.figures.posture_figure",
         "evodesign.report.replay.layout",
         "evodesign.report.replay.recording",
-        "evodesign.api.opened_run",
+        "evodesign.api.run",
         "evodesign.report.opened_design",
         "evodesign.report.live.state",
     ],

@@ -14,7 +14,7 @@ import pytest
 
 from evodesign.mechanics.scene import ROBOT, SIDES, Scene
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import QUANTITIES, CaseQuantity
 from evodesign.problem.sensitivities import Sensitivities
@@ -28,7 +28,7 @@ def foot_force(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return max(float(postures[ROBOT].foot_wrenches[side][2]) for side in SIDES)
 
 
-def test_an_objective(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_objective(problem: DesignProblem, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(QUANTITIES, "foot_force", CaseQuantity("N", foot_force))
     text = problem.source.text.replace('"human_torque"', '"foot_force", "worst_foot_force", "q50_foot_force"')
     asked = build_problem(msgspec.structs.replace(problem.source, text=text))

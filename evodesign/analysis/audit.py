@@ -8,7 +8,7 @@ from itertools import groupby
 
 from evodesign.analysis.run_state import RunState
 from evodesign.records import Evaluation, Generation, RunHeader, design_of
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 __all__ = ["audit", "losses"]
 
@@ -16,12 +16,12 @@ TOLERANCE = 1e-9
 """Relative difference of a hypervolume that rounding on another processor may cause."""
 
 
-def audit(run: Run) -> list[str]:
+def audit(run: RunLog) -> list[str]:
     """A sentence for each contradiction; none in a sound run."""
     return [*_evaluations(run), *_holes(run), *_generations(run), *_details(run)]
 
 
-def _evaluations(run: Run) -> Iterator[str]:
+def _evaluations(run: RunLog) -> Iterator[str]:
     for evaluation in run.evaluations:
         if fault := _fault(run.header, evaluation):
             yield f"evaluation {evaluation.number}: {fault}"
@@ -44,7 +44,7 @@ def _fault(header: RunHeader, evaluation: Evaluation) -> str:
     return ""
 
 
-def _holes(run: Run) -> Iterator[str]:
+def _holes(run: RunLog) -> Iterator[str]:
     """Evaluations that are missing from generations that were concluded."""
     known = {evaluation.number for evaluation in run.evaluations}
     concluded = max((generation.evaluations for generation in run.generations), default=0)
@@ -53,7 +53,7 @@ def _holes(run: Run) -> Iterator[str]:
         yield f"missing evaluations: {', '.join(missing)}"
 
 
-def _generations(run: Run) -> Iterator[str]:
+def _generations(run: RunLog) -> Iterator[str]:
     """Records of generations and fronts that contradict the evaluations."""
     states = {state.number: state for state in run.generations}
     fronts = {front.generation: front for front in run.fronts}
@@ -86,7 +86,7 @@ def _differing(logged: Generation, found: Generation) -> Iterator[str]:
         yield f"generation {logged.number}: its hypervolume is not that of the evaluations"
 
 
-def _details(run: Run) -> Iterator[str]:
+def _details(run: RunLog) -> Iterator[str]:
     """Postures without a design, and designs of a front without postures."""
     known = {evaluation.number for evaluation in run.evaluations}
     detailed = {detail.evaluation for detail in run.details}
@@ -99,7 +99,7 @@ def _details(run: Run) -> Iterator[str]:
         yield f"postures without an evaluation: {', '.join(map(str, lost))}"
 
 
-def losses(run: Run) -> list[str]:
+def losses(run: RunLog) -> list[str]:
     """A sentence for each kind of record that is missing; none if nothing is known to be."""
     known = {evaluation.number for evaluation in run.evaluations}
     numbered = [

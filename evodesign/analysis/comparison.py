@@ -18,7 +18,7 @@ from evodesign.analysis.front import front, to_minimise
 from evodesign.analysis.hypervolume import Curve, best, curve, hypervolume, reference_point
 from evodesign.analysis.seed_statistics import AttainmentSurface, RankTest, attainment_surfaces, rank_tests
 from evodesign.records import Evaluation, Objective, RunHeader
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 __all__ = [
     "MOST_KNEES",
@@ -49,7 +49,7 @@ class Compared:
         curve: its history, to its own end.
     """
 
-    run: Run
+    run: RunLog
     search: str
     front: tuple[Evaluation, ...]
     hypervolume: float | None
@@ -95,7 +95,7 @@ class Comparison:
         return _by_search(self.runs)
 
 
-def compare(runs: Sequence[Run]) -> tuple[Comparison, ...]:
+def compare(runs: Sequence[RunLog]) -> tuple[Comparison, ...]:
     """Comparisons of runs, one for each set of objectives, in the order given."""
     kinds = dict.fromkeys(run.header.objectives for run in runs)
     names = _names([run.header for run in runs])
@@ -146,7 +146,7 @@ def _kind(header: RunHeader) -> RunHeader:
     )
 
 
-def _comparison(objectives: tuple[Objective, ...], named: Sequence[tuple[Run, str]]) -> Comparison:
+def _comparison(objectives: tuple[Objective, ...], named: Sequence[tuple[RunLog, str]]) -> Comparison:
     count = min((len(run.evaluations) for run, _ in named if run.evaluations), default=0)
     everything = [evaluation for run, _ in named for evaluation in run.evaluations]
     reference = reference_point(objectives, everything)
@@ -176,7 +176,7 @@ def _comparison(objectives: tuple[Objective, ...], named: Sequence[tuple[Run, st
 
 def _compared(
     objectives: tuple[Objective, ...],
-    run: Run,
+    run: RunLog,
     name: str,
     members: tuple[Evaluation, ...],
     reference: dict[str, float] | None,

@@ -18,18 +18,18 @@ from pymoo.config import Config
 from pymoo.core.problem import ElementwiseProblem
 
 from evodesign.analysis.front import minimised, to_minimise
-from evodesign.api.opened_problem import OpenedProblem, open_problem
+from evodesign.api.problem import Problem, open_problem
 
 __all__ = ["PymooProblem", "as_pymoo_problem"]
 
 
-def as_pymoo_problem(problem: OpenedProblem | str | os.PathLike[str]) -> PymooProblem:
+def as_pymoo_problem(problem: Problem | str | os.PathLike[str]) -> PymooProblem:
     """A pymoo problem of an opened problem or of a problem file.
 
     Raises:
         InputError: the file cannot be used.
     """
-    return PymooProblem(problem if isinstance(problem, OpenedProblem) else open_problem(problem))
+    return PymooProblem(problem if isinstance(problem, Problem) else open_problem(problem))
 
 
 class PymooProblem(ElementwiseProblem):  # type: ignore[misc]
@@ -39,7 +39,7 @@ class PymooProblem(ElementwiseProblem):  # type: ignore[misc]
         problem: whose designs are evaluated.
     """
 
-    def __init__(self, problem: OpenedProblem) -> None:
+    def __init__(self, problem: Problem) -> None:
         Config.warnings["not_compiled"] = False  # pymoo would print a hint on standard output
         self.problem = problem
         super().__init__(

@@ -11,7 +11,7 @@ from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, SymmetryName
 from evodesign.errors import InputError, nearest_name
 
 if TYPE_CHECKING:
-    from evodesign.problem.build import Problem
+    from evodesign.problem.build import DesignProblem
 
 __all__ = ["evaluate"]
 
@@ -56,7 +56,7 @@ def evaluate(
         console().print(table)
 
 
-def _chosen(problem: Problem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:
+def _chosen(problem: DesignProblem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:
     """Name and parameter values of the design that the options ask for."""
     from evodesign.problem.designs import read_designs
     from evodesign.problem.source import read_text

@@ -14,7 +14,7 @@ from evodesign.errors import InputError
 
 if TYPE_CHECKING:
     from evodesign.analysis.choice import Choice
-    from evodesign.runlog.run import Run
+    from evodesign.runlog.run import RunLog
 
 __all__ = ["front", "print_front"]
 
@@ -72,7 +72,7 @@ def front(
 
 
 def _choice(
-    run: Run, asked: Sequence[str], near: str | None, where: Sequence[str], limit: int | None
+    run: RunLog, asked: Sequence[str], near: str | None, where: Sequence[str], limit: int | None
 ) -> Choice:
     """What the options choose."""
     from evodesign.analysis.choice import Choice, Order
@@ -90,7 +90,7 @@ def _choice(
     )
 
 
-def print_front(run: Run, choice: Choice | None = None, *, json: bool = False, csv: bool = False) -> None:
+def print_front(run: RunLog, choice: Choice | None = None, *, json: bool = False, csv: bool = False) -> None:
     """Print the front of a run, or a choice of it."""
     from evodesign.analysis.choice import Choice, choose
     from evodesign.cli.output import console, print_json, print_lines, visible

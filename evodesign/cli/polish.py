@@ -13,7 +13,7 @@ from evodesign.errors import InputError
 if TYPE_CHECKING:
     from evodesign.problem.polish import Step
     from evodesign.records import Genome
-    from evodesign.runlog.run import Run
+    from evodesign.runlog.run import RunLog
 
 __all__ = ["polish"]
 
@@ -73,7 +73,7 @@ def polish(
     )
 
 
-def _genome(run: Run, number: int) -> Genome:
+def _genome(run: RunLog, number: int) -> Genome:
     for evaluation in run.evaluations:
         if evaluation.number == number:
             return evaluation.genome

@@ -12,7 +12,7 @@ from evodesign.cli.options import CORES, Jobs, Json, PoolName
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
-    from evodesign.problem.build import Problem
+    from evodesign.problem.build import DesignProblem
 
 __all__ = ["reproduce"]
 
@@ -65,7 +65,7 @@ def reproduce(
     print_lines(*reproduction_lines(done, directory, seconds))
 
 
-def _scalar(path: Path) -> Problem:
+def _scalar(path: Path) -> DesignProblem:
     """A problem with one objective, so that one robot is the best."""
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source

@@ -15,7 +15,7 @@ from evodesign.pool.base import Pool
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering, evaluation_factory
 from evodesign.records import RunHeader
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.session import Evaluate
 
 __all__ = ["factory_of", "given", "new_directory", "show_result", "with_budgets"]
@@ -54,7 +54,7 @@ def factory_of(header: RunHeader, pool: Pool, *, cache: bool) -> Evaluate:
     return factory
 
 
-def show_result(run: Run, *, json: bool) -> None:
+def show_result(run: RunLog, *, json: bool) -> None:
     """The front, and why the search ended if it was not for its budget of evaluations."""
     if len(run.evaluations) < run.header.budget:
         show_notes(

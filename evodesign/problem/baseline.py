@@ -28,7 +28,7 @@ from evodesign.posture.formulations.codesign import JointProblem, JointSolution
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.terms.base import Residual
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
 from evodesign.problem.objectives import DesignResult, objective_values
@@ -49,7 +49,7 @@ GENERATION = 10
 """Starts after which a log says how things stand."""
 
 
-def refuse_unsuited(problem: Problem) -> None:
+def refuse_unsuited(problem: DesignProblem) -> None:
     """Refuse a problem that the joint problem cannot tell.
 
     Raises:
@@ -79,7 +79,7 @@ class Baseline:
         InputError: as in `refuse_unsuited`.
     """
 
-    def __init__(self, problem: Problem, fixed: Genome | None = None) -> None:
+    def __init__(self, problem: DesignProblem, fixed: Genome | None = None) -> None:
         refuse_unsuited(problem)
         self._problem = problem
         self._joint = JointProblem(problem.scene, problem.space, problem.tasks, problem.joint, fixed)
@@ -164,12 +164,12 @@ class BaselineFactory:
         return Baseline(build_problem(self.source)).assess
 
 
-def held_at(problem: Problem, genome: Genome, tasks: Sequence[Task]) -> JointSolution:
+def held_at(problem: DesignProblem, genome: Genome, tasks: Sequence[Task]) -> JointSolution:
     """The joint problem with the design held at a genome, over some tasks, from the standard start."""
     return Baseline(replace(problem, tasks=tuple(tasks), joint_start=(genome,)), fixed=genome).solve(genome)
 
 
-def torque_difference(problem: Problem, solution: JointSolution) -> float:
+def torque_difference(problem: DesignProblem, solution: JointSolution) -> float:
     """Largest difference of a solution's torques from the paper's formula at its postures [N m]."""
     tree = problem.space.resized(problem.scene.robot.tree, solution.design)
     model = CoupledModel(problem.scene, tree)

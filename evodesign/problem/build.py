@@ -41,13 +41,13 @@ from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, Sear
 from evodesign.search.base import JOINT_STARTS
 from evodesign.tree.model import Tree
 
-__all__ = ["Problem", "build_problem"]
+__all__ = ["DesignProblem", "build_problem"]
 
 GIGABYTE = 10**9
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class DesignProblem:
     """A robot, people, loads, tasks, and the hardware that may change.
 
     Args:
@@ -131,7 +131,7 @@ class Problem:
         )
 
 
-def build_problem(source: ProblemSource) -> Problem:
+def build_problem(source: ProblemSource) -> DesignProblem:
     """The problem of a source.
 
     Raises:
@@ -155,7 +155,7 @@ def build_problem(source: ProblemSource) -> Problem:
         designs = read_designs(source.files[name], name, space, robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
     weights = effort_weights(tables)
-    return Problem(
+    return DesignProblem(
         name=tables.name,
         source=source,
         scenes=scenes,

@@ -18,7 +18,7 @@ from evodesign.posture.formulations.reach import Reach, ReachProblem, common_rea
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import (
     AgentDetail,
@@ -51,7 +51,7 @@ class Evaluator:
         known: what is known beforehand.
     """
 
-    def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
+    def __init__(self, problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self.problem = problem
         self.known = known
         space, options, symmetry = problem.space, problem.options, problem.symmetry
@@ -233,7 +233,7 @@ class AssessmentFactory:
     """
 
     digest: str
-    problem: Problem = field(compare=False)
+    problem: DesignProblem = field(compare=False)
     known: Precomputed = field(compare=False)
 
     @property

@@ -36,7 +36,7 @@ import msgspec
 
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.posture.results import AgentPosture, CaseSolution
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
@@ -47,7 +47,7 @@ __all__ = ["evaluation_json"]
 
 
 def evaluation_json(
-    problem: Problem,
+    problem: DesignProblem,
     values: Sequence[float],
     result: DesignResult,
     assessment: Assessment,

@@ -26,7 +26,7 @@ from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import BaselineFactory
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.file import ProblemFile, SolverTable
 from evodesign.problem.precompute import precomputed
@@ -62,14 +62,16 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
     return factory
 
 
-def evaluator_of(problem: Problem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
+def evaluator_of(problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
     """The inner problems of a problem in this process; so many jobs work out what is missing."""
     with make_pool("joblib", jobs) as pool:
         known = cached_precomputed(problem, pool, progress)
     return Evaluator(problem, known)
 
 
-def cached_precomputed(problem: Problem, pool: Pool, progress: PrecomputeProgress = SILENT) -> Precomputed:
+def cached_precomputed(
+    problem: DesignProblem, pool: Pool, progress: PrecomputeProgress = SILENT
+) -> Precomputed:
     """What is known of a problem before any robot is evaluated, worked out where it is missing."""
     return precomputed(problem, _cache("precomputed", progress), pool, progress)
 

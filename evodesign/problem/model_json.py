@@ -10,7 +10,7 @@ from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.scene import Agent, Payload
 from evodesign.problem.agents import everyone
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
 from evodesign.tree.model import Link, Tree
@@ -19,7 +19,7 @@ from evodesign.tree.resize import growth_of
 __all__ = ["model_json"]
 
 
-def model_json(problem: Problem) -> dict[str, Any]:
+def model_json(problem: DesignProblem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
     scene = problem.scene
     loads = {each.payload.label: each.payload for each in problem.scenes}
@@ -48,7 +48,7 @@ def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
     }
 
 
-def _materials(problem: Problem) -> dict[str, Any]:
+def _materials(problem: DesignProblem) -> dict[str, Any]:
     """All materials that some parameter may be of, under a key that other problems do not have."""
     found = {each.name: each for parameter in problem.space.parameters for each in parameter.materials}
     shown = [
@@ -63,7 +63,7 @@ def _load(load: Payload) -> dict[str, Any]:
     return {**name, "size_m": list(load.size), "mass_kg": load.mass}
 
 
-def _people(problem: Problem) -> list[dict[str, Any]]:
+def _people(problem: DesignProblem) -> list[dict[str, Any]]:
     """The people in short; of several, also who each is, with sex and stature unless a URDF describes it."""
     people = {scene.human.label: scene.human for scene in problem.scenes}
     if len(people) == 1:

@@ -7,7 +7,7 @@ import math
 from evodesign.body.placement import dot
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Joint
 
 __all__ = ["notes"]
@@ -19,7 +19,7 @@ PARALLEL = math.cos(math.radians(10.0))
 """Joint axes whose directions have at least this cosine count as the same."""
 
 
-def notes(problem: Problem) -> tuple[str, ...]:
+def notes(problem: DesignProblem) -> tuple[str, ...]:
     """A sentence for each thing that a careful reader of the problem would ask about.
 
     Now: limits of a person's joints that look as if their sign were wrong. Only joints with the names of the

@@ -17,7 +17,7 @@ import numpy as np
 from evodesign.errors import InputError, nearest_name
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.solution_derivative import ReachDerivative
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
@@ -43,7 +43,7 @@ class Aim:
     none_worse: bool
 
 
-def aim_of(problem: Problem, weights: Mapping[str, float], option: str) -> Aim:
+def aim_of(problem: DesignProblem, weights: Mapping[str, float], option: str) -> Aim:
     """The aim that weights ask for; none at all ask for everything at once.
 
     Args:

@@ -17,14 +17,14 @@ from evodesign.posture.precompute.pieces import (
     with_piece,
 )
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import ProblemSource
 
 __all__ = ["precompute_setting", "precomputed"]
 
 
-def precompute_setting(problem: Problem) -> PrecomputeSetting:
+def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
     """What a problem's pieces follow from."""
     return PrecomputeSetting(
         problem.scenes, problem.middle, problem.space, problem.weights, problem.options, problem.symmetry
@@ -32,7 +32,7 @@ def precompute_setting(problem: Problem) -> PrecomputeSetting:
 
 
 def precomputed(
-    problem: Problem, cache: Cache | None, pool: Pool, watcher: PrecomputeProgress
+    problem: DesignProblem, cache: Cache | None, pool: Pool, watcher: PrecomputeProgress
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
 
@@ -66,7 +66,7 @@ def precomputed(
     return known
 
 
-def refuse_heights(problem: Problem, known: Precomputed) -> None:
+def refuse_heights(problem: DesignProblem, known: Precomputed) -> None:
     """Refuse a height at which one of the people cannot hold a load, whatever the robot.
 
     Raises:
@@ -87,7 +87,7 @@ def refuse_heights(problem: Problem, known: Precomputed) -> None:
 
 
 def _worked_out(
-    problem: Problem, missing: list[Piece], known: Precomputed, pool: Pool, watcher: PrecomputeProgress
+    problem: DesignProblem, missing: list[Piece], known: Precomputed, pool: Pool, watcher: PrecomputeProgress
 ) -> dict[Piece, bytes]:
     """Contents of the pieces, in the order in which they are missing."""
     contents: dict[Piece, bytes] = {}

@@ -31,7 +31,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.records import Status
 
@@ -68,7 +68,7 @@ class DesignDerivative:
         highest, lowest: tangents of the reach.
     """
 
-    problem: Problem
+    problem: DesignProblem
     values: tuple[float, ...]
     result: DesignResult
     cases: tuple[PostureDerivative | NotDifferentiable, ...]
@@ -134,7 +134,7 @@ class DesignDerivative:
 class Sensitivities:
     """Tangents of a problem's designs; built when somebody asks, for no search needs them."""
 
-    def __init__(self, problem: Problem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
+    def __init__(self, problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self._problem = problem
         symmetric = problem.symmetry is not Symmetry.OFF
         settings = [
@@ -212,7 +212,7 @@ DISTINCT = 1e-5
 
 
 def posture_notes(
-    problem: Problem, solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable
+    problem: DesignProblem, solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable
 ) -> Iterator[str]:
     """What is to be said of the posture in one case that was solved."""
     place = ", ".join(part for part in (f"at {solution.case.task}", solution.case.label) if part)
@@ -224,7 +224,7 @@ def posture_notes(
 
 
 def reach_notes(
-    problem: Problem, which: str, derivative: ReachDerivative | NotDifferentiable
+    problem: DesignProblem, which: str, derivative: ReachDerivative | NotDifferentiable
 ) -> Iterator[str]:
     """What is to be said of the highest or the lowest load."""
     place = f"{which} load"
@@ -258,7 +258,7 @@ def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferent
     )
 
 
-def _near(problem: Problem, place: str, limits: Sequence[Limit]) -> Iterator[str]:
+def _near(problem: DesignProblem, place: str, limits: Sequence[Limit]) -> Iterator[str]:
     """The change of limits that the least change of one parameter brings about, if it is near."""
     parameters = problem.space.parameters
     ranges = np.array([parameter.upper - parameter.lower for parameter in parameters])

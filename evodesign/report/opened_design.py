@@ -12,12 +12,12 @@ from evodesign.errors import InputError, RunError
 from evodesign.mechanics.scene import HUMAN
 from evodesign.records import CaseDetail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.search.base import JOINT_STARTS
 
 if TYPE_CHECKING:
     from evodesign.mechanics.scene import Agent
-    from evodesign.problem.build import Problem
+    from evodesign.problem.build import DesignProblem
     from evodesign.problem.ergonomics import Ergonomics
     from evodesign.problem.progress import PrecomputeProgress
 
@@ -31,7 +31,7 @@ class RebuiltProblem:
         self._header = header
 
     @cached_property
-    def problem(self) -> Problem:
+    def problem(self) -> DesignProblem:
         """The problem."""
         from evodesign.problem.build import build_problem  # CasADi takes its time to load
 
@@ -61,7 +61,7 @@ class OpenedDesign:
         rebuilt: the run's problem.
     """
 
-    run: Run
+    run: RunLog
     evaluation: Evaluation
     cases: tuple[CaseDetail, ...]
     on_front: bool
@@ -88,7 +88,7 @@ class OpenedDesign:
         return tuple(ergonomics(people[detail.case.person], detail.agents[HUMAN]) for detail in self.cases)
 
 
-def open_design(run: Run, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:
+def open_design(run: RunLog, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:
     """A design of a run by the number of its evaluation; one without logged postures is solved anew.
 
     Args:
@@ -116,7 +116,7 @@ def open_design(run: Run, number: int, jobs: int, progress: PrecomputeProgress) 
 
 
 def _solved(
-    run: Run, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int, progress: PrecomputeProgress
+    run: RunLog, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int, progress: PrecomputeProgress
 ) -> tuple[CaseDetail, ...]:
     """The postures of a design of which the log holds none."""
     from evodesign.problem.baseline import Baseline

@@ -32,7 +32,7 @@ from evodesign.report.figures.joint_torques import torque_boxes
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.scene_models import SceneModels, placed_scene
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
 
 __all__ = ["Found", "Published", "ReproducedRobot", "Reproduction", "reproduction_json", "write_reproduction"]
@@ -91,7 +91,7 @@ class Found:
     """The best robot of a run; without heights when the run holds no feasible one."""
 
     robot: ReproducedRobot
-    run: Run
+    run: RunLog
     cost: float | None
     design: dict[str, float]
 

@@ -22,7 +22,7 @@ from evodesign.records import SearchSettings, SearchStage
 from evodesign.runlog.channels import RUN
 from evodesign.runlog.directory import locked, make_directory, refuse_run, run_segments, segment_path, synced
 from evodesign.runlog.reader import Entry, entries, read_content
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.scan import scan
 from evodesign.runlog.writer import RunWriter, add_header_copy, encoded, register
 
@@ -34,7 +34,7 @@ CHUNK_BYTES = 65536
 UNFINISHED = "merged.part"
 
 
-def recover(directory: Path, to: Path) -> Run:
+def recover(directory: Path, to: Path) -> RunLog:
     """Write all that can be read of a run to a new directory.
 
     Raises:
@@ -49,7 +49,7 @@ def recover(directory: Path, to: Path) -> Run:
     return read_run(to)
 
 
-def merge(directory: Path, to: Path | None) -> Run:
+def merge(directory: Path, to: Path | None) -> RunLog:
     """Put all segments of a run into one file: elsewhere, or in their own place.
 
     The new file is whole and compared with the old ones before any of them goes; a merge that is killed
@@ -83,7 +83,7 @@ def merge(directory: Path, to: Path | None) -> Run:
     return read_run(directory)
 
 
-def _undamaged(directory: Path) -> Run:
+def _undamaged(directory: Path) -> RunLog:
     run = read_run(directory)
     if run.damaged:
         raise RunError(
@@ -92,7 +92,7 @@ def _undamaged(directory: Path) -> Run:
     return run
 
 
-def _write(path: Path, directory: Path, run: Run) -> None:
+def _write(path: Path, directory: Path, run: RunLog) -> None:
     """All records of a run, each once, as one segment that is on the disk when this returns.
 
     Raises:
@@ -120,7 +120,7 @@ def _write(path: Path, directory: Path, run: Run) -> None:
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 
-def _once(directory: Path, run: Run) -> Iterator[Entry]:
+def _once(directory: Path, run: RunLog) -> Iterator[Entry]:
     """Every record of a run in the order of its segments, headers first, each other one once."""
     found = [(path, scan(read_content(path))) for path in run_segments(directory).values()]
     headers = [entry for path, part in found for entry in entries(path, part) if entry.topic == RUN]
@@ -133,7 +133,7 @@ def _once(directory: Path, run: Run) -> Iterator[Entry]:
                 yield entry
 
 
-def begin_branch(old: Run, directory: Path, generations: int, settings: SearchSettings) -> int:
+def begin_branch(old: RunLog, directory: Path, generations: int, settings: SearchSettings) -> int:
     """Write the beginning of a branch.
 
     Args:
@@ -171,7 +171,7 @@ def begin_branch(old: Run, directory: Path, generations: int, settings: SearchSe
     return count
 
 
-def _evaluations_of(old: Run, generations: int) -> int:
+def _evaluations_of(old: RunLog, generations: int) -> int:
     """Evaluations of the first generations, all of which must be there."""
     whole = 0
     for number, (generation, front) in enumerate(zip(old.generations, old.fronts, strict=False)):

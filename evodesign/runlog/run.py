@@ -20,13 +20,13 @@ from evodesign.runlog.directory import run_segments
 from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
 
-__all__ = ["Run", "digest", "read_run"]
+__all__ = ["RunLog", "digest", "read_run"]
 
 R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class RunLog:
     """What a run's directory holds.
 
     Args:
@@ -52,7 +52,7 @@ class Run:
     damaged: bool = False
 
 
-def read_run(directory: Path) -> Run:
+def read_run(directory: Path) -> RunLog:
     """Everything that can be read of a run, also of one that was killed or is still being written.
 
     Raises:
@@ -69,7 +69,7 @@ def read_run(directory: Path) -> Run:
     details = _first_of_each(
         (detail.evaluation, detail) for segment in segments for detail in segment.details
     )
-    return Run(
+    return RunLog(
         directory=directory,
         header=headers[-1],
         evaluations=evaluations,

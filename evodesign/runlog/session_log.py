@@ -14,7 +14,7 @@ from typing import Self
 
 from evodesign.errors import ResumeMismatch, RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, Genome, RunHeader, Turn
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.runlog.writer import RunWriter
 
 __all__ = ["Observer", "SessionLog", "Silent"]
@@ -31,7 +31,7 @@ class SessionLog:
         open_log: makes the writer of this session's segment.
     """
 
-    def __init__(self, run: Run, open_log: Callable[[], RunWriter]) -> None:
+    def __init__(self, run: RunLog, open_log: Callable[[], RunWriter]) -> None:
         self._directory = run.directory
         self._evaluations = {evaluation.number: evaluation for evaluation in run.evaluations}
         self._count = len(self._evaluations)
@@ -129,7 +129,7 @@ class Observer:
     def generation_done(self, generation: Generation) -> None:
         """A new generation is concluded."""
 
-    def finished(self, run: Run) -> None:
+    def finished(self, run: RunLog) -> None:
         """The budget is used up."""
 
 

@@ -10,34 +10,34 @@ import pytest
 
 from evodesign.analysis.audit import audit, losses
 from evodesign.evolve import Silent, start
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from tests.runlog.toys import OrderedPool, ToySearch, ToyTask, shuffled, toy_header
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Run:
+def run(tmp_path: Path) -> RunLog:
     header = toy_header(population=5, budget=33)
     pool = OrderedPool(shuffled(2))
     return start(tmp_path / "run", header, ToyTask(header), pool, Silent(), make_search=ToySearch)
 
 
-def test_a_sound_run_has_no_contradictions_and_no_losses(run: Run) -> None:
+def test_a_sound_run_has_no_contradictions_and_no_losses(run: RunLog) -> None:
     assert audit(run) == []
     assert losses(run) == []
 
 
-def changed(run: Run, field: str, index: int, **values: Any) -> Run:
+def changed(run: RunLog, field: str, index: int, **values: Any) -> RunLog:
     records = list(getattr(run, field))
     records[index] = msgspec.structs.replace(records[index], **values)
     return replace(run, **{field: tuple(records)})
 
 
-def reassessed(run: Run, index: int, **values: Any) -> Run:
+def reassessed(run: RunLog, index: int, **values: Any) -> RunLog:
     assessment = msgspec.structs.replace(run.evaluations[index].assessment, **values)
     return changed(run, "evaluations", index, assessment=assessment)
 
 
-def better(run: Run) -> Run:
+def better(run: RunLog) -> RunLog:
     """A feasible design that the log calls much better than it was told."""
     (first, *_) = run.fronts[-1].evaluations
     return reassessed(run, first, objectives={"robot_torque": 0.5, "reach_height": 9.0})
@@ -66,11 +66,11 @@ def better(run: Run) -> Run:
         (better, "its best is not that of the evaluations"),
     ],
 )
-def test_every_contradiction_is_found(run: Run, damage: Callable[[Run], Run], sentence: str) -> None:
+def test_every_contradiction_is_found(run: RunLog, damage: Callable[[RunLog], RunLog], sentence: str) -> None:
     assert any(sentence in fault for fault in audit(damage(run)))
 
 
-def test_losses_are_listed_by_kind_with_ranges(run: Run) -> None:
+def test_losses_are_listed_by_kind_with_ranges(run: RunLog) -> None:
     kept = [*run.evaluations[:4], run.evaluations[5], *run.evaluations[9:]]
     damaged = replace(run, evaluations=tuple(kept), generations=run.generations[1:], fronts=run.fronts[:-1])
     assert losses(damaged)[:3] == [
@@ -80,5 +80,5 @@ def test_losses_are_listed_by_kind_with_ranges(run: Run) -> None:
     ]
 
 
-def test_evaluations_lost_at_the_end_are_known_from_the_fronts(run: Run) -> None:
+def test_evaluations_lost_at_the_end_are_known_from_the_fronts(run: RunLog) -> None:
     assert "missing evaluations: 8 to 29" in losses(replace(run, evaluations=run.evaluations[:8]))[0]

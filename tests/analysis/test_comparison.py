@@ -7,7 +7,7 @@ from evodesign.analysis.comparison import best_designs, compare
 from evodesign.analysis.front import front
 from evodesign.analysis.hypervolume import PLACES, best, curve, hypervolume, reference_point
 from evodesign.records import Objective, Sense
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from tests.runlog.toys import toy_evaluations, toy_header
 
 
@@ -22,7 +22,7 @@ def run(seed=1, count=30, algorithm="toy", name="toy", text="", objectives=None)
     )
     evaluations = tuple(toy_evaluations(header, count))
     place = Path(f"{algorithm}-{seed}")
-    return Run(place, header, evaluations, (), (), (), complete=True, notes=())
+    return RunLog(place, header, evaluations, (), (), (), complete=True, notes=())
 
 
 RUNS = [run(1), run(2), run(3, count=50), run(1, algorithm="other", count=40)]
@@ -82,8 +82,8 @@ def test_other_objectives_make_another_comparison():
 def test_without_feasible_designs_nothing_is_measured():
     one = run(1)
     infeasible = tuple(each for each in one.evaluations if not each.feasible)
-    bare = Run(one.directory, one.header, infeasible, (), (), (), complete=True, notes=())
-    empty = Run(Path("empty"), one.header, (), (), (), (), complete=True, notes=())
+    bare = RunLog(one.directory, one.header, infeasible, (), (), (), complete=True, notes=())
+    empty = RunLog(Path("empty"), one.header, (), (), (), (), complete=True, notes=())
     (found,) = compare([bare, empty])
     assert found.reference is None
     assert [each.hypervolume for each in found.runs] == [None, None]

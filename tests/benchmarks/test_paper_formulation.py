@@ -19,7 +19,7 @@ from evodesign.nlp.solver import RawSolution
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.terms.base import REGULARISATION, TORQUE_UNIT
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 from tests.mechanics.test_projected import boundless, places_of, postures_of, random_case
@@ -30,18 +30,18 @@ FORCE = 1e-3  # [N] and [N m]
 
 
 @pytest.fixture(scope="module")
-def paper(problem: Problem) -> PaperProgram:
+def paper(problem: DesignProblem) -> PaperProgram:
     return paper_program(problem)
 
 
 @pytest.fixture(scope="module")
-def design(problem: Problem) -> tuple[float, ...]:
+def design(problem: DesignProblem) -> tuple[float, ...]:
     """Larger and denser than the unscaled robot."""
     return problem.space.values((0.45,) * len(problem.space.parameters))
 
 
 @pytest.fixture(scope="module")
-def solved(problem: Problem, design: tuple[float, ...]) -> RawSolution:
+def solved(problem: DesignProblem, design: tuple[float, ...]) -> RawSolution:
     """Our whole program without limits on forces, so that it is free to choose the paper's wrenches."""
     solver, _ = boundless(problem)
     start = solver.start
@@ -65,7 +65,7 @@ def statics(
     return [np.array(part).ravel() for part in paper.statics(*postures, parameters)]
 
 
-def test_the_graphs_matrices_are_pinocchios(problem: Problem, design: tuple[float, ...]) -> None:
+def test_the_graphs_matrices_are_pinocchios(problem: DesignProblem, design: tuple[float, ...]) -> None:
     case = random_case(problem, 0)  # another person and load, point grasps
     system, first = case.system(), 0
     for place, agent in enumerate(case.agents):
@@ -83,7 +83,7 @@ def test_the_graphs_matrices_are_pinocchios(problem: Problem, design: tuple[floa
 
 
 def test_at_our_postures_the_graph_is_equations_12_and_13(
-    problem: Problem, paper: PaperProgram, design: tuple[float, ...], evaluator: Evaluator
+    problem: DesignProblem, paper: PaperProgram, design: tuple[float, ...], evaluator: Evaluator
 ) -> None:
     result = evaluator.solve(design)
     model = CoupledModel(problem.scene, result.tree)
@@ -98,7 +98,7 @@ def test_at_our_postures_the_graph_is_equations_12_and_13(
 
 
 def test_our_lifted_torques_are_the_graphs(
-    problem: Problem, paper: PaperProgram, design: tuple[float, ...], solved: RawSolution
+    problem: DesignProblem, paper: PaperProgram, design: tuple[float, ...], solved: RawSolution
 ) -> None:
     postures = postures_of(problem.scene, solved)
     torques, _ = statics(paper, columns(postures), [*design, HEIGHT])
@@ -108,7 +108,7 @@ def test_our_lifted_torques_are_the_graphs(
 
 
 def test_at_our_posture_the_papers_program_asks_what_ours_does(
-    problem: Problem, paper: PaperProgram, design: tuple[float, ...], solved: RawSolution
+    problem: DesignProblem, paper: PaperProgram, design: tuple[float, ...], solved: RawSolution
 ) -> None:
     """Torques at equal weights, comfort anew in NumPy, and constraints that our solver has met."""
     program = paper.program
@@ -133,7 +133,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
 
 
 def test_figures_count_what_was_solved(
-    problem: Problem, known: Precomputed, design: tuple[float, ...]
+    problem: DesignProblem, known: Precomputed, design: tuple[float, ...]
 ) -> None:
     figures = measure_ours(problem, known, [design], HEIGHT)
     assert (figures.solved, figures.tried) == (1, 1)

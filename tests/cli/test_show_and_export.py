@@ -16,7 +16,7 @@ from evodesign.cli.export import export
 from evodesign.cli.output import figure
 from evodesign.cli.show import show
 from evodesign.errors import EvodesignError, InputError, RunError
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import (
     Assessment,
@@ -47,12 +47,12 @@ def write_run(
     return place
 
 
-def header_for(problem: Problem) -> RunHeader:
+def header_for(problem: DesignProblem) -> RunHeader:
     return header_of(problem, problem.settings("random", 4, 1), budget=4)
 
 
 @pytest.fixture(scope="module")
-def run(problem: Problem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(problem: DesignProblem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two designs: the first with its postures, the second without."""
     evaluations, details = [], []
     for number, genome in enumerate(problem.start[:2]):
@@ -108,7 +108,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
 
 
 def test_card_and_json_say_what_the_postures_ask_of_the_person(
-    run: Path, problem: Problem, capsys: pytest.CaptureFixture[str]
+    run: Path, problem: DesignProblem, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show(run, 0, jobs=1, json=True, plot=None)
     told = json.loads(capsys.readouterr().out)["ergonomics"]
@@ -151,7 +151,7 @@ def test_json_is_the_log(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_design_without_logged_postures_is_solved_anew(
-    run: Path, problem: Problem, evaluator: Evaluator, capsys: pytest.CaptureFixture[str]
+    run: Path, problem: DesignProblem, evaluator: Evaluator, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show(run, 1, jobs=1, json=True, plot=None)
     captured = capsys.readouterr()
@@ -184,7 +184,7 @@ HOSTILE = "<script>alert(1)</script>[bold]../x"
 
 
 @pytest.fixture(scope="module")
-def hostile(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def hostile(problem: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run whose problem, robot, joints and parameters have names that mean something elsewhere."""
     text = problem.source.text.replace('"icub-lifting"', f'"{HOSTILE}"')
     text = text.replace('name = "upper_arm"', 'name = "../x"').replace(

@@ -11,23 +11,25 @@ import pytest
 from evodesign.cli.output import figure
 from evodesign.cli.show import show
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.problem.build import Problem
-from evodesign.runlog.run import Run
+from evodesign.problem.build import DesignProblem
+from evodesign.runlog.run import RunLog
 from tests.cli.test_show_and_export import cells
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
 
 
 @pytest.fixture(scope="module")
-def several(problem: Problem) -> Problem:
+def several(problem: DesignProblem) -> DesignProblem:
     return problem_of_several(problem)
 
 
 @pytest.fixture(scope="module")
-def run(several: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(several: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
     return write_several(several, tmp_path_factory.mktemp("several") / "run")
 
 
-def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_card_has_a_row_for_each_case_and_sums_them_up(
+    run: RunLog, capsys: pytest.CaptureFixture[str]
+) -> None:
     show(run.directory, 1)
     rows = cells(capsys.readouterr().out)
     outcomes = run.evaluations[1].assessment.cases
@@ -54,7 +56,7 @@ def test_card_has_a_row_for_each_case_and_sums_them_up(run: Run, capsys: pytest.
 
 
 def test_card_names_the_case_of_largest_torque_and_contact_force(
-    run: Run, capsys: pytest.CaptureFixture[str]
+    run: RunLog, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show(run.directory, 1)
     rows = cells(capsys.readouterr().out)
@@ -72,7 +74,7 @@ def test_card_names_the_case_of_largest_torque_and_contact_force(
         assert [agent, "left hand", *numbers, names[int(np.argmax(forces))]] in rows
 
 
-def test_figures_of_show_are_written(several: Problem, tmp_path: Path) -> None:
+def test_figures_of_show_are_written(several: DesignProblem, tmp_path: Path) -> None:
     few = write_several(several, tmp_path / "run", designs=1, cases=3)
     show(few.directory, 0, json=True, plot=tmp_path / "figures")
     assert len(list((tmp_path / "figures").iterdir())) == 6

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from evodesign.evolve import Silent, resume
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from tests.faults.kills import uninterrupted
 from tests.runlog.toys import OrderedPool, ToyTask, essence
 
@@ -42,7 +42,7 @@ def session(
             process.kill()
 
 
-def check_resumable(directory: Path, least: int, most: int) -> Run:
+def check_resumable(directory: Path, least: int, most: int) -> RunLog:
     run = read_run(directory)
     assert least <= len(run.evaluations) <= most
     resumed = resume(directory, ToyTask, OrderedPool(), Silent(), None)

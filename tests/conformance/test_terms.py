@@ -20,7 +20,7 @@ from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import BodyTerm, Coupled, Row, SystemTerm
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 
 HEIGHT = 0.9
 CLOSE = 1e-9
@@ -50,7 +50,7 @@ SAME_MEASURE = {
 """Residuals that measure just what their rows do; others take other axes, or another function of an angle."""
 
 
-def scene_of(problem: Problem) -> Scene:
+def scene_of(problem: DesignProblem) -> Scene:
     payload = replace(problem.scene.payload, grasp=Grasp.RIGID, hand_moment=5.0)
     return replace(problem.scene, payload=payload, disturbances=DISTURBED)
 
@@ -68,7 +68,7 @@ def random_values(program: Program, rng: np.random.Generator) -> dict[str, np.nd
 
 
 @pytest.fixture(scope="module", params=["whole", "half"])
-def forms(request: pytest.FixtureRequest, problem: Problem) -> tuple[Form, Form]:
+def forms(request: pytest.FixtureRequest, problem: DesignProblem) -> tuple[Form, Form]:
     scene = scene_of(problem)
     return symmetric_forms(scene) if request.param == "half" else (whole(scene.robot), whole(scene.human))
 
@@ -102,7 +102,7 @@ def test_registry_and_terms_agree_on_names() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_rows_say_what_the_residuals_say(problem: Problem, forms: tuple[Form, Form], seed: int) -> None:
+def test_rows_say_what_the_residuals_say(problem: DesignProblem, forms: tuple[Form, Form], seed: int) -> None:
     """At random values of all variables, in every load case: another library finds the same violations."""
     scene = scene_of(problem)
     program = program_of(scene, forms, TERMS)
@@ -156,7 +156,7 @@ def split_case(name: str, scene: Scene) -> tuple[str, str]:
     return "", name
 
 
-def test_every_residual_fires(problem: Problem) -> None:
+def test_every_residual_fires(problem: DesignProblem) -> None:
     """Each of every term, undisturbed and not, for some random posture; no residual is always silent."""
     scene, seen = scene_of(problem), set[str]()
     forms = (whole(scene.robot), whole(scene.human))
@@ -178,7 +178,7 @@ def test_every_residual_fires(problem: Problem) -> None:
     assert {f"{name}: {agent}.moved" for agent in (ROBOT, HUMAN)} <= seen
 
 
-def test_a_point_grasp_that_passes_a_moment_is_seen(problem: Problem) -> None:
+def test_a_point_grasp_that_passes_a_moment_is_seen(problem: DesignProblem) -> None:
     scene = problem.scene
     forms = (whole(scene.robot), whole(scene.human))
     program = program_of(scene, forms, TERMS)
@@ -192,7 +192,7 @@ def test_a_point_grasp_that_passes_a_moment_is_seen(problem: Problem) -> None:
     assert found["load.grasp"] == pytest.approx(1.0)
 
 
-def test_torques_beyond_their_limits_are_seen(problem: Problem) -> None:
+def test_torques_beyond_their_limits_are_seen(problem: DesignProblem) -> None:
     joint = problem.scene.robot.joints[0]
     robot = replace(problem.scene.robot, torque_limits={joint: 1.0}, limits_torques=True)
     scene = replace(problem.scene, robot=robot)
@@ -208,7 +208,7 @@ def test_torques_beyond_their_limits_are_seen(problem: Problem) -> None:
 
 @pytest.mark.parametrize("name", TERMS)
 def test_derivatives_of_a_term_agree_with_differences(
-    name: str, problem: Problem, forms: tuple[Form, Form]
+    name: str, problem: DesignProblem, forms: tuple[Form, Form]
 ) -> None:
     """Rows and costs of one term, with respect to every variable, at random values."""
     scene = scene_of(problem)

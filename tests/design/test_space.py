@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import ModelError
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 
 unit = st.floats(0.0, 1.0)
 
@@ -27,7 +27,7 @@ def test_genome_and_values_are_two_names_of_one_point(genome: list[float]) -> No
     assert list(space.named(values)) == ["length.arm", "density.arm"]
 
 
-def test_unscaled_design_is_the_files_robot(problem: Problem) -> None:
+def test_unscaled_design_is_the_files_robot(problem: DesignProblem) -> None:
     tree = problem.scene.robot.tree
     resized = problem.space.resized(tree, problem.space.unscaled(tree))
     for link in tree.links:
@@ -36,7 +36,7 @@ def test_unscaled_design_is_the_files_robot(problem: Problem) -> None:
         assert resized.joint_by_name[joint.name] == joint
 
 
-def test_left_and_right_change_together(problem: Problem) -> None:
+def test_left_and_right_change_together(problem: DesignProblem) -> None:
     genome = tuple(0.3 for _ in problem.space.parameters)
     tree = problem.space.resized(problem.scene.robot.tree, problem.space.values(genome))
     for joint in tree.joints:
@@ -46,7 +46,7 @@ def test_left_and_right_change_together(problem: Problem) -> None:
             assert right == (left[0], -left[1], left[2])
 
 
-def test_parameter_of_a_link_without_a_shape_is_refused(problem: Problem) -> None:
+def test_parameter_of_a_link_without_a_shape_is_refused(problem: DesignProblem) -> None:
     space = DesignSpace((DesignParameter(ParameterKind.LENGTH, "sole", ("l_sole",), 0.5, 2.0),))
     with pytest.raises(ModelError, match="l_sole"):
         space.check(problem.scene.robot.tree)

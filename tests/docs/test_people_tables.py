@@ -9,7 +9,7 @@ import pytest
 from evodesign.human.population import population, population_table
 from evodesign.human.strength import joint_strengths, strength_tables
 from evodesign.mechanics.scene import HUMAN
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import Evaluator, detail_of
 
@@ -75,7 +75,7 @@ def test_the_warning_figures_of_the_95th_percentile_are_true(repository: Path) -
 
 
 def test_the_default_problem_asks_what_the_table_says(
-    rows: list[list[str]], problem: Problem, evaluator: Evaluator
+    rows: list[list[str]], problem: DesignProblem, evaluator: Evaluator
 ) -> None:
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     shown = {row[0]: row[1:] for row in rows if row[0].endswith(" m")}

@@ -19,7 +19,7 @@ from evodesign.errors import RunError
 from evodesign.evolve import Silent, start
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Status
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from tests.faults.synthetic import Synthetic, synthetic_header
 from tests.runlog.toys import essence
 
@@ -114,7 +114,7 @@ def _command(process: str) -> bytes:
         return b""
 
 
-def uninterrupted(seed: int, budget: int) -> Run:
+def uninterrupted(seed: int, budget: int) -> RunLog:
     header = synthetic_header(budget, seed)
     with tempfile.TemporaryDirectory() as folder:
         return start(Path(folder) / "run", header, Synthetic(header, 0.0), SerialPool(), Silent())

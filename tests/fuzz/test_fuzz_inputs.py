@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from evodesign.errors import EvodesignError
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from tests.cli.test_bad_input import assert_explained, evodesign
 from tests.fuzz.mutations import ANY, TOML, XML
@@ -213,7 +213,7 @@ def about_sentence(sentence: str) -> str:
     return "" if sentence.isprintable() else f"not one line: {sentence[:300]!r}"
 
 
-def sound(problem: Problem) -> bool:
+def sound(problem: DesignProblem) -> bool:
     """Whether a problem's robot is of finite figures, at a design in the middle and as it is."""
     space, tree = problem.space, problem.scene.robot.tree
     middle = space.resized(tree, space.values((0.5,) * len(space.parameters)))

@@ -16,7 +16,7 @@ from evodesign.evolve import Silent, replay, resume
 from evodesign.records import FORMAT_VERSION
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.rewrite import merge, recover
-from evodesign.runlog.run import Run, digest, read_run
+from evodesign.runlog.run import RunLog, digest, read_run
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 FOLDER = Path(__file__).parent
@@ -35,7 +35,7 @@ def version(request: pytest.FixtureRequest) -> int:
 
 
 @pytest.fixture
-def run(version: int) -> Run:
+def run(version: int) -> RunLog:
     return read_run(FOLDER / f"format-{version}")
 
 
@@ -45,7 +45,7 @@ def test_each_format_version_has_its_golden_run() -> None:
         assert names == [f"format-{each}" for each in VERSIONS]
 
 
-def test_a_golden_run_reads_as_it_was_written(version: int, run: Run) -> None:
+def test_a_golden_run_reads_as_it_was_written(version: int, run: RunLog) -> None:
     assert (run.complete, run.damaged, run.notes) == (True, False, ())
     assert run.header.format_version == version
     assert run.header.problem.text == 'name = "töy"'
@@ -60,13 +60,13 @@ def test_a_golden_run_reads_as_it_was_written(version: int, run: Run) -> None:
     assert run.generations[-1].hypervolume == 7.0209446981054695
 
 
-def test_a_golden_run_agrees_with_itself(run: Run) -> None:
+def test_a_golden_run_agrees_with_itself(run: RunLog) -> None:
     assert audit(run) == []
     known = front(run.header.objectives, run.evaluations[:18])
     assert tuple(each.number for each in known) == run.fronts[-1].evaluations
 
 
-def test_a_golden_run_can_be_merged_and_recovered(version: int, run: Run, tmp_path: Path) -> None:
+def test_a_golden_run_can_be_merged_and_recovered(version: int, run: RunLog, tmp_path: Path) -> None:
     shutil.copytree(FOLDER / f"format-{version}", tmp_path / "run")
     recovered = recover(tmp_path / "run", tmp_path / "recovered")
     merged = merge(tmp_path / "run", None)

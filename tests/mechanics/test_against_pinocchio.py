@@ -19,7 +19,7 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY, AppliedWrench, center_of_mass, cut
 from evodesign.mechanics.scene import SIDES, Agent
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
@@ -52,14 +52,14 @@ def posture(tree: Tree, agent: Agent, rng: np.random.Generator) -> Case:
     return Case(tree, agent, rng.normal(size=3), rng.uniform(-1.2, 1.2, 3), joints, wrenches)
 
 
-def robots(problem: Problem) -> Iterator[Case]:
+def robots(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(1)
     for _ in range(CASES):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
         yield posture(problem.space.resized(problem.scene.robot.tree, values), problem.scene.robot, rng)
 
 
-def persons(problem: Problem) -> Iterator[Case]:
+def persons(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(2)
     for number in range(CASES):
         sex = list(Sex)[number % 2]
@@ -67,13 +67,13 @@ def persons(problem: Problem) -> Iterator[Case]:
         yield posture(tree, problem.scene.human, rng)
 
 
-def published(problem: Problem) -> Iterator[Case]:
+def published(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(3)
     for tree in published_robots(problem, rng, CASES // 4):
         yield posture(tree, problem.scene.robot, rng)
 
 
-def cranes(problem: Problem) -> Iterator[Case]:
+def cranes(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(4)
     for _ in range(CASES // 4):
         tree = crane()
@@ -120,7 +120,7 @@ def oracle(case: Case) -> tuple[pin.Model, pin.Data, np.ndarray]:
 
 
 @pytest.fixture(scope="module", params=[robots, persons, published, cranes])
-def both(request: pytest.FixtureRequest, problem: Problem) -> list[tuple[Case, Any, Any]]:
+def both(request: pytest.FixtureRequest, problem: DesignProblem) -> list[tuple[Case, Any, Any]]:
     """Each case with what we and the oracle find."""
     return [(case, ours(case), oracle(case)) for case in request.param(problem)]
 

@@ -19,7 +19,7 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY, cut
 from evodesign.mechanics.dynamics import ROOT_ROWS, bias, inverse_dynamics, mass_matrix
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_write import urdf_text
@@ -68,27 +68,27 @@ def moving(tree: Tree, rng: np.random.Generator) -> Case:
     return Case(tree, rng.uniform(-1.4, 1.4, 3), joints, rng.normal(size=size), rng.normal(size=size))
 
 
-def robots(problem: Problem) -> Iterator[Case]:
+def robots(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(11)
     for _ in range(CASES):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
         yield moving(problem.space.resized(problem.scene.robot.tree, values), rng)
 
 
-def persons(_: Problem) -> Iterator[Case]:
+def persons(_: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(12)
     for number in range(CASES):
         person = Person(rng.uniform(1.45, 2.05), rng.uniform(40.0, 140.0), list(Sex)[number % 2])
         yield moving(human_tree(person), rng)
 
 
-def cranes(_: Problem) -> Iterator[Case]:
+def cranes(_: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(13)
     for _ in range(CASES):
         yield moving(crane(), rng)
 
 
-def published(problem: Problem) -> Iterator[Case]:
+def published(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(14)
     for tree in published_robots(problem, rng, CASES):
         yield moving(tree, rng)
@@ -116,7 +116,7 @@ def in_pinocchio(case: Case) -> tuple[np.ndarray, np.ndarray]:
 
 
 @ALL
-def test_mass_matrix_and_bias_are_pinocchios(cases, problem: Problem) -> None:
+def test_mass_matrix_and_bias_are_pinocchios(cases, problem: DesignProblem) -> None:
     for case in cases(problem):
         mass, forces = in_pinocchio(case)
         unit = np.sqrt(np.outer(np.diag(mass), np.diag(mass)))
@@ -125,7 +125,7 @@ def test_mass_matrix_and_bias_are_pinocchios(cases, problem: Problem) -> None:
 
 
 @ALL
-def test_at_rest_the_bias_is_what_statics_finds(cases, problem: Problem) -> None:
+def test_at_rest_the_bias_is_what_statics_finds(cases, problem: DesignProblem) -> None:
     for case in list(cases(problem))[:10]:
         base = Pose(euler_rotation(ca.DM(case.angles)), ca.DM([0.3, -0.2, 0.9]))
         balance = cut(case.tree, forward(case.tree, base, case.joints), [])
@@ -136,7 +136,7 @@ def test_at_rest_the_bias_is_what_statics_finds(cases, problem: Problem) -> None
         assert np.allclose(found, expected, rtol=0.0, atol=RELATIVE * np.abs(expected).max())
 
 
-def test_inverse_dynamics_is_mass_times_acceleration_and_bias(problem: Problem) -> None:
+def test_inverse_dynamics_is_mass_times_acceleration_and_bias(problem: DesignProblem) -> None:
     """The mass matrix comes from composite bodies, inverse dynamics from link to link."""
     for case in [next(robots(problem)), next(persons(problem)), next(cranes(problem))]:
         moved = ca.DM(case.velocity), ca.DM(case.acceleration)
@@ -145,7 +145,7 @@ def test_inverse_dynamics_is_mass_times_acceleration_and_bias(problem: Problem) 
         assert np.allclose(np.array(forces).ravel(), expected, rtol=0.0, atol=1e-11 * np.abs(expected).max())
 
 
-def test_welded_joints_leave_the_rows_of_the_others(problem: Problem) -> None:
+def test_welded_joints_leave_the_rows_of_the_others(problem: DesignProblem) -> None:
     case = next(robots(problem))
     kept = case.names[::2]
     rows = [*range(ROOT_ROWS), *(ROOT_ROWS + case.names.index(name) for name in kept)]
@@ -157,7 +157,7 @@ def test_welded_joints_leave_the_rows_of_the_others(problem: Problem) -> None:
     assert np.array_equal(mass, case.mass()[np.ix_(rows, rows)])
 
 
-def test_one_graph_serves_every_design(problem: Problem) -> None:
+def test_one_graph_serves_every_design(problem: DesignProblem) -> None:
     tree, space = problem.scene.robot.tree, problem.space
     names = problem.scene.robot.joints
     design, q = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("q", len(names))
@@ -224,7 +224,7 @@ class Energy:
 
 
 @ALL
-def test_energy_changes_by_the_power_of_the_forces(cases, problem: Problem) -> None:
+def test_energy_changes_by_the_power_of_the_forces(cases, problem: DesignProblem) -> None:
     """nu . (M dnu/dt + h) is the rate of T + V and nu . M nu / 2 is T; T and V come from kinematics alone."""
     case = next(cases(problem))
     energy = Energy(case.tree, case.names)

@@ -8,14 +8,14 @@ import pytest
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import Configuration, FloatingBody
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 from tests.oracles.pinocchio_model import floating_model
 from tests.tree.crane import crane
 
 
-def trees(problem: Problem) -> dict[str, Tree]:
+def trees(problem: DesignProblem) -> dict[str, Tree]:
     scene = problem.scene
     longer = problem.space.values((0.8,) * len(problem.space.parameters))
     return {
@@ -27,7 +27,7 @@ def trees(problem: Problem) -> dict[str, Tree]:
 
 
 @pytest.mark.parametrize("name", ["robot", "longer robot", "person", "crane"])
-def test_mass_matrix_bias_and_frames_are_those_of_the_urdf(name: str, problem: Problem) -> None:
+def test_mass_matrix_bias_and_frames_are_those_of_the_urdf(name: str, problem: DesignProblem) -> None:
     tree = trees(problem)[name]
     rng = np.random.default_rng(3)
     moving = tree.actuated[::2]  # the others are welded at zero

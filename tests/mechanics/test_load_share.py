@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.load_share import share_interval
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Payload, Scene
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 
 BOX = (0.5, 0.5, 0.1)
 
 
 @pytest.fixture(scope="module")
-def scene(problem: Problem) -> Scene:
+def scene(problem: DesignProblem) -> Scene:
     return problem.scene
 
 

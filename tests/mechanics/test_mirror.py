@@ -8,7 +8,7 @@ import pytest
 
 from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.scene import SIDES, Agent
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.symmetry import mirror_of
 
@@ -29,7 +29,7 @@ def torques(
 
 
 @pytest.mark.parametrize("who", ["robot", "human"])
-def test_mirrored_posture_has_mirrored_torques(who: str, problem: Problem) -> None:
+def test_mirrored_posture_has_mirrored_torques(who: str, problem: DesignProblem) -> None:
     agent: Agent = getattr(problem.scene, who)
     mirror, rng = mirror_of(agent.tree), np.random.default_rng(8)
     for _ in range(20):

@@ -34,7 +34,7 @@ from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole
 from evodesign.posture.terms.registry import TERMS
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
@@ -72,7 +72,7 @@ def placed(agent: Agent, tree: Tree, rng: np.random.Generator) -> Configuration:
     return Configuration(rng.normal(size=3), rng.uniform(-1.0, 1.0, 3), joints)
 
 
-def random_case(problem: Problem, seed: int) -> Case:
+def random_case(problem: DesignProblem, seed: int) -> Case:
     """Any design, person, load, grasp and posture: the formulas hold whether or not hands meet the load."""
     rng = np.random.default_rng(seed)
     scene, space = problem.scene, problem.space
@@ -154,7 +154,7 @@ def least_norm(case: Case, system: CoupledSystem) -> tuple[np.ndarray, np.ndarra
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_gravity_and_coupling_are_those_of_the_cut_statics(problem: Problem, seed: int) -> None:
+def test_gravity_and_coupling_are_those_of_the_cut_statics(problem: DesignProblem, seed: int) -> None:
     """h - Q^T f holds the torques, and what is missing at the roots and on the load, for any wrenches."""
     case = random_case(problem, seed)
     system = case.system()
@@ -165,7 +165,7 @@ def test_gravity_and_coupling_are_those_of_the_cut_statics(problem: Problem, see
 
 
 @pytest.mark.parametrize("seed", range(DESIGNS))
-def test_projected_torques_are_the_least_that_statics_allows(problem: Problem, seed: int) -> None:
+def test_projected_torques_are_the_least_that_statics_allows(problem: DesignProblem, seed: int) -> None:
     case = random_case(problem, seed)
     system = case.system()
     torques, wrenches = least_norm(case, system)
@@ -178,7 +178,7 @@ def test_projected_torques_are_the_least_that_statics_allows(problem: Problem, s
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_torques_and_wrenches_do_not_depend_on_the_mass_matrix(problem: Problem, seed: int) -> None:
+def test_torques_and_wrenches_do_not_depend_on_the_mass_matrix(problem: DesignProblem, seed: int) -> None:
     rng = np.random.default_rng(100 + seed)
     system = random_case(problem, seed).system()
     torques = projected_torques(system)
@@ -194,7 +194,7 @@ def test_torques_and_wrenches_do_not_depend_on_the_mass_matrix(problem: Problem,
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_of_wrenches_that_no_joint_feels_the_formula_takes_none(problem: Problem, seed: int) -> None:
+def test_of_wrenches_that_no_joint_feels_the_formula_takes_none(problem: DesignProblem, seed: int) -> None:
     """With stiff legs an internal force is free: solutions differ in the null space of Q^T, f avoids it."""
     case = without_legs(random_case(problem, seed))
     system = case.system()
@@ -212,7 +212,7 @@ def test_of_wrenches_that_no_joint_feels_the_formula_takes_none(problem: Problem
     assert np.allclose(difference, internal @ (internal.T @ difference), rtol=0.0, atol=1e-8 * scale)
 
 
-def boundless(problem: Problem) -> tuple[Solver, Scene]:
+def boundless(problem: DesignProblem) -> tuple[Solver, Scene]:
     """Posture program of the full model without limits on forces; its cost is torque, equally weighted."""
     scene, space = problem.scene, problem.space
     design, height = ca.SX.sym("design", len(space.parameters)), ca.SX.sym("height")
@@ -261,7 +261,7 @@ def wrenches_of(postures: Mapping[str, AgentPosture], system: CoupledSystem) -> 
     )
 
 
-def test_the_solvers_torques_and_wrenches_are_the_papers(problem: Problem) -> None:
+def test_the_solvers_torques_and_wrenches_are_the_papers(problem: DesignProblem) -> None:
     """20 random designs, equal weights, no limits on forces."""
     solver, scene = boundless(problem)
     start = solver.start
@@ -287,7 +287,7 @@ def test_the_solvers_torques_and_wrenches_are_the_papers(problem: Problem) -> No
     assert np.median(norms) > 5.0  # [N m]: zeros would agree with anything
 
 
-def test_limits_of_the_ground_cost_torque(problem: Problem, evaluator: Evaluator) -> None:
+def test_limits_of_the_ground_cost_torque(problem: DesignProblem, evaluator: Evaluator) -> None:
     """With friction, soles and push enforced, no posture needs less torque than Eq. 12; none much more."""
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     model = CoupledModel(problem.scene, result.tree)
@@ -325,7 +325,7 @@ def later(case: Case, velocities: Mapping[str, np.ndarray], seconds: float) -> C
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_drift_is_the_rate_of_the_coupling(problem: Problem, seed: int) -> None:
+def test_drift_is_the_rate_of_the_coupling(problem: DesignProblem, seed: int) -> None:
     """dQ/dt nu against differences of Q nu along the motion; seeds 2 and 3 hold the load rigidly."""
     case = random_case(problem, seed)
     velocities = random_velocities(case, np.random.default_rng(seed))
@@ -338,7 +338,7 @@ def test_drift_is_the_rate_of_the_coupling(problem: Problem, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_composite_mass_and_bias_are_those_of_the_parts(problem: Problem, seed: int) -> None:
+def test_composite_mass_and_bias_are_those_of_the_parts(problem: DesignProblem, seed: int) -> None:
     """Agents against our own dynamics; the load against Newton and Euler about its centre of mass."""
     case = random_case(problem, seed)
     velocities = random_velocities(case, np.random.default_rng(seed))
@@ -367,7 +367,7 @@ def test_composite_mass_and_bias_are_those_of_the_parts(problem: Problem, seed: 
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_moving_system_keeps_its_contacts(problem: Problem, seed: int) -> None:
+def test_a_moving_system_keeps_its_contacts(problem: DesignProblem, seed: int) -> None:
     """Accelerations and wrenches solve Eq. 9, as one system of linear equations does."""
     rng = np.random.default_rng(seed)
     case = random_case(problem, seed)
@@ -383,7 +383,7 @@ def test_a_moving_system_keeps_its_contacts(problem: Problem, seed: int) -> None
         assert np.allclose(found[part], expected[part], rtol=0.0, atol=1e-7 * np.abs(expected[part]).max())
 
 
-def test_a_position_for_a_welded_joint_is_refused(problem: Problem) -> None:
+def test_a_position_for_a_welded_joint_is_refused(problem: DesignProblem) -> None:
     case = random_case(problem, 0)
     place = case.places[ROBOT]
     bent = replace(place, joints={**place.joints, "neck_pitch": 0.3})
@@ -391,13 +391,13 @@ def test_a_position_for_a_welded_joint_is_refused(problem: Problem) -> None:
         replace(case, places={**case.places, ROBOT: bent}).system()
 
 
-def test_under_the_projected_torques_nothing_moves(problem: Problem) -> None:
+def test_under_the_projected_torques_nothing_moves(problem: DesignProblem) -> None:
     system = random_case(problem, 0).system()
     assert np.abs(constrained_accelerations(system, projected_torques(system))).max() < 1e-6
     assert np.abs(constrained_accelerations(system, np.zeros(len(system.joints)))).max() > 1.0
 
 
-def test_gimbal_lock_of_a_shoulder_changes_nothing(problem: Problem) -> None:
+def test_gimbal_lock_of_a_shoulder_changes_nothing(problem: DesignProblem) -> None:
     """Massless links between parallel axes make M singular; torques and wrenches are what statics says."""
     case = random_case(problem, 1)
     place = case.places[HUMAN]

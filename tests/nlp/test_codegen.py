@@ -29,7 +29,7 @@ from evodesign.nlp.program import Constraint, Program, Variable
 from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 
 COMPILED = IpoptOptions(compiled=True)
@@ -136,7 +136,7 @@ def test_library_holds_the_exact_derivatives(cache: Cache, compiler: Compiler) -
 
 @pytest.mark.needs_compiler
 @pytest.mark.usefixtures("home")
-def test_compiled_reach_of_the_default_problem_is_the_same(problem: Problem) -> None:
+def test_compiled_reach_of_the_default_problem_is_the_same(problem: DesignProblem) -> None:
     """One real compilation: about six seconds."""
     reaches = [
         ReachProblem(Setting(problem.scene, problem.space, problem.weights, options), symmetric=True)

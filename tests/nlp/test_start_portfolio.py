@@ -13,7 +13,7 @@ from evodesign.nlp.program import Constraint, Program, Variable
 from evodesign.nlp.solver import IpoptOptions, Solver
 from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spread_designs, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 
 FIXED = ({"robot.joints": [0.0]}, {"robot.joints": [0.5]})
@@ -100,7 +100,7 @@ def test_seeds_of_the_default_problem_lead_other_designs_well(known: Precomputed
         assert found.coverage.share >= 0.97
 
 
-def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Evaluator) -> None:
+def test_an_evaluation_says_which_seed_led_to_it(problem: DesignProblem, evaluator: Evaluator) -> None:
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
     for height in result.cases:
         assert height.attempt in height.attempts
@@ -110,7 +110,7 @@ def test_an_evaluation_says_which_seed_led_to_it(problem: Problem, evaluator: Ev
         assert won.cost <= min(attempt.cost for attempt in height.attempts) + 0.03, "the fit's error apart"
 
 
-def test_without_seeds_solves_begin_at_the_fixed_starts(problem: Problem, known: Precomputed) -> None:
+def test_without_seeds_solves_begin_at_the_fixed_starts(problem: DesignProblem, known: Precomputed) -> None:
     plain = Evaluator(problem, Precomputed(values=known.values))
     result = plain.solve(problem.space.unscaled(problem.scene.robot.tree))
     assert [attempt.name for attempt in result.cases[0].attempts] == [
@@ -120,7 +120,7 @@ def test_without_seeds_solves_begin_at_the_fixed_starts(problem: Problem, known:
 
 
 def test_seeds_reach_higher_than_fixed_starts(
-    problem: Problem, evaluator: Evaluator, known: Precomputed
+    problem: DesignProblem, evaluator: Evaluator, known: Precomputed
 ) -> None:
     """Arms raised sideways over the head hold a load higher than arms held forward."""
     values = problem.space.unscaled(problem.scene.robot.tree)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_read import MassRule, read_urdf
 from tests.tree.test_icub_robot import reference_text
@@ -16,7 +16,7 @@ __all__ = ["published_robots"]
 NAME = "robot_reference.urdf"
 
 
-def published_robots(problem: Problem, rng: np.random.Generator, count: int) -> Iterator[Tree]:
+def published_robots(problem: DesignProblem, rng: np.random.Generator, count: int) -> Iterator[Tree]:
     """Random designs of the published robot; it has the link names of ours, and other figures."""
     tree = read_urdf(reference_text(NAME), NAME, MassRule.SHAPES)
     for _ in range(count):

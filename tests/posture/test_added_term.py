@@ -18,7 +18,7 @@ from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.registry import TERMS
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 from tests.posture.center_of_mass_term import mass_height
 
@@ -41,7 +41,7 @@ class Bench:
 
 
 @pytest.fixture(scope="module")
-def bench(problem: Problem) -> Bench:
+def bench(problem: DesignProblem) -> Bench:
     scene, space = problem.scene, problem.space
     design = space.unscaled(scene.robot.tree)
     checker = Checker(
@@ -66,7 +66,7 @@ def lowest(bench: Bench, before: CaseSolution, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.usefixtures("lowest")
-def test_it_enters_every_formulation(problem: Problem, bench: Bench) -> None:
+def test_it_enters_every_formulation(problem: DesignProblem, bench: Bench) -> None:
     forms = symmetric_forms(bench.setting.scene)
     joint = PostureProblem(bench.setting, Symmetry.ON).landscape(HOLD).solver.program
     whole = PostureProblem(bench.setting, Symmetry.OFF).landscape(HOLD).solver.program

@@ -25,7 +25,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.warm_start import instants_of, layout_of, start_from
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import Hold, Status
 from tests.posture.violations import violations
 
@@ -41,13 +41,13 @@ def allocation(name: str, lower: float = 0.0, upper: float = 1.0) -> DesignSpace
     return DesignSpace((DesignParameter(ParameterKind.ALLOCATION, name, (), lower, upper),))
 
 
-def rigid(problem: Problem, moment: float = math.inf, share: float | None = None) -> Scene:
+def rigid(problem: DesignProblem, moment: float = math.inf, share: float | None = None) -> Scene:
     payload = replace(problem.scene.payload, mass=MASS, grasp=Grasp.RIGID, hand_moment=moment)
     return replace(problem.scene, payload=payload, robot_share=share)
 
 
 def solve(
-    problem: Problem,
+    problem: DesignProblem,
     scene: Scene,
     height: float = 1.0,
     weights: EffortWeights = EQUAL,
@@ -89,7 +89,7 @@ def norms(solution: CaseSolution) -> tuple[float, float]:
 @pytest.mark.parametrize(("height", "symmetric"), [(0.8, True), (1.0, True), (1.2, True), (1.2, False)])
 @pytest.mark.parametrize(("moment", "close"), [(0.0, 1e-4), (1e-3, 0.05)])
 def test_rigid_grasps_without_moments_and_with_an_equal_share_are_point_grasps(
-    height: float, symmetric: bool, moment: float, close: float, problem: Problem
+    height: float, symmetric: bool, moment: float, close: float, problem: DesignProblem
 ) -> None:
     """As a problem file asks for it; begun at the point grasps' optimum, for there are several.
 
@@ -110,7 +110,7 @@ def test_rigid_grasps_without_moments_and_with_an_equal_share_are_point_grasps(
         assert max(np.abs(wrench[3:]).max() for wrench in wrenches) <= moment + 1e-7
 
 
-def asked_for(problem: Problem, grasp: str, task: str) -> Scene:
+def asked_for(problem: DesignProblem, grasp: str, task: str) -> Scene:
     """The scene of the default problem's file with another grasp, 10 kg and another task."""
     text = problem.source.text.replace('grasp = "point"', grasp).replace("mass_kg = 5.0", "mass_kg = 10.0")
     text = text.replace("heights_m =", f"{task}\nheights_m =")
@@ -118,7 +118,7 @@ def asked_for(problem: Problem, grasp: str, task: str) -> Scene:
 
 
 def end(
-    problem: Problem, forms: tuple[Form, Form], scene: Scene, height: float, postures: Postures
+    problem: DesignProblem, forms: tuple[Form, Form], scene: Scene, height: float, postures: Postures
 ) -> Postures:
     """The optimum next to some postures; it passes the check."""
     options = replace(problem.options, tolerance=1e-10, near=True)
@@ -132,21 +132,21 @@ def end(
 
 
 @pytest.mark.parametrize("symmetry", [Symmetry.ON, Symmetry.OFF])
-def test_the_robot_carries_the_share_that_it_is_given(symmetry: Symmetry, problem: Problem) -> None:
+def test_the_robot_carries_the_share_that_it_is_given(symmetry: Symmetry, problem: DesignProblem) -> None:
     for given in (0.0, 0.3, 1.0):
         found = solve(problem, rigid(problem, share=given), symmetry=symmetry)
         assert share(found) == pytest.approx(given, abs=1e-6)
         assert found.residuals["load.share"] <= TOLERANCE
 
 
-def test_no_hand_transmits_more_than_its_limit(problem: Problem) -> None:
+def test_no_hand_transmits_more_than_its_limit(problem: DesignProblem) -> None:
     free, bounded = solve(problem, rigid(problem)), solve(problem, rigid(problem, moment=4.0))
     assert moments(free) > 10.0
     assert moments(bounded) == pytest.approx(4.0, abs=1e-6)
     assert sum(np.square(norms(bounded))) > sum(np.square(norms(free)))
 
 
-def test_the_check_sees_shares_and_moments_that_were_not_asked_for(problem: Problem) -> None:
+def test_the_check_sees_shares_and_moments_that_were_not_asked_for(problem: DesignProblem) -> None:
     postures = solve(problem, rigid(problem, share=0.7)).postures
     other = violations(checker(rigid(problem, moment=3.0, share=0.4)), postures, 1.0)
     assert other["load.share"] == pytest.approx(0.3 * MASS * GRAVITY, rel=1e-6)
@@ -154,7 +154,7 @@ def test_the_check_sees_shares_and_moments_that_were_not_asked_for(problem: Prob
     assert other["load.hand_moment"] == pytest.approx(np.abs(wrenches).max() - 3.0)
 
 
-def test_no_agent_lifts_the_other_by_the_load(problem: Problem) -> None:
+def test_no_agent_lifts_the_other_by_the_load(problem: DesignProblem) -> None:
     """A person 10,000 times as precious would be carried by the robot, with several times the load."""
     found = solve(problem, rigid(problem), 0.6, EffortWeights(2e-4, 2.0))
     assert share(found) == pytest.approx(1.0, abs=1e-6)
@@ -166,13 +166,13 @@ def test_no_agent_lifts_the_other_by_the_load(problem: Problem) -> None:
     assert residuals["load.share"] == pytest.approx(0.5 * MASS * GRAVITY, rel=1e-5)
 
 
-def test_a_share_chosen_by_the_design_is_the_same_share_fixed(problem: Problem) -> None:
+def test_a_share_chosen_by_the_design_is_the_same_share_fixed(problem: DesignProblem) -> None:
     fixed = solve(problem, rigid(problem, moment=7.0, share=0.3))
     chosen = solve(problem, rigid(problem, moment=7.0), space=allocation(ROBOT_SHARE), values=(0.3,))
     assert torques(chosen) == pytest.approx(torques(fixed), abs=1e-6)
 
 
-def test_a_ratio_chosen_by_the_design_is_the_same_weights_fixed(problem: Problem) -> None:
+def test_a_ratio_chosen_by_the_design_is_the_same_weights_fixed(problem: DesignProblem) -> None:
     weights = EffortWeights(2.0 * 10.0 / 11.0, 2.0 / 11.0)
     fixed = solve(problem, rigid(problem, moment=7.0), weights=weights)
     chosen = solve(
@@ -188,7 +188,7 @@ def test_weights_add_up_to_two_and_have_their_ratio() -> None:
         assert math.log10(weights.robot / weights.human) == pytest.approx(exponent, abs=1e-9)
 
 
-def test_robot_torque_falls_with_the_weight_of_its_effort(problem: Problem) -> None:
+def test_robot_torque_falls_with_the_weight_of_its_effort(problem: DesignProblem) -> None:
     """An optimum of a weighted sum: the robot's part falls as its weight grows, the person's rises."""
     space, scene = allocation(EFFORT_RATIO, -2.0, 2.0), rigid(problem, moment=7.0)
     found = [norms(solve(problem, scene, 0.8, space=space, values=(e,))) for e in (-2.0, 0.0, 2.0)]
@@ -197,14 +197,14 @@ def test_robot_torque_falls_with_the_weight_of_its_effort(problem: Problem) -> N
     assert human[0] < human[1] < human[2]
 
 
-def test_who_must_carry_more_reaches_less(problem: Problem) -> None:
+def test_who_must_carry_more_reaches_less(problem: DesignProblem) -> None:
     setting = Setting(rigid(problem, moment=7.0), allocation(ROBOT_SHARE), EQUAL, problem.options)
     reach = ReachProblem(setting, symmetric=True)
     highest = [reach.solve((given,)).highest or 0.0 for given in (0.0, 1.0)]
     assert 1.0 < highest[1] <= highest[0] + 1e-6
 
 
-def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> None:
+def test_the_joint_problem_gives_shares_to_its_postures(problem: DesignProblem) -> None:
     """Held at a share, one height: the optimum of the posture problem."""
     scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene, space=space, values=(0.3,))
@@ -221,7 +221,7 @@ def test_the_joint_problem_gives_shares_to_its_postures(problem: Problem) -> Non
     assert norms(together.cases[0]) == pytest.approx(norms(alone), abs=1e-3)
 
 
-def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
+def test_the_joint_problem_finds_the_best_share(problem: DesignProblem) -> None:
     """Free to choose, it does no worse than the posture problem whose share is free."""
     scene, space = rigid(problem, moment=7.0), allocation(ROBOT_SHARE)
     alone = solve(problem, scene)
@@ -238,7 +238,7 @@ def test_the_joint_problem_finds_the_best_share(problem: Problem) -> None:
     assert together.attempt.cost == pytest.approx(cost, rel=1e-4)
 
 
-def test_shares_and_moments_bind_under_disturbances_too(problem: Problem) -> None:
+def test_shares_and_moments_bind_under_disturbances_too(problem: DesignProblem) -> None:
     heavier, pushed = Disturbance("heavier", mass_share=0.2), Disturbance("pushed", push=(-20.0, 0.0, -10.0))
     scene = replace(rigid(problem, 7.0, share=0.4), disturbances=Disturbances((heavier, pushed)))
     found = solve(problem, scene)

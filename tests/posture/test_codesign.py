@@ -27,7 +27,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.paper_tasks import Tasks, TaskWeights, density_task, mass_height_task
 from evodesign.problem.baseline import broken_limits, torque_difference
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
 
@@ -39,12 +39,12 @@ PUBLISHED_HUMAN = {0.8: 192.4, 1.0: 141.6, 1.2: 120.6, 1.5: 113.1}
 
 
 @pytest.fixture(scope="module")
-def paper(repository: Path) -> Problem:
+def paper(repository: Path) -> DesignProblem:
     return build_problem(read_source(repository / "problems" / "sartore2022.toml"))
 
 
 @pytest.fixture(scope="module")
-def published(repository: Path) -> Problem:
+def published(repository: Path) -> DesignProblem:
     return build_problem(read_source(repository / "problems" / "sartore2022_as_published.toml"))
 
 
@@ -56,7 +56,7 @@ def settings(weights: TaskWeights, enforced: Enforced = LIMITS, *, symmetric: bo
 @pytest.mark.parametrize("symmetry", [Symmetry.ON, Symmetry.OFF])
 @pytest.mark.parametrize("design", [0, 1])
 def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
-    paper: Problem, symmetry: Symmetry, design: int
+    paper: DesignProblem, symmetry: Symmetry, design: int
 ) -> None:
     """Bounds of the design equal, started from the postures' optima: the costs add up, the torques agree."""
     tasks, genome = (Hold(height_m=0.8), ONE), paper.start[design]
@@ -81,7 +81,7 @@ def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
             assert one.postures[agent].torque_norm == pytest.approx(norm, rel=1e-5, abs=1e-4)
 
 
-def test_freed_the_design_costs_less_than_held(paper: Problem) -> None:
+def test_freed_the_design_costs_less_than_held(paper: DesignProblem) -> None:
     """And the optimum of all costs more at any neighbour of its design."""
     chosen, scene, tasks = settings(TaskWeights()), paper.scene, (ONE,)
     free = JointProblem(scene, paper.space, tasks, chosen).solve(paper.start[1], drawn=False)
@@ -100,13 +100,13 @@ def test_freed_the_design_costs_less_than_held(paper: Problem) -> None:
 
 
 @pytest.fixture(scope="module")
-def as_published(published: Problem) -> JointSolution:
+def as_published(published: DesignProblem) -> JointSolution:
     problem = JointProblem(published.scene, published.space, published.tasks, published.joint)
     return problem.solve(published.joint_start[0], drawn=False)
 
 
 def test_the_published_setting_gives_the_papers_torques(
-    published: Problem, as_published: JointSolution
+    published: DesignProblem, as_published: JointSolution
 ) -> None:
     assert as_published.solved, as_published.attempt.reason
     assert torque_difference(published, as_published) < 1e-5
@@ -133,7 +133,7 @@ def test_a_foot_is_never_flat_upside_down(as_published: JointSolution) -> None:
         assert height.residuals["human.feet_flat"] < 1e-5
 
 
-def test_without_limits_equation_14_remains(paper: Problem) -> None:
+def test_without_limits_equation_14_remains(paper: DesignProblem) -> None:
     """Hands, flat feet, the statics of both agents and of the load; nothing else."""
     joint = JointProblem(
         paper.scene, paper.space, (ONE,), settings(TaskWeights(), NO_LIMITS, symmetric=False)
@@ -151,7 +151,7 @@ def test_without_limits_equation_14_remains(paper: Problem) -> None:
 
 
 def test_with_limits_every_residual_of_the_check_is_enforced(
-    paper: Problem, as_published: JointSolution
+    paper: DesignProblem, as_published: JointSolution
 ) -> None:
     names = set(as_published.cases[0].residuals)
     missed = {residual.name: residual for residual in as_published.violations[0]}
@@ -168,7 +168,7 @@ def test_with_limits_every_residual_of_the_check_is_enforced(
     }
 
 
-def test_densities_go_where_they_are_preferred(paper: Problem) -> None:
+def test_densities_go_where_they_are_preferred(paper: DesignProblem) -> None:
     chosen = settings(TaskWeights(density=1.0))
     found = JointProblem(paper.scene, paper.space, (ONE,), chosen).solve(paper.start[0], drawn=False)
     assert found.solved
@@ -177,7 +177,7 @@ def test_densities_go_where_they_are_preferred(paper: Problem) -> None:
             assert min(abs(value - 1405.0), abs(value - 4000.0)) < 5.0
 
 
-def test_pressure_goes_to_the_middle_of_the_soles(paper: Problem) -> None:
+def test_pressure_goes_to_the_middle_of_the_soles(paper: DesignProblem) -> None:
     """t3, computed from the wrenches by other code, falls by nine tenths when it is asked for."""
 
     def distance(weight: float) -> float:
@@ -191,7 +191,7 @@ def test_pressure_goes_to_the_middle_of_the_soles(paper: Problem) -> None:
     assert distance(1e4) < 0.1 * distance(0.0)
 
 
-def test_a_higher_centre_of_mass_is_bought_with_torque(paper: Problem) -> None:
+def test_a_higher_centre_of_mass_is_bought_with_torque(paper: DesignProblem) -> None:
     heights = {}
     for weight in (0.0, 10.0):
         chosen = settings(TaskWeights(mass_height=weight))
@@ -201,7 +201,7 @@ def test_a_higher_centre_of_mass_is_bought_with_torque(paper: Problem) -> None:
     assert heights[10.0] > heights[0.0] + 0.02
 
 
-def test_the_density_task_is_a_sum_of_products(paper: Problem) -> None:
+def test_the_density_task_is_a_sum_of_products(paper: DesignProblem) -> None:
     """Against the formula as printed, up to the smoothing at zero."""
     rng = np.random.default_rng(1)
     values = paper.space.values(tuple(rng.uniform(size=len(paper.space.parameters)).tolist()))
@@ -219,7 +219,7 @@ def test_the_density_task_is_a_sum_of_products(paper: Problem) -> None:
     assert float(density_task(paper.space, exact, preferred)) == 0.0
 
 
-def test_tasks_of_expressions_are_those_of_numbers(paper: Problem) -> None:
+def test_tasks_of_expressions_are_those_of_numbers(paper: DesignProblem) -> None:
     values = paper.space.values(paper.start[1])
     symbols = ca.SX.sym("design", len(values))
     tasks = Tasks(TaskWeights(density=0.3, mass_height=0.7), (1405.0, 4000.0))
@@ -232,7 +232,7 @@ def test_tasks_of_expressions_are_those_of_numbers(paper: Problem) -> None:
     assert float(evaluated) == pytest.approx(float(written[1]), rel=1e-12)
 
 
-def test_a_start_that_fails_says_why(paper: Problem) -> None:
+def test_a_start_that_fails_says_why(paper: DesignProblem) -> None:
     chosen = replace(settings(TaskWeights()), options=replace(OPTIONS, iterations=3))
     found = JointProblem(paper.scene, paper.space, (ONE,), chosen).solve(paper.start[1], drawn=True)
     assert not found.solved
@@ -241,7 +241,7 @@ def test_a_start_that_fails_says_why(paper: Problem) -> None:
     assert "Maximum_Iterations_Exceeded" in found.cases[0].reason
 
 
-def test_starts_are_drawn_from_the_genome_alone(paper: Problem) -> None:
+def test_starts_are_drawn_from_the_genome_alone(paper: DesignProblem) -> None:
     forms = symmetric_forms(paper.scene)
     program = JointProblem(
         paper.scene, paper.space, (Hold(height_m=0.8), Hold(height_m=1.0)), settings(TaskWeights())

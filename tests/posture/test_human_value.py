@@ -16,7 +16,7 @@ from evodesign.posture.formulations.human_value import LARGEST_ERROR, HumanProbl
 from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, stages, with_piece
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.precompute import precompute_setting
 from evodesign.records import Case, Hold, Status
@@ -27,7 +27,7 @@ def test_clenshaws_sum_is_numpys(coefficients: list[float], x: float) -> None:
     assert chebyshev_sum(coefficients, x) == pytest.approx(chebyshev.chebval(x, coefficients), abs=1e-9)
 
 
-def test_value_is_what_solving_the_person_gives(problem: Problem, known: Precomputed) -> None:
+def test_value_is_what_solving_the_person_gives(problem: DesignProblem, known: Precomputed) -> None:
     """At pushes that are no nodes, against a solve from the nearest node."""
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     assert [case.task for case in known.values] == list(problem.tasks)
@@ -39,7 +39,9 @@ def test_value_is_what_solving_the_person_gives(problem: Problem, known: Precomp
             assert found.cost == pytest.approx(value.cost(push), abs=max(LARGEST_ERROR, 2.0 * value.error))
 
 
-def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, known: Precomputed) -> None:
+def test_one_after_the_other_is_about_as_good_as_both_at_once(
+    problem: DesignProblem, known: Precomputed
+) -> None:
     """Mean below 0.5 % above the joint program from the same number of starts, and often better."""
     split, joint = Evaluator(problem, known), Evaluator(problem)
     rng = np.random.default_rng(5)
@@ -55,7 +57,9 @@ def test_one_after_the_other_is_about_as_good_as_both_at_once(problem: Problem, 
     assert float(np.mean(excess)) < 0.005
 
 
-def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, known: Precomputed) -> None:
+def test_value_that_was_kept_is_the_one_that_was_worked_out(
+    problem: DesignProblem, known: Precomputed
+) -> None:
     fresh = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options).value(1.0)
     kept = known.values[Case(task=Hold(height_m=1.0))]
     assert fresh is not None
@@ -65,7 +69,9 @@ def test_value_that_was_kept_is_the_one_that_was_worked_out(problem: Problem, kn
         assert all(np.array_equal(one[1][name], other[1][name]) for name in one[1])
 
 
-def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem, known: Precomputed) -> None:
+def test_the_person_starts_anew_where_the_nearest_node_misleads(
+    problem: DesignProblem, known: Precomputed
+) -> None:
     value = known.values[Case(task=Hold(height_m=1.0))]
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     (nearest, start), *others = sorted(value.starts, key=lambda node: abs(node[0]))
@@ -77,7 +83,7 @@ def test_the_person_starts_anew_where_the_nearest_node_misleads(problem: Problem
     assert found.cost == pytest.approx(value.cost(0.0), abs=LARGEST_ERROR)
 
 
-def pieces(problem: Problem, scene: Scene) -> list[Subject]:
+def pieces(problem: DesignProblem, scene: Scene) -> list[Subject]:
     setting = replace(precompute_setting(problem), scenes=(scene,))
     return [
         piece.subject
@@ -86,14 +92,14 @@ def pieces(problem: Problem, scene: Scene) -> list[Subject]:
     ]
 
 
-def test_rigid_grasps_and_no_push_have_no_value(problem: Problem) -> None:
+def test_rigid_grasps_and_no_push_have_no_value(problem: DesignProblem) -> None:
     scene = problem.scene
     rigid = replace(scene, payload=replace(scene.payload, grasp=Grasp.RIGID))
     still = replace(scene, stance=replace(scene.stance, push=0.0))
     assert [pieces(problem, other) for other in (scene, rigid, still)] == [[Subject.PERSON], [], []]
 
 
-def test_height_out_of_the_persons_reach_has_no_value(problem: Problem) -> None:
+def test_height_out_of_the_persons_reach_has_no_value(problem: DesignProblem) -> None:
     setting, piece = precompute_setting(problem), Piece(Subject.PERSON, ("", ""), Hold(height_m=2.6))
     content = compute_piece(setting, piece, NOTHING_PRECOMPUTED)
     assert with_piece(NOTHING_PRECOMPUTED, piece, content) == NOTHING_PRECOMPUTED

@@ -12,7 +12,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult
 from evodesign.records import Status
@@ -20,23 +20,23 @@ from tests.posture.violations import violations
 
 
 @pytest.fixture(scope="module")
-def unscaled(problem: Problem, evaluator: Evaluator) -> DesignResult:
+def unscaled(problem: DesignProblem, evaluator: Evaluator) -> DesignResult:
     return evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
 
 
 @pytest.fixture(scope="module")
-def checker(problem: Problem, unscaled: DesignResult) -> Checker:
+def checker(problem: DesignProblem, unscaled: DesignResult) -> Checker:
     scene = problem.scene
     return Checker(scene, unscaled.tree, AgentModel.of(scene.human, scene.human.tree))
 
 
-def random_designs(problem: Problem, count: int) -> list[tuple[float, ...]]:
+def random_designs(problem: DesignProblem, count: int) -> list[tuple[float, ...]]:
     rng = np.random.default_rng(3)
     size = len(problem.space.parameters)
     return [problem.space.values(tuple(rng.uniform(size=size))) for _ in range(count)]
 
 
-def test_every_residual_of_solved_postures_is_small(problem: Problem, evaluator: Evaluator) -> None:
+def test_every_residual_of_solved_postures_is_small(problem: DesignProblem, evaluator: Evaluator) -> None:
     for values in random_designs(problem, 4):
         result = evaluator.solve(values)
         for height in result.cases:
@@ -44,7 +44,7 @@ def test_every_residual_of_solved_postures_is_small(problem: Problem, evaluator:
             assert max(height.residuals.values()) < 1e-5
 
 
-def test_the_feet_carry_robot_person_and_load(unscaled: DesignResult, problem: Problem) -> None:
+def test_the_feet_carry_robot_person_and_load(unscaled: DesignResult, problem: DesignProblem) -> None:
     trees = (unscaled.tree, problem.scene.human.tree)
     mass = sum(link.inertia.mass for tree in trees for link in tree.links) + problem.scene.payload.mass
     for height in unscaled.cases:
@@ -52,7 +52,7 @@ def test_the_feet_carry_robot_person_and_load(unscaled: DesignResult, problem: P
         assert carried == pytest.approx(mass * GRAVITY, abs=1e-4)
 
 
-def test_each_agent_carries_half_of_a_centred_load(unscaled: DesignResult, problem: Problem) -> None:
+def test_each_agent_carries_half_of_a_centred_load(unscaled: DesignResult, problem: DesignProblem) -> None:
     half = problem.scene.payload.mass * GRAVITY / 2.0
     for height in unscaled.cases:
         for posture in height.postures.values():
@@ -103,7 +103,7 @@ def test_the_check_sees_what_is_wrong(
 
 
 def test_an_evaluation_does_not_depend_on_what_was_evaluated_before(
-    problem: Problem, evaluator: Evaluator, known: Precomputed
+    problem: DesignProblem, evaluator: Evaluator, known: Precomputed
 ) -> None:
     genome = tuple(0.3 for _ in problem.space.parameters)
     first = evaluator.assess(genome)
@@ -113,7 +113,7 @@ def test_an_evaluation_does_not_depend_on_what_was_evaluated_before(
 
 
 def test_mirrored_wrenches_and_joints_are_as_good(
-    problem: Problem, unscaled: DesignResult, checker: Checker
+    problem: DesignProblem, unscaled: DesignResult, checker: Checker
 ) -> None:
     """Robot, person and load are mirror-symmetric, so the mirror image of a posture holds too."""
     height = unscaled.cases[0]

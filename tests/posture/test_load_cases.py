@@ -23,7 +23,7 @@ from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 from tests.posture.violations import violations
 
@@ -39,12 +39,12 @@ HOLD = Hold(height_m=HEIGHT)
 Postures = Mapping[str, AgentPosture]
 
 
-def disturbed(problem: Problem, *cases: Disturbance, effort: OverCases = OverCases.WORST) -> Scene:
+def disturbed(problem: DesignProblem, *cases: Disturbance, effort: OverCases = OverCases.WORST) -> Scene:
     return replace(problem.scene, disturbances=Disturbances(cases, effort))
 
 
 def postures_in(
-    scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: Postures | None = None
+    scene: Scene, problem: DesignProblem, symmetry: Symmetry = Symmetry.ON, like: Postures | None = None
 ) -> PostureProblem:
     """A scene's posture problem, which begins at its own starts or at other postures."""
     solvers, setting = SolverCache(), Setting(scene, problem.space, problem.weights, problem.options)
@@ -58,13 +58,13 @@ def postures_in(
     return PostureProblem(setting, symmetry, Precomputed(postures={HOLD: portfolio}), solvers)
 
 
-def checker_of(scene: Scene, problem: Problem, values: tuple[float, ...]) -> Checker:
+def checker_of(scene: Scene, problem: DesignProblem, values: tuple[float, ...]) -> Checker:
     tree = problem.space.resized(scene.robot.tree, values)
     return Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
 
 
 def solved(
-    scene: Scene, problem: Problem, symmetry: Symmetry = Symmetry.ON, like: CaseSolution | None = None
+    scene: Scene, problem: DesignProblem, symmetry: Symmetry = Symmetry.ON, like: CaseSolution | None = None
 ) -> CaseSolution:
     """Of the unscaled robot; begun at another solution's postures if there is one."""
     values = problem.space.unscaled(scene.robot.tree)
@@ -81,19 +81,19 @@ def cost_of(solution: CaseSolution) -> float:
 
 
 @pytest.fixture(scope="module")
-def undisturbed(problem: Problem) -> CaseSolution:
+def undisturbed(problem: DesignProblem) -> CaseSolution:
     return solved(problem.scene, problem)
 
 
 @pytest.fixture(scope="module")
-def borne(problem: Problem) -> CaseSolution:
+def borne(problem: DesignProblem) -> CaseSolution:
     """The unscaled robot under every kind of disturbance."""
     return solved(disturbed(problem, *EVERY), problem)
 
 
 @pytest.mark.parametrize("effort", list(OverCases))
 def test_disturbances_of_size_zero_are_none(
-    effort: OverCases, problem: Problem, undisturbed: CaseSolution
+    effort: OverCases, problem: DesignProblem, undisturbed: CaseSolution
 ) -> None:
     nothing = (Disturbance("a"), Disturbance("b", at=PushedAt.HUMAN))
     solution = solved(disturbed(problem, *nothing, effort=effort), problem, like=undisturbed)
@@ -117,7 +117,7 @@ def test_the_posture_is_the_same_in_every_case(borne: CaseSolution) -> None:
             assert posture.torques != borne.postures[agent].torques
 
 
-def test_hands_and_feet_carry_weight_and_push(borne: CaseSolution, problem: Problem) -> None:
+def test_hands_and_feet_carry_weight_and_push(borne: CaseSolution, problem: DesignProblem) -> None:
     """Closed forms: forces on the load, and vertical ones on the agents (soles are flat)."""
     scene = problem.scene
     for case in EVERY:
@@ -139,7 +139,7 @@ def test_hands_and_feet_carry_weight_and_push(borne: CaseSolution, problem: Prob
             assert up == pytest.approx(mass * GRAVITY - down, abs=1e-3)
 
 
-def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: CaseSolution, problem: Problem) -> None:
+def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: CaseSolution, problem: DesignProblem) -> None:
     """Lever rule of a beam half a metre long, but for the moment of the push between the agents."""
     hands = borne.disturbed[LEANING.name][HUMAN].hand_wrenches
     carried = -sum(float(hands[side][2]) for side in SIDES)
@@ -148,7 +148,9 @@ def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: CaseSolution, probl
     assert carried == pytest.approx(expected, abs=problem.scene.stance.push * lever / 0.5 + 1e-4)
 
 
-def test_worst_and_mean_are_each_best_at_what_they_minimise(problem: Problem, borne: CaseSolution) -> None:
+def test_worst_and_mean_are_each_best_at_what_they_minimise(
+    problem: DesignProblem, borne: CaseSolution
+) -> None:
     mean = solved(disturbed(problem, *EVERY, effort=OverCases.MEAN), problem, like=borne)
     worst = solved(disturbed(problem, *EVERY, effort=OverCases.WORST), problem, like=mean)
 
@@ -163,7 +165,7 @@ def test_worst_and_mean_are_each_best_at_what_they_minimise(problem: Problem, bo
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, problem: Problem) -> None:
+def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, problem: DesignProblem) -> None:
     """Smaller ones begin at the posture that is best for larger ones, which holds them as well."""
     rng = np.random.default_rng(seed)
     values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
@@ -200,7 +202,7 @@ def changed(posture: AgentPosture, part: str) -> AgentPosture:
     [("joints", "moved"), ("torques", "torque"), ("hand", "force_balance"), ("foot", "foot_contact")],
 )
 def test_the_check_sees_what_is_wrong_under_a_disturbance(
-    agent: str, part: str, residual: str, borne: CaseSolution, problem: Problem
+    agent: str, part: str, residual: str, borne: CaseSolution, problem: DesignProblem
 ) -> None:
     scene = disturbed(problem, *EVERY)
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
@@ -213,7 +215,7 @@ def test_the_check_sees_what_is_wrong_under_a_disturbance(
 
 @pytest.mark.parametrize("case", EVERY)
 def test_the_check_sees_a_disturbance_of_another_size(
-    case: Disturbance, borne: CaseSolution, problem: Problem
+    case: Disturbance, borne: CaseSolution, problem: DesignProblem
 ) -> None:
     stronger = replace(
         case,
@@ -228,20 +230,22 @@ def test_the_check_sees_a_disturbance_of_another_size(
     assert max(size for key, size in found.items() if key.startswith(case.name)) > 0.1
 
 
-def test_a_sideways_disturbance_is_refused_by_name_in_symmetric_postures(problem: Problem) -> None:
+def test_a_sideways_disturbance_is_refused_by_name_in_symmetric_postures(problem: DesignProblem) -> None:
     aside = Disturbance("gust", push=(0.0, 10.0, 0.0))
     with pytest.raises(ModelError, match="disturbance 'gust': wanted y = 0 everywhere"):
         symmetric_forms(disturbed(problem, HEAVIER, aside))
 
 
-def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(problem: Problem) -> None:
+def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(
+    problem: DesignProblem,
+) -> None:
     scene = disturbed(problem, ROBOT_BACK)
     beside = replace(scene, robot=replace(scene.robot, trunk=("chest", "l_upper_arm")))
     with pytest.raises(ModelError, match=r"'robot pushed': wanted a push on the middle line.*'l_upper_arm'"):
         symmetric_forms(beside)
 
 
-def test_free_postures_resist_a_sideways_push(problem: Problem, undisturbed: CaseSolution) -> None:
+def test_free_postures_resist_a_sideways_push(problem: DesignProblem, undisturbed: CaseSolution) -> None:
     aside = Disturbance("gust", push=(0.0, 10.0, 0.0))
     solution = solved(disturbed(problem, aside), problem, Symmetry.OFF, like=undisturbed)
     hands = solution.disturbed["gust"]
@@ -255,7 +259,7 @@ def test_free_postures_resist_a_sideways_push(problem: Problem, undisturbed: Cas
 
 
 def test_with_rigid_grasps_a_push_needs_torques_that_the_undisturbed_posture_does_not(
-    problem: Problem,
+    problem: DesignProblem,
 ) -> None:
     """Joints stacked on the line of gravity need hardly any torque, until somebody pushes."""
     payload = replace(problem.scene.payload, grasp=Grasp.RIGID)
@@ -265,7 +269,7 @@ def test_with_rigid_grasps_a_push_needs_torques_that_the_undisturbed_posture_doe
     assert pushed.disturbed[AWAY.name][ROBOT].torque_norm > undisturbed.postures[ROBOT].torque_norm + 1.0
 
 
-def test_postures_at_the_reach_with_disturbances_are_in_balance(problem: Problem) -> None:
+def test_postures_at_the_reach_with_disturbances_are_in_balance(problem: DesignProblem) -> None:
     """Pushes on the chest from both sides ask for a low stand and the middle of the soles."""
     values = problem.space.unscaled(problem.scene.robot.tree)
     pushes = tuple(replace(ROBOT_BACK, name=f"{x:g} N", push=(x, 0.0, 0.0)) for x in (-110.0, 110.0))

@@ -14,13 +14,13 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import CaseSolution
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import Hold, Status
 
 BOX = (0.5, 0.5, 0.025)
 
 
-def solve(problem: Problem, payload: Payload, height: float = 1.0) -> CaseSolution:
+def solve(problem: DesignProblem, payload: Payload, height: float = 1.0) -> CaseSolution:
     scene = replace(problem.scene, payload=payload)
     values = problem.space.unscaled(scene.robot.tree)
     posture = PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
@@ -35,7 +35,7 @@ def carried(solution: CaseSolution, agent: str) -> float:
 
 
 @pytest.mark.parametrize("offset", [-0.1, 0.05])
-def test_load_leans_on_whom_it_is_nearer_to(offset: float, problem: Problem) -> None:
+def test_load_leans_on_whom_it_is_nearer_to(offset: float, problem: DesignProblem) -> None:
     """Lever rule of a beam on two supports half a metre apart (level grasps, no push to speak of)."""
     stance = replace(problem.scene.stance, push=0.0)
     flat = replace(problem, scenes=(replace(problem.scene, stance=stance),))
@@ -46,7 +46,7 @@ def test_load_leans_on_whom_it_is_nearer_to(offset: float, problem: Problem) -> 
     assert carried(solution, ROBOT) == pytest.approx(weight * (0.25 - offset) / 0.5, abs=1e-4)
 
 
-def test_rigid_grasps_share_the_load_freely(problem: Problem) -> None:
+def test_rigid_grasps_share_the_load_freely(problem: DesignProblem) -> None:
     point, rigid = (solve(problem, Payload(BOX, 5.0, grasp=grasp)) for grasp in Grasp)
     assert rigid.status is Status.SOLVED
     assert max(rigid.residuals.values()) < 1e-5
@@ -58,7 +58,7 @@ def test_rigid_grasps_share_the_load_freely(problem: Problem) -> None:
     assert costs[1] < costs[0] + 1e-6, "more freedom cannot cost more"
 
 
-def test_own_grasp_points_are_met(problem: Problem) -> None:
+def test_own_grasp_points_are_met(problem: DesignProblem) -> None:
     points = {
         (ROBOT, "left"): (-0.25, 0.15, 0.025),
         (ROBOT, "right"): (-0.25, -0.15, 0.025),
@@ -93,7 +93,7 @@ def test_inertia_is_that_of_a_uniform_box_of_its_mass() -> None:
         ("robot_grasps_m = { left = [0.0, 0.1, 0.0] }", "robot_grasps_m.right: wanted this key"),
     ],
 )
-def test_impossible_loads_are_refused(line: str, words: str, problem: Problem) -> None:
+def test_impossible_loads_are_refused(line: str, words: str, problem: DesignProblem) -> None:
     text = problem.source.text.replace('grasp = "point"', line, 1)
     source = type(problem.source)(path="p.toml", text=text, files=problem.source.files)
     with pytest.raises(InputError, match=words):

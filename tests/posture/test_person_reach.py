@@ -14,7 +14,7 @@ from evodesign.posture.formulations.reach import person_reach
 from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, key_of, stages, with_piece
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import objective_value
 from evodesign.problem.precompute import precompute_setting, refuse_heights
@@ -25,24 +25,26 @@ ALONE = ("", "")
 
 
 @pytest.fixture(scope="module")
-def reach(problem: Problem) -> PersonReach:
+def reach(problem: DesignProblem) -> PersonReach:
     found = person_reach(problem.scene, problem.options, symmetric=True)
     assert found is not None
     return found
 
 
-def holds(problem: Problem, height: float) -> bool:
+def holds(problem: DesignProblem, height: float) -> bool:
     """Whether the person's own posture problem has a solution, from the starts of its value function."""
     person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
     return person.value(height) is not None
 
 
-def test_the_person_holds_the_load_up_to_there_and_no_further(problem: Problem, reach: PersonReach) -> None:
+def test_the_person_holds_the_load_up_to_there_and_no_further(
+    problem: DesignProblem, reach: PersonReach
+) -> None:
     assert holds(problem, reach.highest - 0.005)
     assert not holds(problem, reach.highest + 0.02)
 
 
-def test_a_shorter_person_reaches_less_high(problem: Problem, reach: PersonReach) -> None:
+def test_a_shorter_person_reaches_less_high(problem: DesignProblem, reach: PersonReach) -> None:
     """Proportions are those of stature, so the highest load is, but for the box's thickness."""
     tree = human_tree(Person(1.6, 60.0, Sex.MALE))
     scene = replace(problem.scene, human=replace(problem.scene.human, tree=tree))
@@ -51,7 +53,7 @@ def test_a_shorter_person_reaches_less_high(problem: Problem, reach: PersonReach
     assert shorter.highest / reach.highest == pytest.approx(1.6 / 1.82, abs=0.03)
 
 
-def test_a_kept_reach_is_the_one_that_was_worked_out(problem: Problem, reach: PersonReach) -> None:
+def test_a_kept_reach_is_the_one_that_was_worked_out(problem: DesignProblem, reach: PersonReach) -> None:
     setting, piece = precompute_setting(problem), Piece(Subject.PERSON_REACH, ALONE)
     known = with_piece(NOTHING_PRECOMPUTED, piece, compute_piece(setting, piece, NOTHING_PRECOMPUTED))
     assert known is not None
@@ -64,7 +66,7 @@ def test_a_kept_reach_is_the_one_that_was_worked_out(problem: Problem, reach: Pe
 
 
 def test_the_shared_reach_ends_where_the_first_can_go_no_higher(
-    problem: Problem, reach: PersonReach, evaluator: Evaluator
+    problem: DesignProblem, reach: PersonReach, evaluator: Evaluator
 ) -> None:
     low = replace(
         NOTHING_PRECOMPUTED, person_reaches={("tall", ""): reach, ("short", ""): PersonReach(0.1, 1.3)}
@@ -79,14 +81,14 @@ def test_the_shared_reach_ends_where_the_first_can_go_no_higher(
     assert objective_value("shared_reach_height", beyond) == result.reach.highest
 
 
-def test_a_height_that_somebody_cannot_hold_is_refused(problem: Problem) -> None:
+def test_a_height_that_somebody_cannot_hold_is_refused(problem: DesignProblem) -> None:
     known = replace(NOTHING_PRECOMPUTED, person_reaches={ALONE: PersonReach(0.9, 1.9)})
     with pytest.raises(InputError, match=r"task\.heights_m\[0\]: wanted a height that the person can hold"):
         refuse_heights(problem, known)
     refuse_heights(problem, replace(NOTHING_PRECOMPUTED, person_reaches={ALONE: PersonReach(0.8, 1.9)}))
 
 
-def test_a_person_who_holds_the_load_nowhere_is_refused(problem: Problem) -> None:
+def test_a_person_who_holds_the_load_nowhere_is_refused(problem: DesignProblem) -> None:
     """Left out, the others' reach would pass for everyone's."""
     shared = Objective(name="shared_reach_height", sense=Sense.MAXIMISE, unit="m")
     asking = replace(problem, objectives=(*problem.objectives, shared))

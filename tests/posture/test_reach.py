@@ -5,20 +5,20 @@ from __future__ import annotations
 import pytest
 
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Hold, Status
 
 
-def design(problem: Problem, name: str) -> tuple[float, ...]:
+def design(problem: DesignProblem, name: str) -> tuple[float, ...]:
     (text,) = (text for file, text in problem.source.files.items() if file.endswith("icub.toml"))
     return read_designs(text, "icub.toml", problem.space, problem.scene.robot.tree)[name]
 
 
 @pytest.mark.parametrize(("name", "highest"), [("unscaled", 1.27), ("paper_start", 1.51)])
 def test_highest_load_with_arms_held_forward_is_the_papers(
-    name: str, highest: float, problem: Problem
+    name: str, highest: float, problem: DesignProblem
 ) -> None:
     """The paper: the original robot reaches 1.2 m and not 1.5 m, the optimised one 1.5 m.
 
@@ -29,14 +29,14 @@ def test_highest_load_with_arms_held_forward_is_the_papers(
     assert result.reach.highest == pytest.approx(highest, abs=0.03)
 
 
-def test_raised_arms_reach_between_the_papers_heights(problem: Problem, evaluator: Evaluator) -> None:
+def test_raised_arms_reach_between_the_papers_heights(problem: DesignProblem, evaluator: Evaluator) -> None:
     """Also with arms raised the original robot reaches 1.2 m and not 1.5 m."""
     highest = evaluator.solve(design(problem, "unscaled")).reach.highest
     assert highest is not None
     assert 1.3 < highest < 1.5
 
 
-def test_postures_end_where_reach_ends(problem: Problem) -> None:
+def test_postures_end_where_reach_ends(problem: DesignProblem) -> None:
     """Both from the fixed starts: at heights that are not required there are no seeds of postures."""
     evaluator = Evaluator(problem)
     values = problem.space.unscaled(problem.scene.robot.tree)
@@ -53,7 +53,9 @@ def test_postures_end_where_reach_ends(problem: Problem) -> None:
     assert "no posture found" in above.reason
 
 
-def test_height_out_of_reach_is_a_violation_and_has_no_torque(problem: Problem, evaluator: Evaluator) -> None:
+def test_height_out_of_reach_is_a_violation_and_has_no_torque(
+    problem: DesignProblem, evaluator: Evaluator
+) -> None:
     shortest = tuple(0.0 if p.kind == "length" else 0.5 for p in problem.space.parameters)
     found = evaluator.assess(shortest).assessment
     assert found.reach is not None
@@ -67,7 +69,7 @@ def test_height_out_of_reach_is_a_violation_and_has_no_torque(problem: Problem, 
     assert found.objectives["reach_height"] == found.reach.highest_m
 
 
-def test_longer_arms_reach_higher(problem: Problem, evaluator: Evaluator) -> None:
+def test_longer_arms_reach_higher(problem: DesignProblem, evaluator: Evaluator) -> None:
     values = list(problem.space.unscaled(problem.scene.robot.tree))
     names = [parameter.name for parameter in problem.space.parameters]
     longer = list(values)

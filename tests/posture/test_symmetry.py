@@ -16,11 +16,11 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import half, symmetric_forms
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 
 
-def solve(problem: Problem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
+def solve(problem: DesignProblem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
     scene, space = problem.scene, problem.space
     values = space.unscaled(scene.robot.tree)
     checker = Checker(
@@ -35,7 +35,7 @@ def cost(solution: CaseSolution) -> float:
     return min(attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED)
 
 
-def test_half_and_whole_describe_the_same_problem(problem: Problem) -> None:
+def test_half_and_whole_describe_the_same_problem(problem: DesignProblem) -> None:
     """Solved as a half, the whole posture passes the whole check; polished, it costs no more."""
     symmetric, polished = (solve(problem, symmetry) for symmetry in (Symmetry.ON, Symmetry.POLISH))
     assert symmetric.status is Status.SOLVED
@@ -43,14 +43,14 @@ def test_half_and_whole_describe_the_same_problem(problem: Problem) -> None:
     assert cost(polished) <= cost(symmetric) * (1.0 + 1e-6)
 
 
-def test_cost_of_a_half_is_that_of_the_whole_at_the_same_posture(problem: Problem) -> None:
+def test_cost_of_a_half_is_that_of_the_whole_at_the_same_posture(problem: DesignProblem) -> None:
     """The paired torques count twice: recomputed here from the expanded posture."""
     solution = solve(problem, Symmetry.ON)
     effort = sum(posture.torque_norm**2 for posture in solution.postures.values()) / 100.0
     assert effort <= cost(solution) <= effort * 1.1, "the regularisation is a small part of the cost"
 
 
-def test_right_side_mirrors_the_left(problem: Problem) -> None:
+def test_right_side_mirrors_the_left(problem: DesignProblem) -> None:
     robot = solve(problem, Symmetry.ON).postures[ROBOT]
     for name, position in robot.joints.items():
         if name.startswith("l_"):
@@ -61,7 +61,7 @@ def test_right_side_mirrors_the_left(problem: Problem) -> None:
     assert np.allclose(robot.foot_wrenches["right"], mirrored)
 
 
-def test_symmetric_reach_is_the_whole_reach(problem: Problem) -> None:
+def test_symmetric_reach_is_the_whole_reach(problem: DesignProblem) -> None:
     """What can be reached at the top with two hands is reached symmetrically."""
     values = problem.space.unscaled(problem.scene.robot.tree)
     highest = [
@@ -75,7 +75,7 @@ def test_symmetric_reach_is_the_whole_reach(problem: Problem) -> None:
     assert highest[0] == pytest.approx(highest[1], abs=1e-3)
 
 
-def test_half_holds_the_left_and_the_middle(problem: Problem) -> None:
+def test_half_holds_the_left_and_the_middle(problem: DesignProblem) -> None:
     forms = symmetric_forms(problem.scene)
     assert len(forms[0].joints) == 12
     assert sum(forms[0].counts) + 2 == len(problem.scene.robot.joints), "all but torso roll and yaw"
@@ -85,13 +85,13 @@ def test_half_holds_the_left_and_the_middle(problem: Problem) -> None:
     assert not any("Right" in name for name in forms[1].joints)
 
 
-def test_payload_off_the_middle_is_refused(problem: Problem) -> None:
+def test_payload_off_the_middle_is_refused(problem: DesignProblem) -> None:
     scene = replace(problem.scene, payload=Payload((0.5, 0.5, 0.025), 5.0, (0.0, 0.1, 0.0)))
     with pytest.raises(ModelError, match=r"center_of_mass_m: wanted y = 0 .*, found y = 0.1 m"):
         PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
 
 
-def test_pair_of_links_that_differ_is_named(problem: Problem) -> None:
+def test_pair_of_links_that_differ_is_named(problem: DesignProblem) -> None:
     tree = problem.scene.robot.tree
     heavier = tuple(
         replace(link, solids=(replace(link.solids[0], density=3000.0),))
@@ -106,13 +106,13 @@ def test_pair_of_links_that_differ_is_named(problem: Problem) -> None:
         half(agent)
 
 
-def test_parameter_of_one_side_alone_is_refused(problem: Problem) -> None:
+def test_parameter_of_one_side_alone_is_refused(problem: DesignProblem) -> None:
     space = DesignSpace((DesignParameter(ParameterKind.LENGTH, "arm", ("l_upper_arm",), 0.6, 1.8),))
     with pytest.raises(ModelError, match="'l_upper_arm' without 'r_upper_arm'"):
         PostureProblem(Setting(problem.scene, space, problem.weights, problem.options), Symmetry.ON)
 
 
-def test_joint_without_its_partner_is_refused(problem: Problem) -> None:
+def test_joint_without_its_partner_is_refused(problem: DesignProblem) -> None:
     human = problem.scene.human
     lame = replace(human, joints=tuple(name for name in human.joints if name != "jRightKnee_roty"))
     with pytest.raises(ModelError, match="'jLeftKnee_roty' without 'jRightKnee_roty'"):

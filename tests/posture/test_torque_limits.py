@@ -11,7 +11,7 @@ import pytest
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
@@ -21,19 +21,19 @@ from tests.posture.violations import violations
 HEIGHT = 1.2
 
 
-def limited(problem: Problem, limits: Mapping[str, float], height: float = HEIGHT) -> Problem:
+def limited(problem: DesignProblem, limits: Mapping[str, float], height: float = HEIGHT) -> DesignProblem:
     """The default problem at one height, with a robot whose joint torques are no more than this [N m]."""
     robot = replace(problem.scene.robot, torque_limits=limits, limits_torques=bool(limits))
     scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
     return replace(problem, scenes=scenes, tasks=(Hold(height_m=height),))
 
 
-def unscaled(problem: Problem) -> tuple[float, ...]:
+def unscaled(problem: DesignProblem) -> tuple[float, ...]:
     return problem.space.unscaled(problem.scene.robot.tree)
 
 
 @pytest.fixture(scope="module")
-def free(problem: Problem) -> DesignResult:
+def free(problem: DesignProblem) -> DesignResult:
     """Without limits: the shoulders need 4.4 N m."""
     return Evaluator(limited(problem, {})).solve(unscaled(problem))
 
@@ -42,7 +42,7 @@ SHOULDERS = {"l_shoulder_pitch": 1.5, "r_shoulder_pitch": 1.5}
 
 
 @pytest.fixture(scope="module")
-def held(problem: Problem) -> DesignResult:
+def held(problem: DesignProblem) -> DesignResult:
     return Evaluator(limited(problem, SHOULDERS)).solve(unscaled(problem))
 
 
@@ -58,7 +58,7 @@ def test_no_torque_is_beyond_its_limit_and_the_posture_costs_more(
 
 
 def test_the_check_measures_how_far_a_torque_is_beyond_its_limit(
-    problem: Problem, free: DesignResult, held: DesignResult
+    problem: DesignProblem, free: DesignResult, held: DesignResult
 ) -> None:
     assert held.cases[0].residuals["robot.torque_limits"] < 1e-6
     assert "robot.torque_limits" not in free.cases[0].residuals
@@ -70,14 +70,14 @@ def test_the_check_measures_how_far_a_torque_is_beyond_its_limit(
     assert found["robot.torque_limits"] == pytest.approx(abs(torques["l_shoulder_pitch"]) - 1.5)
 
 
-def test_a_pair_has_the_limit_of_its_weaker_joint(problem: Problem, held: DesignResult) -> None:
+def test_a_pair_has_the_limit_of_its_weaker_joint(problem: DesignProblem, held: DesignResult) -> None:
     unequal = {"l_shoulder_pitch": 30.0, "r_shoulder_pitch": 1.5}
     found = Evaluator(limited(problem, unequal)).solve(unscaled(problem)).cases[0].postures
     assert found[ROBOT].torque_norm == pytest.approx(held.cases[0].postures[ROBOT].torque_norm, rel=1e-6)
     assert found[HUMAN].torque_norm == pytest.approx(held.cases[0].postures[HUMAN].torque_norm, rel=1e-4)
 
 
-def test_limits_that_nothing_meets_change_nothing(problem: Problem, free: DesignResult) -> None:
+def test_limits_that_nothing_meets_change_nothing(problem: DesignProblem, free: DesignResult) -> None:
     wide = dict.fromkeys(problem.scene.robot.joints, 500.0)
     found = Evaluator(limited(problem, wide)).solve(unscaled(problem))
     assert found.reach.highest == pytest.approx(free.reach.highest, abs=1e-6)
@@ -86,7 +86,7 @@ def test_limits_that_nothing_meets_change_nothing(problem: Problem, free: Design
     )
 
 
-def test_reach_is_what_the_joints_can_hold(problem: Problem, free: DesignResult) -> None:
+def test_reach_is_what_the_joints_can_hold(problem: DesignProblem, free: DesignResult) -> None:
     weak = limited(problem, dict.fromkeys(problem.scene.robot.joints, 5.0))
     found = Evaluator(weak).solve(unscaled(problem)).reach
     assert found.lowest is not None
@@ -95,7 +95,7 @@ def test_reach_is_what_the_joints_can_hold(problem: Problem, free: DesignResult)
     assert found.lowest > free.reach.lowest + 0.1, "a robot that squats needs more than 5 N m in its legs"
 
 
-def test_gradients_know_a_limit_that_is_met(problem: Problem) -> None:
+def test_gradients_know_a_limit_that_is_met(problem: DesignProblem) -> None:
     """Against differences of what a search would see; the shoulders are at their limit throughout."""
     chosen = limited(problem, SHOULDERS)
     evaluator, values = Evaluator(chosen), np.array(unscaled(problem))
@@ -114,7 +114,7 @@ def test_gradients_know_a_limit_that_is_met(problem: Problem) -> None:
         assert gradient.gradient[name] == pytest.approx((ahead - behind) / (2.0 * step), rel=2e-3)
 
 
-def test_limits_hold_under_a_heavier_load_too(problem: Problem) -> None:
+def test_limits_hold_under_a_heavier_load_too(problem: DesignProblem) -> None:
     heavier = Disturbances((Disturbance("heavier", mass_share=0.2),))
     chosen = limited(problem, SHOULDERS)
     scenes = tuple(replace(scene, disturbances=heavier) for scene in chosen.scenes)

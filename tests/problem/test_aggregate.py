@@ -10,7 +10,7 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome
 from evodesign.problem.objectives import DesignResult, objective_kind, objective_value
 from evodesign.problem.source import read_source
@@ -39,11 +39,11 @@ def written(place: Path, repository: Path, people: list[str], loads: list[str]) 
     return path
 
 
-def built(place: Path, repository: Path, people: list[str], loads: list[str]) -> Problem:
+def built(place: Path, repository: Path, people: list[str], loads: list[str]) -> DesignProblem:
     return build_problem(read_source(written(place, repository, people, loads)))
 
 
-def solved(problem: Problem) -> DesignResult:
+def solved(problem: DesignProblem) -> DesignResult:
     return Evaluator(problem).solve(problem.space.unscaled(problem.scene.robot.tree))
 
 

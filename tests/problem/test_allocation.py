@@ -9,11 +9,11 @@ import msgspec
 import numpy as np
 import pytest
 
-from evodesign.api.opened_problem import OpenedProblem
+from evodesign.api.problem import Problem
 from evodesign.errors import InputError
 from evodesign.posture.allocation import EffortWeights
 from evodesign.problem.baseline import refuse_unsuited
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.model_json import model_json
@@ -26,7 +26,9 @@ SHARE = "\n[[design.allocation]]\nname = 'robot_share'\nlower = 0.1\nupper = 0.9
 RATIO = "\n[[design.allocation]]\nname = 'effort_ratio'\nlower = -1.0\nupper = 2.0\n"
 
 
-def changed(problem: Problem, grasp: str = RIGID, task: str = "", allocations: str = "") -> Problem:
+def changed(
+    problem: DesignProblem, grasp: str = RIGID, task: str = "", allocations: str = ""
+) -> DesignProblem:
     """The default problem with 10 kg, another grasp, more in its task, and allocation parameters."""
     text = problem.source.text.replace('grasp = "point"', grasp).replace("mass_kg = 5.0", "mass_kg = 10.0")
     text = text.replace("heights_m = [0.8, 1.0, 1.2]", f"heights_m = [0.8]\n{task}") + allocations
@@ -35,7 +37,7 @@ def changed(problem: Problem, grasp: str = RIGID, task: str = "", allocations: s
 
 
 @pytest.fixture(scope="module")
-def shared(problem: Problem) -> Problem:
+def shared(problem: DesignProblem) -> DesignProblem:
     return changed(problem, allocations=SHARE + RATIO)
 
 
@@ -106,14 +108,14 @@ def shared(problem: Problem) -> Problem:
     ],
 )
 def test_contradictory_shares_are_refused_in_a_sentence(
-    grasp: str, task: str, allocations: str, words: str, problem: Problem
+    grasp: str, task: str, allocations: str, words: str, problem: DesignProblem
 ) -> None:
     with pytest.raises(InputError) as raised:
         changed(problem, grasp, task, allocations)
     assert words in str(raised.value)
 
 
-def test_the_share_that_statics_leaves_may_be_said(problem: Problem) -> None:
+def test_the_share_that_statics_leaves_may_be_said(problem: DesignProblem) -> None:
     said = changed(problem, 'grasp = "point"', "robot_share = 0.5")
     assert said.scene.robot_share is None
     offset = 'grasp = "point"\ncenter_of_mass_m = [-0.1, 0.0, 0.0]'
@@ -121,12 +123,12 @@ def test_the_share_that_statics_leaves_may_be_said(problem: Problem) -> None:
     assert changed(problem, task="robot_share = 0.7").scene.robot_share == 0.7
 
 
-def test_weights_are_the_files_or_equal(problem: Problem) -> None:
+def test_weights_are_the_files_or_equal(problem: DesignProblem) -> None:
     assert changed(problem).weights == EffortWeights(1.0, 1.0)
     assert changed(problem, task="effort_weights = { human = 3.0 }").weights == EffortWeights(1.0, 3.0)
 
 
-def test_allocations_are_parameters_without_links(shared: Problem) -> None:
+def test_allocations_are_parameters_without_links(shared: DesignProblem) -> None:
     assert shared.space.records[-2:] == (
         Parameter(name="allocation.robot_share", lower=0.1, upper=0.9, unit="1"),
         Parameter(name="allocation.effort_ratio", lower=-1.0, upper=2.0, unit="1"),
@@ -138,7 +140,7 @@ def test_allocations_are_parameters_without_links(shared: Problem) -> None:
     assert [p["links"] for p in model_json(shared)["parameters"][-2:]] == [[], []]
 
 
-def test_population_files_hold_allocations(shared: Problem) -> None:
+def test_population_files_hold_allocations(shared: DesignProblem) -> None:
     tree = shared.scene.robot.tree
     values = (*shared.space.unscaled(tree)[:-2], 0.25, -0.75)
     text = designs_text("some", {"one": values}, shared.space, "a remark")
@@ -152,22 +154,22 @@ def test_population_files_hold_allocations(shared: Problem) -> None:
         read_designs(text.replace('"robot_share"', '"hape"'), "some.toml", shared.space, tree)
 
 
-def test_notebooks_take_allocations_of_any_sign(shared: Problem) -> None:
+def test_notebooks_take_allocations_of_any_sign(shared: DesignProblem) -> None:
     text = shared.source.text + "\n[solver]\nstart_portfolio = false\ncompile = false\n"
-    opened = OpenedProblem(msgspec.structs.replace(shared.source, text=text))
+    opened = Problem(msgspec.structs.replace(shared.source, text=text))
     found = opened.evaluate({"allocation.effort_ratio": -0.5, "allocation.robot_share": 0.3})
     assert found.parameters["allocation.effort_ratio"] == -0.5
     with pytest.raises(InputError, match=r"allocation\.robot_share: wanted a number from 0 to 1, found -0.3"):
         opened.evaluate({"allocation.robot_share": -0.3})
 
 
-def gradients(problem: Problem, values: tuple[float, ...]) -> Mapping[str, Mapping[str, float]]:
+def gradients(problem: DesignProblem, values: tuple[float, ...]) -> Mapping[str, Mapping[str, float]]:
     result = Evaluator(problem).solve(values)
     found = Sensitivities(problem).at(values, result).sensitivities()
     return {name: moves.gradient or {} for name, moves in found.items()}
 
 
-def test_objectives_move_with_allocations_as_differences_say(shared: Problem) -> None:
+def test_objectives_move_with_allocations_as_differences_say(shared: DesignProblem) -> None:
     """Central differences of evaluations, which begin at the same starts."""
     exact = replace(shared, options=replace(shared.options, tolerance=1e-11))
     evaluator = Evaluator(exact)
@@ -187,7 +189,7 @@ def test_objectives_move_with_allocations_as_differences_say(shared: Problem) ->
     assert found["reach_height"]["allocation.effort_ratio"] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_polishing_moves_allocations(shared: Problem) -> None:
+def test_polishing_moves_allocations(shared: DesignProblem) -> None:
     begun = (*shared.space.unscaled(shared.scene.robot.tree)[:-2], 0.45, 0.1)
     aim = aim_of(shared, {"robot_torque": 1.0}, "")
     done = polish(Evaluator(shared), shared.space.genome(begun), aim, 4, lambda step: None)
@@ -195,12 +197,12 @@ def test_polishing_moves_allocations(shared: Problem) -> None:
     assert done.after.design["allocation.robot_share"] < 0.45
 
 
-def test_the_baseline_refuses_to_choose_its_own_weights(shared: Problem) -> None:
+def test_the_baseline_refuses_to_choose_its_own_weights(shared: DesignProblem) -> None:
     with pytest.raises(InputError, match=r"design\.allocation: wanted no effort_ratio in the joint problem"):
         refuse_unsuited(shared)
 
 
-def test_reach_with_rigid_grasps_has_a_gradient(problem: Problem) -> None:
+def test_reach_with_rigid_grasps_has_a_gradient(problem: DesignProblem) -> None:
     """Moments of the person's hands cost nothing there, and a little regularisation decides between them."""
     rigid = changed(problem, allocations=SHARE)
     rigid = replace(rigid, options=replace(rigid.options, tolerance=1e-11))

@@ -17,7 +17,7 @@ from evodesign.problem.baseline import Baseline, BaselineFactory
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import FORMAT_VERSION, ProblemSource, RunHeader, Status
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.search.base import JOINT_STARTS
 from evodesign.search.registry import make_search
 
@@ -34,7 +34,7 @@ def at_one_height(source: ProblemSource, extra: str = "") -> ProblemSource:
     return msgspec.structs.replace(source, text=text.replace("[baseline]\n", f"[baseline]\n{extra}"))
 
 
-def run_of(source: ProblemSource, directory: Path, starts: int) -> Run:
+def run_of(source: ProblemSource, directory: Path, starts: int) -> RunLog:
     problem = build_problem(source)
     header = RunHeader(
         format_version=FORMAT_VERSION,

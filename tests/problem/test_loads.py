@@ -13,7 +13,7 @@ from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.precompute.pieces import Subject, key_of, stages
 from evodesign.problem.baseline import Baseline
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.objectives import DesignResult, objective_value
@@ -33,7 +33,7 @@ at = "robot"
 DESIGN_SEED = 5
 
 
-def source_with(problem: Problem, tables: str, task: str = "") -> ProblemSource:
+def source_with(problem: DesignProblem, tables: str, task: str = "") -> ProblemSource:
     """The default problem at one height, without seeds, and with more tables."""
     text = problem.source.text.replace("heights_m = [0.8, 1.0, 1.2]", f"heights_m = [1.0]\n{task}")
     text = f"{text}\n[solver]\ncompile = false\nstart_portfolio = false\n{tables}"
@@ -41,18 +41,18 @@ def source_with(problem: Problem, tables: str, task: str = "") -> ProblemSource:
 
 
 @pytest.fixture(scope="module")
-def shaken(problem: Problem) -> Problem:
+def shaken(problem: DesignProblem) -> DesignProblem:
     return build_problem(source_with(problem, TABLES))
 
 
 @pytest.fixture(scope="module")
-def values(shaken: Problem) -> tuple[float, ...]:
+def values(shaken: DesignProblem) -> tuple[float, ...]:
     rng = np.random.default_rng(DESIGN_SEED)
     return shaken.space.values(tuple(rng.uniform(size=len(shaken.space.parameters))))
 
 
 @pytest.fixture(scope="module")
-def exact(shaken: Problem) -> Evaluator:
+def exact(shaken: DesignProblem) -> Evaluator:
     """Solved more exactly, so that differences show derivatives."""
     return Evaluator(replace(shaken, options=replace(shaken.options, tolerance=1e-10)))
 
@@ -62,7 +62,7 @@ def result(exact: Evaluator, values: tuple[float, ...]) -> DesignResult:
     return exact.solve(values)
 
 
-def test_tables_are_read_as_written(shaken: Problem) -> None:
+def test_tables_are_read_as_written(shaken: DesignProblem) -> None:
     found = shaken.scene.disturbances
     assert found.effort is OverCases.WORST
     assert found.cases == (
@@ -71,7 +71,7 @@ def test_tables_are_read_as_written(shaken: Problem) -> None:
     )
 
 
-def test_efforts_may_count_on_average(problem: Problem) -> None:
+def test_efforts_may_count_on_average(problem: DesignProblem) -> None:
     source = source_with(problem, TABLES, 'disturbed_effort = "mean"')
     assert build_problem(source).scene.disturbances.effort is OverCases.MEAN
 
@@ -90,26 +90,26 @@ def test_efforts_may_count_on_average(problem: Problem) -> None:
     ],
 )
 def test_impossible_disturbances_are_refused_in_one_sentence(
-    table: str, words: str, problem: Problem
+    table: str, words: str, problem: DesignProblem
 ) -> None:
     with pytest.raises(InputError, match=words) as caught:
         build_problem(source_with(problem, f"[[disturbance]]\n{table}\n"))
     assert "\n" not in str(caught.value)
 
 
-def test_a_way_to_count_efforts_that_does_not_exist_is_refused(problem: Problem) -> None:
+def test_a_way_to_count_efforts_that_does_not_exist_is_refused(problem: DesignProblem) -> None:
     with pytest.raises(InputError, match=r"task.disturbed_effort"):
         build_problem(source_with(problem, TABLES, 'disturbed_effort = "median"'))
 
 
-def test_a_push_needs_a_trunk(problem: Problem) -> None:
+def test_a_push_needs_a_trunk(problem: DesignProblem) -> None:
     source = source_with(problem, TABLES)
     text = source.text.replace("[robot]\n", "[robot]\ntrunk = []\n", 1)
     with pytest.raises(InputError, match=r"disturbance\[1\].at: wanted a trunk to push"):
         build_problem(msgspec.structs.replace(source, text=text))
 
 
-def test_the_joint_problem_refuses_disturbances(shaken: Problem) -> None:
+def test_the_joint_problem_refuses_disturbances(shaken: DesignProblem) -> None:
     with pytest.raises(InputError, match="disturbance: wanted none in the joint problem, found 2"):
         Baseline(shaken)
 
@@ -142,7 +142,7 @@ def test_records_hold_the_load_cases_and_nothing_where_there_are_none(result: De
 
 
 def test_the_result_shows_torques_and_wrenches_of_every_case(
-    shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
+    shaken: DesignProblem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
     whole = evaluation_json(shaken, values, result, exact.assessment(values, result), {})
     (told,), (case,) = whole["heights"], whole["cases"]
@@ -158,7 +158,7 @@ def test_the_result_shows_torques_and_wrenches_of_every_case(
 
 
 def test_gradients_are_differences_of_disturbed_evaluations(
-    shaken: Problem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
+    shaken: DesignProblem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
     wanted = ("robot_torque", "reach_height")
     found = Sensitivities(exact.problem).at(values, result).sensitivities()
@@ -181,7 +181,7 @@ def test_gradients_are_differences_of_disturbed_evaluations(
 
 
 def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
-    problem: Problem, shaken: Problem
+    problem: DesignProblem, shaken: DesignProblem
 ) -> None:
     subjects = {
         piece.subject

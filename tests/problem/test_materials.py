@@ -10,7 +10,7 @@ import pytest
 from evodesign.body.material import CATALOGUE
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs, start_genomes
 from evodesign.problem.model_json import model_json
 from evodesign.problem.source import read_source
@@ -40,11 +40,11 @@ IN_STEEL = LONG + "density_kg_per_m3 = { leg = 7850.0 }\n"
 
 
 @pytest.fixture(scope="module")
-def small() -> Problem:
+def small() -> DesignProblem:
     return build_problem(source_of(CHOSEN, designs=IN_STEEL))
 
 
-def test_choices_are_the_materials_densities_the_lightest_first(small: Problem) -> None:
+def test_choices_are_the_materials_densities_the_lightest_first(small: DesignProblem) -> None:
     length, density = small.space.records
     assert (length.choices, length.materials) == ((), ())
     assert density.choices == (800.0, 2700.0, 7850.0)
@@ -52,7 +52,7 @@ def test_choices_are_the_materials_densities_the_lightest_first(small: Problem) 
     assert (density.lower, density.upper) == (800.0, 7850.0)
 
 
-def test_genomes_are_middles_and_stand_for_catalogue_densities_alone(small: Problem) -> None:
+def test_genomes_are_middles_and_stand_for_catalogue_densities_alone(small: DesignProblem) -> None:
     settings = small.settings("random", 64, 1)
     assert settings.choices == (0, 3)
     for genome in make_search(settings).ask():
@@ -79,7 +79,7 @@ def test_a_problem_without_materials_is_remembered_as_before() -> None:
     assert all("materials" not in parameter for parameter in shown["parameters"])
 
 
-def test_check_shows_the_materials_with_their_sources(small: Problem) -> None:
+def test_check_shows_the_materials_with_their_sources(small: DesignProblem) -> None:
     shown = model_json(small)
     assert [material["name"] for material in shown["materials"]] == ["shell", "aluminium_6061", "steel_4340"]
     assert shown["materials"][0]["source"] == "assumed: 0.3 of aluminium_6061"
@@ -131,7 +131,7 @@ def test_designs_of_no_material_are_refused_by_name(designs: str, words: list[st
         assert word in str(caught.value)
 
 
-def test_a_design_names_its_material(small: Problem) -> None:
+def test_a_design_names_its_material(small: DesignProblem) -> None:
     tree = small.scene.robot.tree
     named = read_designs(
         'name = "some"' + LONG + 'material = { leg = "steel_4340" }\n', "here", small.space, tree
@@ -142,7 +142,7 @@ def test_a_design_names_its_material(small: Problem) -> None:
     assert start_genomes(named, small.space, "here") == small.start
 
 
-def test_the_baseline_of_a_catalogue_problem_is_refused(small: Problem) -> None:
+def test_the_baseline_of_a_catalogue_problem_is_refused(small: DesignProblem) -> None:
     with pytest.raises(InputError, match=r"bounds of density\.leg instead of materials"):
         small.settings(JOINT_STARTS, 4, 1)
     with pytest.raises(InputError, match=r"bounds of density\.leg instead of materials"):

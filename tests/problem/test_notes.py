@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import pytest
 
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.notes import notes
 from evodesign.tree.model import Joint
 
 Limits = tuple[float, float]
 
 
-def with_joint(problem: Problem, joint: Joint) -> Problem:
+def with_joint(problem: DesignProblem, joint: Joint) -> DesignProblem:
     """The problem whose person has this joint in the place of its own of that name."""
     scene, tree = problem.scene, problem.scene.human.tree
     joints = tuple(joint if other.name == joint.name else other for other in tree.joints)
@@ -23,18 +23,18 @@ def with_joint(problem: Problem, joint: Joint) -> Problem:
 
 
 def changed(
-    problem: Problem, name: str, degrees: Limits, axis: tuple[float, float, float] | None = None
-) -> Problem:
+    problem: DesignProblem, name: str, degrees: Limits, axis: tuple[float, float, float] | None = None
+) -> DesignProblem:
     joint = problem.scene.human.tree.joint_by_name[name]
     lower, upper = (math.radians(limit) for limit in degrees)
     return with_joint(problem, replace(joint, lower=lower, upper=upper, axis=axis or joint.axis))
 
 
-def test_nothing_is_noted_of_a_generated_person(problem: Problem) -> None:
+def test_nothing_is_noted_of_a_generated_person(problem: DesignProblem) -> None:
     assert notes(problem) == ()
 
 
-def test_a_hip_that_bends_backwards_is_noted_with_both_ranges(problem: Problem) -> None:
+def test_a_hip_that_bends_backwards_is_noted_with_both_ranges(problem: DesignProblem) -> None:
     (sentence,) = notes(changed(problem, "jLeftHip_roty", (-15.0, 120.0)))
     assert sentence == (
         "human: joint jLeftHip_roty turns from -15 to 120 degrees, where a person's turns from -120 to 15 "
@@ -43,31 +43,31 @@ def test_a_hip_that_bends_backwards_is_noted_with_both_ranges(problem: Problem) 
 
 
 @pytest.mark.parametrize("limits", [(-105.5, 0.5), (-134.5, 29.5), (-120.0, 15.0)])
-def test_a_person_a_little_stiffer_or_suppler_is_not_noted(problem: Problem, limits: Limits) -> None:
+def test_a_person_a_little_stiffer_or_suppler_is_not_noted(problem: DesignProblem, limits: Limits) -> None:
     assert notes(changed(problem, "jLeftHip_roty", limits)) == ()
 
 
 @pytest.mark.parametrize("limits", [(-0.5, 105.5), (-29.5, 134.5)])
-def test_it_is_noted_with_its_limits_turned(problem: Problem, limits: Limits) -> None:
+def test_it_is_noted_with_its_limits_turned(problem: DesignProblem, limits: Limits) -> None:
     assert len(notes(changed(problem, "jLeftHip_roty", limits))) == 1
 
 
 @pytest.mark.parametrize("limits", [(-60.0, 60.0), (0.0, 40.0), (-math.inf, math.inf)])
-def test_limits_that_fit_neither_way_are_not_noted(problem: Problem, limits: Limits) -> None:
+def test_limits_that_fit_neither_way_are_not_noted(problem: DesignProblem, limits: Limits) -> None:
     assert notes(changed(problem, "jLeftHip_roty", limits)) == ()
 
 
 @pytest.mark.parametrize("limits", [(-40.0, 40.0), (-42.0, 41.0), (-45.0, 36.0)])
-def test_a_range_that_is_nearly_even_is_not_noted(problem: Problem, limits: Limits) -> None:
+def test_a_range_that_is_nearly_even_is_not_noted(problem: DesignProblem, limits: Limits) -> None:
     """The ankle bends 30 degrees up and 50 down: turning these makes little difference."""
     assert notes(changed(problem, "jLeftAnkle_roty", limits)) == ()
 
 
-def test_a_smaller_range_is_noted_if_turning_it_makes_it_right(problem: Problem) -> None:
+def test_a_smaller_range_is_noted_if_turning_it_makes_it_right(problem: DesignProblem) -> None:
     assert len(notes(changed(problem, "jLeftAnkle_roty", (-50.0, 30.0)))) == 1
 
 
-def test_limits_count_about_the_axis_that_the_joint_has(problem: Problem) -> None:
+def test_limits_count_about_the_axis_that_the_joint_has(problem: DesignProblem) -> None:
     """About -y hip flexion is positive: -15 to 120 is right, and -120 to 15 is wrong."""
     down = (0.0, -1.0, 0.0)
     assert notes(changed(problem, "jLeftHip_roty", (-15.0, 120.0), down)) == ()
@@ -75,11 +75,11 @@ def test_limits_count_about_the_axis_that_the_joint_has(problem: Problem) -> Non
     assert "from -120 to 15 degrees, where a person's turns from -15 to 120 degrees" in sentence
 
 
-def test_a_joint_about_another_axis_is_not_judged(problem: Problem) -> None:
+def test_a_joint_about_another_axis_is_not_judged(problem: DesignProblem) -> None:
     assert notes(changed(problem, "jLeftHip_roty", (-15.0, 120.0), (1.0, 0.0, 0.0))) == ()
 
 
-def test_a_joint_with_a_name_of_its_own_is_not_judged(problem: Problem) -> None:
+def test_a_joint_with_a_name_of_its_own_is_not_judged(problem: DesignProblem) -> None:
     turned = changed(problem, "jLeftHip_roty", (-15.0, 120.0))
     tree = turned.scene.human.tree
     renamed = tuple(

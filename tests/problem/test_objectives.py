@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 from evodesign.posture.results import CaseSolution
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult, objective_kinds
 from evodesign.records import Status
@@ -19,7 +19,7 @@ OBJECTIVES = objective_kinds()
 
 
 @pytest.fixture(scope="module")
-def result(problem: Problem, evaluator: Evaluator) -> DesignResult:
+def result(problem: DesignProblem, evaluator: Evaluator) -> DesignResult:
     return evaluator.solve(problem.space.values(tuple(0.4 for _ in problem.space.parameters)))
 
 

@@ -12,7 +12,7 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.scene import HUMAN
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.records import ProblemSource
@@ -40,12 +40,12 @@ def population(percentiles: str, sex: str = "both") -> str:
     return f'population = {{ sex = "{sex}", percentiles = {percentiles} }}'
 
 
-def mass(tree_mass: Problem, number: int) -> float:
+def mass(tree_mass: DesignProblem, number: int) -> float:
     links = tree_mass.scenes[number].human.tree.links
     return sum(link.inertia.mass for link in links)
 
 
-def test_a_population_is_one_person_per_sex_and_percentile(problem: Problem) -> None:
+def test_a_population_is_one_person_per_sex_and_percentile(problem: DesignProblem) -> None:
     built = build_problem(changed(problem.source, (PERSON, population("[5, 50, 95]"))))
     labels = [scene.human.label for scene in built.scenes]
     assert labels == ["female P5", "female P50", "female P95", "male P5", "male P50", "male P95"]
@@ -55,27 +55,27 @@ def test_a_population_is_one_person_per_sex_and_percentile(problem: Problem) -> 
     assert built.scenes[3].human.strengths == joint_strengths(Person(1.622, 60.9, Sex.MALE))
 
 
-def test_a_population_of_one_is_that_person_alone(problem: Problem) -> None:
+def test_a_population_of_one_is_that_person_alone(problem: DesignProblem) -> None:
     built = build_problem(changed(problem.source, (PERSON, population("[50]", "female"))))
     (scene,) = built.scenes
     assert scene.human.label == ""
     assert mass(built, 0) == pytest.approx(73.5)
 
 
-def test_a_population_stands_beside_single_people_under_its_name(problem: Problem) -> None:
+def test_a_population_stands_beside_single_people_under_its_name(problem: DesignProblem) -> None:
     lists = f'[[human]]\nname = "porter"\n{PERSON}\n\n[[human]]\nname = "team"\n{population("[25]")}'
     built = build_problem(changed(problem.source, (f"[human]\n{PERSON}", lists)))
     assert [scene.human.label for scene in built.scenes] == ["porter", "team female P25", "team male P25"]
 
 
-def test_a_population_that_is_also_a_person_is_refused(problem: Problem) -> None:
+def test_a_population_that_is_also_a_person_is_refused(problem: DesignProblem) -> None:
     both = changed(problem.source, (PERSON, f"{population('[50]')}\n{PERSON}"))
     with pytest.raises(InputError) as caught:
         build_problem(both)
     assert str(caught.value).endswith("human.stature_m: wanted either this key or population, found both")
 
 
-def test_effort_needs_people_of_known_strength(problem: Problem) -> None:
+def test_effort_needs_people_of_known_strength(problem: DesignProblem) -> None:
     files = {"person.urdf": urdf_text(human_tree(Person(1.75, 75.0, Sex.FEMALE)))}
     pairs = ((PERSON, FROM_FILE), ('"human_torque"', '"human_effort"'))
     with pytest.raises(InputError) as caught:
@@ -90,7 +90,7 @@ def test_effort_needs_people_of_known_strength(problem: Problem) -> None:
     assert (knee.negative.moment, knee.positive.moment) == (200.0, 100.0)
 
 
-def test_strengths_in_the_file_go_before_published_ones(problem: Problem) -> None:
+def test_strengths_in_the_file_go_before_published_ones(problem: DesignProblem) -> None:
     given = f"{PERSON}\nstrengths_n_m = {{ jRightKnee_roty = [99.0, 98.0] }}"
     strengths = build_problem(changed(problem.source, (PERSON, given))).scene.human.strengths
     assert (strengths["jRightKnee_roty"].negative.movement, strengths["jRightKnee_roty"].negative.moment) == (
@@ -101,7 +101,7 @@ def test_strengths_in_the_file_go_before_published_ones(problem: Problem) -> Non
 
 
 @pytest.fixture(scope="module")
-def result(problem: Problem, evaluator: Evaluator) -> DesignResult:
+def result(problem: DesignProblem, evaluator: Evaluator) -> DesignResult:
     return evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
 
 

@@ -10,7 +10,7 @@ import pytest
 from evodesign.body.material import CATALOGUE
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.polish import Step, aim_of, polish
@@ -18,12 +18,12 @@ from evodesign.records import Genome, Hold
 
 
 @pytest.fixture(scope="module")
-def unscaled(problem: Problem) -> Genome:
+def unscaled(problem: DesignProblem) -> Genome:
     return problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))
 
 
 def test_one_objective_gets_better_and_every_height_is_held(
-    problem: Problem, evaluator: Evaluator, unscaled: Genome
+    problem: DesignProblem, evaluator: Evaluator, unscaled: Genome
 ) -> None:
     seen: list[Step] = []
     done = polish(evaluator, unscaled, aim_of(problem, {"robot_torque": 1.0}, ""), 6, seen.append)
@@ -33,7 +33,7 @@ def test_one_objective_gets_better_and_every_height_is_held(
     assert [step.number for step in seen] == [2, 3, 4, 5, 6]
 
 
-def test_height_at_the_edge_of_reach_stays_within(problem: Problem, unscaled: Genome) -> None:
+def test_height_at_the_edge_of_reach_stays_within(problem: DesignProblem, unscaled: Genome) -> None:
     """Shorter arms and legs would need less torque, but the unscaled robot only just reaches this height."""
     edge = replace(problem, tasks=(Hold(height_m=1.277),))
     seen: list[Step] = []
@@ -47,7 +47,7 @@ def test_height_at_the_edge_of_reach_stays_within(problem: Problem, unscaled: Ge
 
 
 def test_polished_design_has_the_results_that_were_reported(
-    problem: Problem, evaluator: Evaluator, unscaled: Genome
+    problem: DesignProblem, evaluator: Evaluator, unscaled: Genome
 ) -> None:
     """Also after a way through a file of designs, whose numbers are exact."""
     done = polish(evaluator, unscaled, aim_of(problem, {"reach_height": 1.0}, ""), 3, lambda step: None)
@@ -58,7 +58,9 @@ def test_polished_design_has_the_results_that_were_reported(
     assert again.objectives == done.after.objectives
 
 
-def test_without_weights_nothing_gets_worse(problem: Problem, evaluator: Evaluator, unscaled: Genome) -> None:
+def test_without_weights_nothing_gets_worse(
+    problem: DesignProblem, evaluator: Evaluator, unscaled: Genome
+) -> None:
     done = polish(evaluator, unscaled, aim_of(problem, {}, ""), 8, lambda step: None)
     before, after = done.before.objectives, done.after.objectives
     assert after["robot_torque"] <= before["robot_torque"] * (1.0 + 1e-6)
@@ -67,7 +69,7 @@ def test_without_weights_nothing_gets_worse(problem: Problem, evaluator: Evaluat
     assert after["robot_torque"] < before["robot_torque"] * 0.99, "and something gets better"
 
 
-def test_design_that_misses_a_height_is_refused(problem: Problem, evaluator: Evaluator) -> None:
+def test_design_that_misses_a_height_is_refused(problem: DesignProblem, evaluator: Evaluator) -> None:
     smallest = tuple(np.zeros(len(problem.space.parameters)).tolist())
     with pytest.raises(InputError, match="every required height"):
         polish(evaluator, smallest, aim_of(problem, {}, ""), 3, lambda step: None)
@@ -77,12 +79,12 @@ def test_design_that_misses_a_height_is_refused(problem: Problem, evaluator: Eva
     ("weights", "words"),
     [({"robot_torqe": 1.0}, "did you mean 'robot_torque'"), ({"robot_torque": -1.0}, "positive weight")],
 )
-def test_wrong_weights_are_explained(problem: Problem, weights: dict[str, float], words: str) -> None:
+def test_wrong_weights_are_explained(problem: DesignProblem, weights: dict[str, float], words: str) -> None:
     with pytest.raises(InputError, match=words):
         aim_of(problem, weights, "--weights")
 
 
-def test_polish_moves_lengths_and_leaves_materials_as_they_are(problem: Problem) -> None:
+def test_polish_moves_lengths_and_leaves_materials_as_they_are(problem: DesignProblem) -> None:
     choices = (CATALOGUE["abs"], CATALOGUE["aluminium_6061"])
     parameters = tuple(
         replace(each, lower=1050.0, upper=2700.0, materials=choices) if each.kind == "density" else each

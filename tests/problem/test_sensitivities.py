@@ -17,7 +17,7 @@ from evodesign.mechanics.balance import center_of_mass
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.sensitivities import DesignDerivative, ObjectiveSensitivity, Sensitivities
@@ -41,7 +41,7 @@ def benchmark_module(repository: Path) -> Iterator[ModuleType]:
 
 
 @pytest.fixture(scope="module")
-def wide(problem: Problem) -> Problem:
+def wide(problem: DesignProblem) -> DesignProblem:
     """The default problem with every objective that there is, and limits that joints do not meet."""
     limits = dict.fromkeys(problem.scene.robot.joints, 30.0)
     robot = replace(problem.scene.robot, torque_limits=limits)
@@ -51,7 +51,7 @@ def wide(problem: Problem) -> Problem:
 
 
 @pytest.fixture(scope="module")
-def derivative(wide: Problem, known: Precomputed, evaluator: Evaluator) -> DesignDerivative:
+def derivative(wide: DesignProblem, known: Precomputed, evaluator: Evaluator) -> DesignDerivative:
     """Of a design whose agents do not lean on each other as far as they may, so that the person moves too."""
     values = wide.space.unscaled(wide.scene.robot.tree)
     found = replace(evaluator.solve(values), scenes=wide.scenes)
@@ -65,7 +65,7 @@ def found(derivative: DesignDerivative) -> Mapping[str, ObjectiveSensitivity]:
 
 
 def test_gradients_are_differences_of_what_a_search_sees(
-    benchmark_module: ModuleType, problem: Problem, known: Precomputed
+    benchmark_module: ModuleType, problem: DesignProblem, known: Precomputed
 ) -> None:
     """From the seeds, along one direction of each design; the benchmark takes all directions."""
     comparer = benchmark_module.Comparer(problem, known)
@@ -81,7 +81,9 @@ def test_gradients_are_differences_of_what_a_search_sees(
     assert compared >= 3
 
 
-def test_every_objective_has_a_gradient(found: Mapping[str, ObjectiveSensitivity], wide: Problem) -> None:
+def test_every_objective_has_a_gradient(
+    found: Mapping[str, ObjectiveSensitivity], wide: DesignProblem
+) -> None:
     assert set(found) == set(OBJECTIVES)
     for sensitivity in found.values():
         assert sensitivity.gradient is not None
@@ -106,7 +108,7 @@ def test_torque_gradients_follow_the_norm(
 
 
 def test_closed_forms_of_the_design_have_casadis_derivatives(
-    derivative: DesignDerivative, found: Mapping[str, ObjectiveSensitivity], wide: Problem
+    derivative: DesignDerivative, found: Mapping[str, ObjectiveSensitivity], wide: DesignProblem
 ) -> None:
     design = ca.SX.sym("design", len(wide.space.parameters))
     tree = wide.space.resized(wide.scene.robot.tree, ca.vertsplit(design))
@@ -121,7 +123,7 @@ def test_closed_forms_of_the_design_have_casadis_derivatives(
 
 
 def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
-    derivative: DesignDerivative, wide: Problem, known: Precomputed
+    derivative: DesignDerivative, wide: DesignProblem, known: Precomputed
 ) -> None:
     """Robot and person are solved in turn; their summed cost is differenced along one direction."""
     tight = Evaluator(replace(wide, options=replace(wide.options, tolerance=1e-12)), known)

@@ -13,7 +13,7 @@ import pinocchio as pin
 import pytest
 
 from evodesign.posture.check import TOLERANCE
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.notes import notes
 from evodesign.records import ProblemSource, Status
@@ -88,17 +88,17 @@ def handles(repository: Path) -> Evaluator:
 
 
 @pytest.fixture(scope="module")
-def reference(edges: Evaluator) -> Problem:
+def reference(edges: Evaluator) -> DesignProblem:
     return edges.problem
 
 
-def of_lengths(problem: Problem, lengths: tuple[float, ...]) -> tuple[float, ...]:
+def of_lengths(problem: DesignProblem, lengths: tuple[float, ...]) -> tuple[float, ...]:
     """Parameter values: lengths of the eight groups, and densities as they are."""
     unscaled = problem.space.unscaled(problem.scene.robot.tree)
     return (*lengths, *unscaled[len(lengths) :])
 
 
-def test_robot_and_person_load_with_their_figures(reference: Problem) -> None:
+def test_robot_and_person_load_with_their_figures(reference: DesignProblem) -> None:
     robot, human = reference.scene.robot, reference.scene.human
     for agent, mass, joints in ((robot, 62.573865, 25), (human, 72.70, 48)):
         assert math.fsum(link.inertia.mass for link in agent.tree.links) == pytest.approx(mass, abs=5e-3)
@@ -130,7 +130,7 @@ def test_every_required_height_is_held_within_the_checks_tolerance(handles: Eval
         assert set(found.objectives) == {"robot_torque", "human_torque", "reach_height"}
 
 
-def test_resized_robot_is_the_same_in_pinocchio_and_mujoco_and_read_again(reference: Problem) -> None:
+def test_resized_robot_is_the_same_in_pinocchio_and_mujoco_and_read_again(reference: DesignProblem) -> None:
     tree = reference.space.resized(reference.scene.robot.tree, of_lengths(reference, PAPER_START))
     text = urdf_text(tree)
     assert_same_tree(read_urdf(text, "written.urdf", MassRule.SHAPES), tree)
@@ -143,13 +143,13 @@ def test_resized_robot_is_the_same_in_pinocchio_and_mujoco_and_read_again(refere
     assert_mujoco_has(floating_in_mujoco(tree).compile(), tree, 1e-9)
 
 
-def test_unit_lengths_and_own_densities_are_the_published_robot(reference: Problem) -> None:
+def test_unit_lengths_and_own_densities_are_the_published_robot(reference: DesignProblem) -> None:
     tree = reference.scene.robot.tree
     solid = [link for link in tree.links if link.solids]
     assert resize(tree, {x.name: 1.0 for x in solid}, {x.name: x.solids[0].density for x in solid}) == tree
 
 
-def test_the_person_written_and_read_is_the_published_one(reference: Problem) -> None:
+def test_the_person_written_and_read_is_the_published_one(reference: DesignProblem) -> None:
     tree = read_urdf(reference_text(PERSON), PERSON, MassRule.FILE)
     assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", MassRule.FILE), tree)
     assert pin.computeTotalMass(floating_model(urdf_text(tree))) == pytest.approx(72.70, abs=5e-3)

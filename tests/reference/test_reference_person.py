@@ -27,7 +27,7 @@ from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, SIDES
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
@@ -307,14 +307,14 @@ def problem_text(repository: Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def users_problem(repository: Path) -> Problem:
+def users_problem(repository: Path) -> DesignProblem:
     """The default problem with the published body as a user's person."""
     default = read_source(repository / "problems" / "icub_lifting.toml")
     files = {**default.files, PUBLISHED: reference_text(PUBLISHED)}
     return build_problem(ProblemSource(path=default.path, text=problem_text(repository), files=files))
 
 
-def test_a_users_urdf_is_the_person_of_a_problem(users_problem: Problem) -> None:
+def test_a_users_urdf_is_the_person_of_a_problem(users_problem: DesignProblem) -> None:
     human = users_problem.scene.human
     assert human.joints == DEFAULT_JOINTS
     assert math.fsum(link.inertia.mass for link in human.tree.links) == pytest.approx(72.7, abs=5e-4)
@@ -326,14 +326,16 @@ def test_a_users_urdf_is_the_person_of_a_problem(users_problem: Problem) -> None
         assert abs(at[human.hands[side]].translation[1]) == pytest.approx(0.8847, abs=1e-4)
 
 
-def test_its_turned_limits_of_hip_flexion_and_toes_are_noted_and_no_others(users_problem: Problem) -> None:
+def test_its_turned_limits_of_hip_flexion_and_toes_are_noted_and_no_others(
+    users_problem: DesignProblem,
+) -> None:
     noted = {sentence.split("joint ")[1].split(" ")[0] for sentence in notes(users_problem)}
     turned = ("jLeftHip_roty", "jRightHip_roty", "jLeftBallFoot_roty", "jRightBallFoot_roty")
     assert noted == set(turned)
     assert len(notes(users_problem)) == len(turned)
 
 
-def test_its_posture_is_found_within_the_limits_as_they_are_written(users_problem: Problem) -> None:
+def test_its_posture_is_found_within_the_limits_as_they_are_written(users_problem: DesignProblem) -> None:
     """At 1.0 m the person stands upright, so that the hips' turned limits do not matter."""
     problem, tree = users_problem, users_problem.scene.human.tree
     result = Evaluator(problem).solve(problem.space.unscaled(problem.scene.robot.tree))

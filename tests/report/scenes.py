@@ -9,27 +9,27 @@ import msgspec
 import numpy as np
 
 from evodesign.mechanics.scene import SIDES, Agent, Scene
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import AgentDetail, CaseDetail, CaseOutcome, Detail, Hold, InstantDetail
 from evodesign.report.scene_models import PlacedScene, SceneModels, SceneSet, placed_scene
 
 
-def random_values(problem: Problem, seed: int) -> tuple[float, ...]:
+def random_values(problem: DesignProblem, seed: int) -> tuple[float, ...]:
     rng = np.random.default_rng(seed)
     return problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters)).tolist()))
 
 
-def random_company(problem: Problem, seed: int) -> SceneSet:
+def random_company(problem: DesignProblem, seed: int) -> SceneSet:
     return SceneSet.of(
         problem.scenes, problem.space.resized(problem.scene.robot.tree, random_values(problem, seed))
     )
 
 
-def random_cast(problem: Problem, seed: int) -> SceneModels:
+def random_cast(problem: DesignProblem, seed: int) -> SceneModels:
     return random_company(problem, seed).models[0]
 
 
-def random_detail(problem: Problem, seed: int, heights: tuple[float, ...] = (0.8, 1.0, 1.2)) -> Detail:
+def random_detail(problem: DesignProblem, seed: int, heights: tuple[float, ...] = (0.8, 1.0, 1.2)) -> Detail:
     rng = np.random.default_rng(seed)
     shown = tuple(
         CaseDetail(case=scene.case(Hold(height_m=height)), instants=(random_instant(scene, rng),))
@@ -67,6 +67,6 @@ def hold_json(record: CaseDetail | CaseOutcome) -> dict[str, Any]:
     return {"height_m": record.case.task.height_m} | told | instant
 
 
-def random_stages(problem: Problem, seed: int) -> list[PlacedScene]:
+def random_stages(problem: DesignProblem, seed: int) -> list[PlacedScene]:
     models = random_cast(problem, seed)
     return [placed_scene(models, detail) for detail in random_detail(problem, seed).cases]

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from evodesign.human.anthropometry import Person, Sex
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import (
     Assessment,
     CaseDetail,
@@ -19,7 +19,7 @@ from evodesign.records import (
     Status,
 )
 from evodesign.runlog.header import header_of
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail, random_values
 
@@ -29,7 +29,7 @@ HEIGHTS = (0.8, 1.0)
 CASES = [(human, payload, height) for human in PEOPLE for payload in LOADS for height in HEIGHTS]
 
 
-def problem_of_several(problem: Problem) -> Problem:
+def problem_of_several(problem: DesignProblem) -> DesignProblem:
     """The default problem with other people and loads."""
     people = "".join(
         f'[[human]]\nname = "{name}"\nstature_m = {one.stature}\nmass_kg = {one.mass}\nsex = "{one.sex}"\n'
@@ -62,7 +62,7 @@ def outcome(detail: CaseDetail) -> CaseOutcome:
     )
 
 
-def write_several(problem: Problem, place: Path, designs: int = 2, cases: int = len(CASES)) -> Run:
+def write_several(problem: DesignProblem, place: Path, designs: int = 2, cases: int = len(CASES)) -> RunLog:
     """A run of random designs in random postures, all of them on the front."""
     with RunWriter(place, header_of(problem, problem.settings("random", 4, 1), budget=4)) as log:
         for number in range(designs):

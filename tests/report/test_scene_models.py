@@ -10,7 +10,7 @@ from evodesign.body.placement import Placement
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import AgentDetail
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene, placed_scene
 from evodesign.tree.frames import link_frames
@@ -31,7 +31,7 @@ def posture_of(detail: AgentDetail) -> AgentPosture:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_links_stand_where_the_kinematics_of_the_solver_puts_them(seed: int, problem: Problem) -> None:
+def test_links_stand_where_the_kinematics_of_the_solver_puts_them(seed: int, problem: DesignProblem) -> None:
     models = random_cast(problem, seed)
     for height in random_detail(problem, seed).cases:
         stage = placed_scene(models, height)
@@ -48,7 +48,7 @@ def test_links_stand_where_the_kinematics_of_the_solver_puts_them(seed: int, pro
                 assert np.allclose(np.array(pose.rotation), frame.rotation, rtol=0.0, atol=1e-12)
 
 
-def test_links_stand_where_pinocchio_puts_them(problem: Problem) -> None:
+def test_links_stand_where_pinocchio_puts_them(problem: DesignProblem) -> None:
     models = random_cast(problem, 7)
     height = random_detail(problem, 7).cases[0]
     stage = placed_scene(models, height)
@@ -72,7 +72,7 @@ def test_sliding_and_turning_joints_move_as_in_the_solver() -> None:
         assert np.allclose(np.array(pose.rotation), frames[link].rotation, rtol=0.0, atol=1e-12)
 
 
-def test_moved_wrenches_have_the_logged_force_and_moment(problem: Problem) -> None:
+def test_moved_wrenches_have_the_logged_force_and_moment(problem: DesignProblem) -> None:
     models = random_cast(problem, 3)
     height = random_detail(problem, 3).cases[0]
     stage = placed_scene(models, height)
@@ -95,7 +95,7 @@ def test_moved_wrenches_have_the_logged_force_and_moment(problem: Problem) -> No
             assert np.allclose([*(sign * hand.force), *(sign * hand.moment)], posture.hand_wrenches[side])
 
 
-def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: Problem) -> None:
+def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: DesignProblem) -> None:
     models = random_cast(problem, 3)
     height = random_detail(problem, 3).cases[0]
     height.agents[ROBOT].foot_wrenches["left"] = (0.0,) * 6
@@ -104,7 +104,7 @@ def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: Problem) -> Non
     assert wrench_of(stage, ROBOT, "left_foot").point == sole.translation
 
 
-def test_everything_with_a_shape_is_seen(problem: Problem) -> None:
+def test_everything_with_a_shape_is_seen(problem: DesignProblem) -> None:
     models = random_cast(problem, 1)
     stage = placed_scene(models, random_detail(problem, 1).cases[1])
     seen = [name for name, _, _ in stage.solids]

@@ -22,14 +22,14 @@ from evodesign.analysis.conditions import conditions, meeting, quantities
 from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.progress import SILENT
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.opened_design import open_design
 from evodesign.report.page import gather, page_content
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
 from tests.report.replay.test_replay import frames
 from tests.report.scenes import random_company
@@ -38,17 +38,17 @@ from tests.report.test_scene_models import posture_of
 
 
 @pytest.fixture(scope="module")
-def several(problem: Problem) -> Problem:
+def several(problem: DesignProblem) -> DesignProblem:
     return problem_of_several(problem)
 
 
 @pytest.fixture(scope="module")
-def run(several: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(several: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
     return write_several(several, tmp_path_factory.mktemp("several") / "run")
 
 
 @pytest.fixture(scope="module")
-def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(run: RunLog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("export") / "design"
     opened = open_design(run, 1, 1, SILENT)
     design = ExportedDesign("run", run.header, opened.evaluation, opened.scene_set(), opened.cases)
@@ -71,7 +71,7 @@ def test_each_persons_file_has_the_persons_stature_and_mass(folder: Path) -> Non
         assert f"- `human_{number}.urdf`: The person `{name}`" in (folder / "README.md").read_text()
 
 
-def test_tables_say_who_holds_what(folder: Path, run: Run) -> None:
+def test_tables_say_who_holds_what(folder: Path, run: RunLog) -> None:
     for name in ("postures.csv", "wrenches.csv"):
         rows = list(csv.DictReader(io.StringIO((folder / name).read_text())))
         assert list(rows[0])[:3] == ["human", "payload", "height_m"]
@@ -85,7 +85,7 @@ def test_tables_say_who_holds_what(folder: Path, run: Run) -> None:
         assert told == detail.agents[HUMAN].torques_n_m
 
 
-def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
+def test_keyframes_are_named_by_case(folder: Path, run: RunLog) -> None:
     model = mujoco.MjModel.from_xml_path(str(folder / "robot.xml"))
     data = mujoco.MjData(model)
     assert model.nkey == len(CASES)
@@ -97,7 +97,7 @@ def test_keyframes_are_named_by_case(folder: Path, run: Run) -> None:
 
 
 def test_recording_shows_each_case_with_its_own_person_and_load(
-    folder: Path, run: Run, several: Problem
+    folder: Path, run: RunLog, several: DesignProblem
 ) -> None:
     """Link frames are compared with pinocchio with persons that are generated anew."""
     readme = (folder / "README.md").read_text()
@@ -140,7 +140,7 @@ def test_layout_says_what_time_means(folder: Path) -> None:
     assert "2 s per case" in panels["Plot!human"]["title"]
 
 
-def test_page_holds_everyone_and_every_case(run: Run) -> None:
+def test_page_holds_everyone_and_every_case(run: RunLog) -> None:
     content = page_content(run)
     assert (content.people, content.payloads) == (tuple(PEOPLE), tuple(LOADS))
     assert content.bodies is not None
@@ -152,7 +152,7 @@ def test_page_holds_everyone_and_every_case(run: Run) -> None:
 
 
 def test_page_keeps_fewer_designs_of_many_pairs(
-    several: Problem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    several: DesignProblem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     many = write_several(several, tmp_path / "run", designs=12)
     monkeypatch.setattr(gather, "MOST_POSTURES", 32)
@@ -161,14 +161,16 @@ def test_page_keeps_fewer_designs_of_many_pairs(
     assert any(note.startswith("postures of 8 of 12 designs") for note in content.notes)
 
 
-def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(run: Run, several: Problem) -> None:
+def test_figure_has_a_row_for_each_pair_and_a_column_for_each_height(
+    run: RunLog, several: DesignProblem
+) -> None:
     scene_set = random_company(several, 1)
     stages = [scene_set.placed_scene(run.details[1].cases[number]) for number in (0, 1, 3)]
     names = ["{}, {}\nload at {:g} m".format(*CASES[number]) if number != 2 else "" for number in range(4)]
     assert [axes.get_title() for axes in posture_figure(stages, "all but the third").axes] == names
 
 
-def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: Run) -> None:
+def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: RunLog) -> None:
     known = quantities(run.header, run.evaluations[0])
     for evaluation in run.evaluations:
         outcomes = evaluation.assessment.cases
@@ -181,7 +183,7 @@ def test_a_height_means_its_worst_case_and_a_case_has_a_name_of_its_own(run: Run
     assert run.evaluations[0] in meeting(run.evaluations, wanted)
 
 
-def test_cases_are_a_data_frame_with_people_and_loads(run: Run) -> None:
+def test_cases_are_a_data_frame_with_people_and_loads(run: RunLog) -> None:
     opened = evodesign.open_run(run.directory)
     table = pd.DataFrame(opened.cases())
     assert len(table) == len(run.evaluations) * len(CASES)

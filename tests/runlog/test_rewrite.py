@@ -15,7 +15,7 @@ from evodesign.evolve import Silent, replay, resume, start
 from evodesign.records import RunHeader
 from evodesign.runlog.directory import locked
 from evodesign.runlog.rewrite import begin_branch, merge, recover
-from evodesign.runlog.run import Run, digest, read_run
+from evodesign.runlog.run import RunLog, digest, read_run
 from evodesign.search.registry import make_search
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence, shuffled
@@ -23,7 +23,7 @@ from tests.runlog.toys import OrderedPool, ToyTask, essence, shuffled
 HEADER = synthetic_header(budget=60, seed=4, population=10)
 
 
-def write(directory: Path, *budgets: int) -> Run:
+def write(directory: Path, *budgets: int) -> RunLog:
     """A run of so many sessions."""
     pool = OrderedPool(shuffled(1))
     run = None

@@ -36,7 +36,7 @@ from evodesign.records import (
     Status,
     design_of,
 )
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from evodesign.search.base import Outcome
 
 OBJECTIVES = (
@@ -226,7 +226,7 @@ def shuffled(seed: int) -> Callable[[int], Sequence[int]]:
     return order
 
 
-def essence(run: Run) -> tuple[list[Evaluation], list[Generation], tuple[Front, ...]]:
+def essence(run: RunLog) -> tuple[list[Evaluation], list[Generation], tuple[Front, ...]]:
     """What must be equal between two runs: everything but times and names of workers.
 
     Postures of designs that were dominated when they arrived may be there or not: those that a stop logs

@@ -20,7 +20,7 @@ import pytest
 
 from evodesign.mechanics.balance import GRAVITY, center_of_mass, cut
 from evodesign.mechanics.dynamics import ROOT_ROWS, bias, mass_matrix
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
@@ -86,20 +86,20 @@ def floating(tree: Tree) -> mujoco.MjModel:
     return spec.compile()
 
 
-def robots(problem: Problem) -> Iterator[Case]:
+def robots(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(21)
     for _ in range(CASES):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
         yield Case.of(problem.space.resized(problem.scene.robot.tree, values), rng)
 
 
-def cranes(_: Problem) -> Iterator[Case]:
+def cranes(_: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(22)
     for _ in range(CASES):
         yield Case.of(crane(), rng)
 
 
-def published(problem: Problem) -> Iterator[Case]:
+def published(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(23)
     for tree in published_robots(problem, rng, CASES):
         yield Case.of(tree, rng)
@@ -109,7 +109,7 @@ ALL = pytest.mark.parametrize("cases", [robots, cranes, published])
 
 
 @ALL
-def test_links_stand_where_mujoco_puts_them(cases, problem: Problem) -> None:
+def test_links_stand_where_mujoco_puts_them(cases, problem: DesignProblem) -> None:
     for case in cases(problem):
         poses = forward(case.tree, Pose(ca.DM(case.rotation), ca.DM(case.position)), case.joints)
         for name, pose in poses.items():
@@ -119,7 +119,7 @@ def test_links_stand_where_mujoco_puts_them(cases, problem: Problem) -> None:
 
 
 @ALL
-def test_centre_of_mass_and_gravity_torques_are_mujocos(cases, problem: Problem) -> None:
+def test_centre_of_mass_and_gravity_torques_are_mujocos(cases, problem: DesignProblem) -> None:
     for case in cases(problem):
         poses = forward(case.tree, Pose(ca.DM(case.rotation), ca.DM(case.position)), case.joints)
         mass, center = center_of_mass(case.tree, poses)
@@ -135,7 +135,7 @@ def test_centre_of_mass_and_gravity_torques_are_mujocos(cases, problem: Problem)
 
 
 @ALL
-def test_mass_matrix_and_bias_are_mujocos(cases, problem: Problem) -> None:
+def test_mass_matrix_and_bias_are_mujocos(cases, problem: DesignProblem) -> None:
     for case in cases(problem):
         names = tuple(case.joints)
         mass, forces = case.oracle()

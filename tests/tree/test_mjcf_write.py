@@ -19,7 +19,7 @@ from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.report.scene_models import looks_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
@@ -47,7 +47,7 @@ class Case:
         return cls(tree, KeyPosture(root, joints))
 
 
-def cases(problem: Problem) -> Iterator[Case]:
+def cases(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(31)
     for seed in range(4):
         values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters)).tolist()))
@@ -118,7 +118,7 @@ def told(case: Case, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float,
 
 @pytest.mark.parametrize("reader", [in_pinocchio, in_yourdfpy, from_urdf_in_mujoco, from_mjcf_in_mujoco])
 def test_masses_and_kinematics_are_equal_everywhere(
-    reader: Callable[[Case], tuple[float, Poses]], problem: Problem
+    reader: Callable[[Case], tuple[float, Poses]], problem: DesignProblem
 ) -> None:
     for case in cases(problem):
         mass, poses = reader(case)
@@ -129,7 +129,7 @@ def test_masses_and_kinematics_are_equal_everywhere(
             assert np.allclose(poses[name], expected, rtol=0.0, atol=TOLERANCE), name
 
 
-def test_bodies_of_mjcf_have_the_inertia_of_their_links(problem: Problem) -> None:
+def test_bodies_of_mjcf_have_the_inertia_of_their_links(problem: DesignProblem) -> None:
     for case in cases(problem):
         model = mujoco.MjModel.from_xml_string(mjcf_text(case.tree, GRAVITY, {}))
         for link in case.tree.links:
@@ -142,7 +142,7 @@ def test_bodies_of_mjcf_have_the_inertia_of_their_links(problem: Problem) -> Non
                 assert np.allclose(moments, link.inertia.about_center, rtol=0.0, atol=TOLERANCE)
 
 
-def test_geoms_are_the_shapes_of_the_links(problem: Problem) -> None:
+def test_geoms_are_the_shapes_of_the_links(problem: DesignProblem) -> None:
     for case in cases(problem):
         model = mujoco.MjModel.from_xml_string(mjcf_text(case.tree, GRAVITY, {}))
         shown = [(link.name, shape, place) for link in case.tree.links for shape, place in looks_of(link)]
@@ -174,7 +174,7 @@ def turned(quaternion: np.ndarray) -> np.ndarray:
     return turn.reshape(3, 3)
 
 
-def test_mjcf_keeps_limits_and_efforts(problem: Problem) -> None:
+def test_mjcf_keeps_limits_and_efforts(problem: DesignProblem) -> None:
     tree = problem.scene.robot.tree
     model = mujoco.MjModel.from_xml_string(mjcf_text(tree, GRAVITY, {}))
     for name in tree.actuated:
@@ -185,7 +185,7 @@ def test_mjcf_keeps_limits_and_efforts(problem: Problem) -> None:
     assert model.opt.gravity.tolist() == [0.0, 0.0, -GRAVITY]
 
 
-def test_robot_stands_on_the_ground_and_does_not_touch_itself(problem: Problem) -> None:
+def test_robot_stands_on_the_ground_and_does_not_touch_itself(problem: DesignProblem) -> None:
     robot = problem.scene.robot
     frames = link_frames(robot.tree, Placement(), {})
     lowest = min(frames[sole].translation[2] for sole in robot.soles.values())
@@ -211,7 +211,7 @@ def test_names_are_kept_as_they_are() -> None:
     assert model.key(0).name == "1 m"
 
 
-def test_link_that_moves_without_mass_is_refused_by_name(problem: Problem) -> None:
+def test_link_that_moves_without_mass_is_refused_by_name(problem: DesignProblem) -> None:
     with pytest.raises(ModelError, match="mass, which MuJoCo asks of every link that moves"):
         mjcf_text(problem.scene.human.tree, GRAVITY, {})
 

@@ -9,7 +9,7 @@ import pytest
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.symmetry import left_half, mirror_of
 
@@ -101,7 +101,7 @@ def test_lopsided_body_is_named() -> None:
         mirror_of(replace(tree, links=links))
 
 
-def test_robot_and_person_pair_left_with_right(problem: Problem) -> None:
+def test_robot_and_person_pair_left_with_right(problem: DesignProblem) -> None:
     robot, human = (mirror_of(agent.tree) for agent in (problem.scene.robot, problem.scene.human))
     assert all(robot.joints[name] == "r_" + name[2:] for name in robot.joints if name.startswith("l_"))
     assert all(human.joints[name] == name.replace("Left", "Right") for name in human.joints if "Left" in name)

@@ -12,7 +12,7 @@ from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
@@ -26,7 +26,7 @@ STRONGEST = 4
 
 
 def design_tables(
-    problem: Problem,
+    problem: DesignProblem,
     name: str,
     result: DesignResult,
     assessment: Assessment,
@@ -41,7 +41,7 @@ def design_tables(
 
 
 def _assessment_tables(
-    problem: Problem, name: str, result: DesignResult, assessment: Assessment
+    problem: DesignProblem, name: str, result: DesignResult, assessment: Assessment
 ) -> tuple[Table, ...]:
     """Its objectives, its postures case by case, and a summary where there are many cases."""
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
@@ -69,7 +69,7 @@ def _people_table(result: DesignResult) -> Table:
     return people_table(asked, titled=True)
 
 
-def _sensitivity_table(problem: Problem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
+def _sensitivity_table(problem: DesignProblem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
     """The parameters that move each objective most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
     columns = names("objective", "strongest parameters")

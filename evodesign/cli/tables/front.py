@@ -15,7 +15,7 @@ from evodesign.analysis.failures import causes, failures
 from evodesign.cli.output import visible
 from evodesign.cli.tables.table import designs_table
 from evodesign.records import Evaluation, materials_of
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 __all__ = ["front_csv", "front_json", "front_lines", "front_table"]
 
@@ -27,7 +27,7 @@ TITLES = {
 }
 
 
-def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
+def front_json(run: RunLog, choice: Choice, chosen: Chosen) -> dict[str, Any]:
     """Chosen designs as a JSON object; its shape is a promise."""
     return {
         "run": str(run.directory),
@@ -49,13 +49,13 @@ def front_json(run: Run, choice: Choice, chosen: Chosen) -> dict[str, Any]:
     }
 
 
-def _materials(run: Run, evaluation: Evaluation) -> dict[str, Any]:
+def _materials(run: RunLog, evaluation: Evaluation) -> dict[str, Any]:
     """The materials by parameter, under a key that only designs of materials have."""
     found = materials_of(run.header.parameters, evaluation.assessment.design)
     return {"materials": found} if found else {}
 
 
-def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
+def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
     """Designs as comma-separated values: number, objectives, parameters (in full), materials."""
     objectives = [objective.name for objective in run.header.objectives]
     parameters = [parameter.name for parameter in run.header.parameters]
@@ -78,13 +78,13 @@ def front_csv(run: Run, designs: Sequence[Evaluation]) -> str:
     return text.getvalue()
 
 
-def front_table(run: Run, choice: Choice, designs: Sequence[Evaluation]) -> Table:
+def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> Table:
     """Designs with their objectives, in the given order."""
     title = f"{TITLES[choice.order]} {visible(run.header.problem_name)}"
     return designs_table(title, run.header.objectives, designs)
 
 
-def front_lines(run: Run, choice: Choice, chosen: Chosen, rows: int) -> list[str]:
+def front_lines(run: RunLog, choice: Choice, chosen: Chosen, rows: int) -> list[str]:
     """What is not in a table of so many rows, and why; then what the run holds."""
     feasible = sum(evaluation.feasible for evaluation in run.evaluations)
     counts = failures(run.evaluations)
@@ -96,7 +96,7 @@ def front_lines(run: Run, choice: Choice, chosen: Chosen, rows: int) -> list[str
     ]
 
 
-def _remarks(run: Run, choice: Choice, chosen: Chosen, shown: int) -> list[str]:
+def _remarks(run: RunLog, choice: Choice, chosen: Chosen, shown: int) -> list[str]:
     """What is not in the table, and why."""
     if chosen.front:
         if shown == chosen.found:

@@ -10,14 +10,14 @@ from rich.table import Table
 
 from evodesign.cli.output import figure, heading
 from evodesign.cli.tables.table import names, numbers, titled
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.polish import Aim, Polished
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 __all__ = ["polish_json", "polish_tables"]
 
 
-def polish_tables(problem: Problem, number: int, done: Polished) -> tuple[Table, Table]:
+def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[Table, Table]:
     """Objectives and changed parameters before and after."""
     columns = [*names("objective"), *numbers("before", "after", "change")]
     objectives = titled(f"{problem.name}: design {number}", columns)
@@ -33,7 +33,7 @@ def polish_tables(problem: Problem, number: int, done: Polished) -> tuple[Table,
     return objectives, parameters
 
 
-def polish_json(run: Run, number: int, aim: Aim, done: Polished, file: Path) -> dict[str, Any]:
+def polish_json(run: RunLog, number: int, aim: Aim, done: Polished, file: Path) -> dict[str, Any]:
     """What changed, as a JSON object; its shape is a promise."""
     return {
         "run": str(run.directory),

@@ -11,7 +11,7 @@ from rich.table import Table
 from evodesign.cli.output import figure, shown, visible
 from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.errors import on_one_line
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.model_json import model_json
 
 __all__ = ["model_tables"]
@@ -22,7 +22,7 @@ CAPTION = (
 )
 
 
-def model_tables(problem: Problem) -> tuple[Table, ...]:
+def model_tables(problem: DesignProblem) -> tuple[Table, ...]:
     """What was understood, for a person: agents, task, the robot's links, and the parameters."""
     shown = model_json(problem)
     return (

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from evodesign.runlog.directory import run_segments
-from evodesign.runlog.run import Run, digest
+from evodesign.runlog.run import RunLog, digest
 
 __all__ = ["run_json", "run_lines"]
 
 
-def run_json(run: Run) -> dict[str, Any]:
+def run_json(run: RunLog) -> dict[str, Any]:
     """What a run holds as a JSON object; its shape is a promise."""
     return {
         "run": str(run.directory),
@@ -23,7 +23,7 @@ def run_json(run: Run) -> dict[str, Any]:
     }
 
 
-def run_lines(run: Run) -> list[str]:
+def run_lines(run: RunLog) -> list[str]:
     """The same in two lines."""
     holds = run_json(run)
     return [

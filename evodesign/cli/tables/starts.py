@@ -13,18 +13,18 @@ from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Case
 
 __all__ = ["starts_json", "starts_tables"]
 
 
-def starts_tables(problem: Problem, known: Precomputed) -> tuple[Table, Table]:
+def starts_tables(problem: DesignProblem, known: Precomputed) -> tuple[Table, Table]:
     """Coverage of each portfolio of starts, and errors of each value function of the person."""
     return _starts_table(problem, known), _people_table(problem, known)
 
 
-def _portfolios(problem: Problem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
+def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
     """Each portfolio with what it is for and the unit in which it misses."""
     if not problem.start_portfolio:
         return
@@ -34,7 +34,7 @@ def _portfolios(problem: Problem, known: Precomputed) -> Iterator[tuple[str, Sta
         yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
 
 
-def _starts_table(problem: Problem, known: Precomputed) -> Table:
+def _starts_table(problem: DesignProblem, known: Precomputed) -> Table:
     columns = [*names("problem"), *numbers("starts", "designs tried", "within 1 %", "worst miss")]
     table = titled("start portfolios, and designs that they were not made from", columns)
     for name, found, unit in _portfolios(problem, known):
@@ -45,7 +45,7 @@ def _starts_table(problem: Problem, known: Precomputed) -> Table:
     return table
 
 
-def _people_table(problem: Problem, known: Precomputed) -> Table:
+def _people_table(problem: DesignProblem, known: Precomputed) -> Table:
     several = len(problem.scenes) > 1
     columns = [*names(*["person and load"][:several]), *numbers("height", "known", "largest error")]
     table = titled("the person's part V(X), X the internal force", columns)
@@ -56,13 +56,13 @@ def _people_table(problem: Problem, known: Precomputed) -> Table:
     return table
 
 
-def _errors(problem: Problem, known: Precomputed) -> Iterator[tuple[Case, float | None]]:
+def _errors(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[Case, float | None]]:
     """Each case with the error of its value function [N^2 m^2], if it has one."""
     for case in problem.cases:
         yield case, known.values[case].error * COST_UNIT if case in known.values else None
 
 
-def starts_json(problem: Problem, known: Precomputed) -> dict[str, Any]:
+def starts_json(problem: DesignProblem, known: Precomputed) -> dict[str, Any]:
     """The same as a JSON object; its shape is a promise."""
     return {
         "problem": problem.name,

@@ -11,14 +11,14 @@ from collections.abc import Mapping, Sequence
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.mechanics.scene import Agent
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.report.page.content import Bodies, JointBody, LinkBody, LoadBody, ShapeBody, TreeBody
 from evodesign.tree.model import Joint, Link, Tree
 
 __all__ = ["agent_body", "bodies", "changes"]
 
 
-def bodies(problem: Problem) -> Bodies:
+def bodies(problem: DesignProblem) -> Bodies:
     """Everything that stands in the problem's scenes, the robot unscaled."""
     robot = problem.scene.robot
     people = {scene.human.label: scene.human for scene in problem.scenes}
@@ -36,7 +36,9 @@ def bodies(problem: Problem) -> Bodies:
     )
 
 
-def changes(problem: Problem, values: Sequence[float]) -> tuple[dict[int, LinkBody], dict[int, JointBody]]:
+def changes(
+    problem: DesignProblem, values: Sequence[float]
+) -> tuple[dict[int, LinkBody], dict[int, JointBody]]:
     """Links and joints of a design's robot that differ from the unscaled one's, by index in the tree."""
     before = problem.scene.robot.tree
     after = problem.space.resized(before, values)

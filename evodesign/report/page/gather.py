@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.front import front
 from evodesign.errors import EvodesignError
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
@@ -19,7 +19,7 @@ from evodesign.report.page.bodies import bodies, changes
 from evodesign.report.page.content import CauseContent, Content, DesignContent, Facts, Mark
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
 from evodesign.report.subset import subsample
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 __all__ = ["MOST_POSTURES", "Gradients", "gradients_of", "page_content", "with_gradients"]
 
@@ -30,7 +30,7 @@ Gradients = dict[str, dict[str, float]]
 """Derivatives by objective, then by parameter."""
 
 
-def page_content(run: Run, asked: Collection[int] = ()) -> Content:
+def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     """What stands in the page of a run.
 
     Args:
@@ -66,7 +66,7 @@ def page_content(run: Run, asked: Collection[int] = ()) -> Content:
     )
 
 
-def _problem(run: Run) -> tuple[Problem | None, tuple[str, ...]]:
+def _problem(run: RunLog) -> tuple[DesignProblem | None, tuple[str, ...]]:
     """The run's problem, rebuilt from the log; or a note on why this evodesign cannot."""
     try:
         return build_problem(run.header.problem), ()
@@ -75,7 +75,7 @@ def _problem(run: Run) -> tuple[Problem | None, tuple[str, ...]]:
 
 
 def _marks(
-    run: Run, problem: Problem | None, best: Sequence[Evaluation], asked: Collection[int]
+    run: RunLog, problem: DesignProblem | None, best: Sequence[Evaluation], asked: Collection[int]
 ) -> tuple[Mark, ...]:
     first = () if problem is None else marks.unscaled(problem, run.evaluations)
     named = marks.asked(asked, run.evaluations)
@@ -83,7 +83,7 @@ def _marks(
     return (*first, *named, *marks.chosen(run.header.objectives, best), *near)
 
 
-def _facts(run: Run, on_front: int) -> Facts:
+def _facts(run: RunLog, on_front: int) -> Facts:
     header = run.header
     return Facts(
         problem=header.problem_name,
@@ -103,13 +103,13 @@ def _facts(run: Run, on_front: int) -> Facts:
     )
 
 
-def _heights(cases: Iterable[Case], problem: Problem | None) -> tuple[float, ...]:
+def _heights(cases: Iterable[Case], problem: DesignProblem | None) -> tuple[float, ...]:
     if problem is not None:
         return tuple(task.height_m for task in problem.tasks)
     return tuple(sorted({case.task.height_m for case in cases}))
 
 
-def _thinned_note(run: Run, shown: Sequence[Evaluation]) -> tuple[str, ...]:
+def _thinned_note(run: RunLog, shown: Sequence[Evaluation]) -> tuple[str, ...]:
     if len(shown) == len(run.evaluations):
         return ()
     return (
@@ -119,7 +119,7 @@ def _thinned_note(run: Run, shown: Sequence[Evaluation]) -> tuple[str, ...]:
 
 
 def _opened(
-    run: Run, marked: Sequence[Mark], shown: Sequence[Evaluation], on_front: Collection[int]
+    run: RunLog, marked: Sequence[Mark], shown: Sequence[Evaluation], on_front: Collection[int]
 ) -> tuple[dict[int, Detail], tuple[str, ...]]:
     """Details that go into the page, by number, and a note on those that are left out."""
     known = {detail.evaluation: detail for detail in run.details}
@@ -142,8 +142,8 @@ def _most_designs(details: Iterable[Detail]) -> int:
 
 
 def _designs(
-    run: Run,
-    problem: Problem | None,
+    run: RunLog,
+    problem: DesignProblem | None,
     shown: Sequence[Evaluation],
     opened: dict[int, Detail],
     marked: Sequence[Mark],
@@ -157,7 +157,7 @@ def _designs(
     }
 
 
-def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | None) -> DesignContent:
+def _design(problem: DesignProblem | None, evaluation: Evaluation, detail: Detail | None) -> DesignContent:
     cases = evaluation.assessment.cases
     if problem is None or detail is None:
         return DesignContent(cases=cases)
@@ -167,7 +167,7 @@ def _design(problem: Problem | None, evaluation: Evaluation, detail: Detail | No
     return DesignContent(cases=cases, postures=detail.cases, links=links, joints=joints)
 
 
-def with_gradients(content: Content, run: Run, jobs: int, progress: PrecomputeProgress) -> Content:
+def with_gradients(content: Content, run: RunLog, jobs: int, progress: PrecomputeProgress) -> Content:
     """The page with the gradients of its marked designs; arguments as in `gradients_of`."""
     numbers = dict.fromkeys(mark.number for mark in content.marks if mark.number in content.designs)
     found = gradients_of(run, numbers, jobs, progress)
@@ -178,7 +178,7 @@ def with_gradients(content: Content, run: Run, jobs: int, progress: PrecomputePr
 
 
 def gradients_of(
-    run: Run, numbers: Iterable[int], jobs: int, progress: PrecomputeProgress
+    run: RunLog, numbers: Iterable[int], jobs: int, progress: PrecomputeProgress
 ) -> dict[int, Gradients]:
     """The gradients of some designs of a run, solved anew; objectives that have none are left out.
 

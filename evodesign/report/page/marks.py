@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import to_minimise
 from evodesign.errors import InputError
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
 from evodesign.report.page.content import Mark, Points
 from evodesign.report.subset import subsample
@@ -25,7 +25,7 @@ MOST_POINTS = 10_000
 """Evaluations in the page; beyond this number they are thinned out evenly, and a note says so."""
 
 
-def unscaled(problem: Problem, evaluations: Sequence[Evaluation]) -> tuple[Mark, ...]:
+def unscaled(problem: DesignProblem, evaluations: Sequence[Evaluation]) -> tuple[Mark, ...]:
     """The evaluation of the file's own robot, if the run holds one."""
     wanted = problem.space.named(problem.space.unscaled(problem.scene.robot.tree))
     for evaluation in evaluations:

@@ -10,7 +10,7 @@ from rich.console import Console
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Sphere
 from evodesign.cli.tables.problem import model_tables
-from evodesign.problem.build import Problem, build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.model_json import model_json
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
@@ -20,12 +20,12 @@ from tests.problem.test_loads import TABLES, source_with
 
 
 @pytest.fixture(scope="module")
-def small() -> Problem:
+def small() -> DesignProblem:
     """A robot with composite arms, legs with meshes, and a claw without a shape."""
     return build_problem(ProblemSource(path=PROBLEM, text=TEXTS[PROBLEM], files=TEXTS))
 
 
-def test_every_link_has_its_kind_solids_and_mass(small: Problem) -> None:
+def test_every_link_has_its_kind_solids_and_mass(small: DesignProblem) -> None:
     links = {link["link"]: link for link in model_json(small)["links"]}
     assert list(links) == [link.name for link in small.scene.robot.tree.links]
     kinds = {name: link["kind"] for name, link in links.items()}
@@ -55,7 +55,7 @@ def stature(person: Tree) -> float:
     return float(top - frames["LeftSole"].translation[2])
 
 
-def test_everyone_of_a_population_is_listed(problem: Problem) -> None:
+def test_everyone_of_a_population_is_listed(problem: DesignProblem) -> None:
     person = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
     crowd = 'population = { sex = "both", percentiles = [5, 95] }'
     source = problem.source
@@ -76,7 +76,7 @@ def test_everyone_of_a_population_is_listed(problem: Problem) -> None:
     assert "who" not in model_json(problem)["agents"][1]
 
 
-def test_every_load_is_listed(problem: Problem) -> None:
+def test_every_load_is_listed(problem: DesignProblem) -> None:
     source = problem.source
     one = "[payload]\nsize_m = [0.5, 0.5, 0.025]\nmass_kg = 5.0\n"
     assert one in source.text
@@ -96,7 +96,7 @@ def test_every_load_is_listed(problem: Problem) -> None:
     assert "payloads" not in model_json(problem)
 
 
-def test_a_density_parameter_does_not_grow(small: Problem) -> None:
+def test_a_density_parameter_does_not_grow(small: DesignProblem) -> None:
     length, density = model_json(small)["parameters"]
     assert (length["unit"], density["unit"]) == ("1", "kg/m^3")
     assert all(link["axis"] is not None for link in length["links"])
@@ -104,7 +104,7 @@ def test_a_density_parameter_does_not_grow(small: Problem) -> None:
 
 
 @pytest.mark.parametrize("width", [80, 110])
-def test_tables_fit_the_terminal_and_cut_nothing_off(small: Problem, width: int) -> None:
+def test_tables_fit_the_terminal_and_cut_nothing_off(small: DesignProblem, width: int) -> None:
     out = StringIO()
     for table in model_tables(small):
         Console(file=out, width=width).print(table)
@@ -119,7 +119,7 @@ def test_tables_fit_the_terminal_and_cut_nothing_off(small: Problem, width: int)
     assert "without mass: l_sole, r_sole, l_palm, r_palm" in text
 
 
-def test_disturbances_are_told_in_words(problem: Problem) -> None:
+def test_disturbances_are_told_in_words(problem: DesignProblem) -> None:
     out = StringIO()
     Console(file=out, width=110).print(model_tables(build_problem(source_with(problem, TABLES)))[1])
     assert "heavier: load +20%" in out.getvalue()

@@ -15,7 +15,7 @@ from mcap.reader import make_reader
 
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import ROBOT
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import (
     FORMAT_VERSION,
     Assessment,
@@ -44,7 +44,7 @@ FILES = {
 }
 
 
-def design_of(problem: Problem, detail: Detail, seed: int = 2) -> ExportedDesign:
+def design_of(problem: DesignProblem, detail: Detail, seed: int = 2) -> ExportedDesign:
     values = random_values(problem, seed)
     tree = problem.space.resized(problem.scene.robot.tree, values)
     header = RunHeader(
@@ -79,7 +79,7 @@ def design_of(problem: Problem, detail: Detail, seed: int = 2) -> ExportedDesign
 
 
 @pytest.fixture(scope="module")
-def exported(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> tuple[ExportedDesign, Path]:
+def exported(problem: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> tuple[ExportedDesign, Path]:
     design = design_of(problem, random_detail(problem, 2))
     folder = tmp_path_factory.mktemp("export") / "new" / "folder"
     done = export_design(design, folder, on_front=True)
@@ -184,7 +184,9 @@ def test_replay_carries_both_models(exported: tuple[ExportedDesign, Path]) -> No
     assert attached == {name: (folder / name).read_bytes() for name in ("robot.urdf", "human.urdf")}
 
 
-def test_design_without_a_posture_is_exported_without_a_replay(problem: Problem, tmp_path: Path) -> None:
+def test_design_without_a_posture_is_exported_without_a_replay(
+    problem: DesignProblem, tmp_path: Path
+) -> None:
     done = export_design(design_of(problem, Detail(evaluation=0, cases=())), tmp_path, on_front=False)
     written = {path.name for path in tmp_path.iterdir()}
     assert written == {"README.md", "robot.urdf", "robot.xml", "human.urdf", "postures.json"}
@@ -196,7 +198,9 @@ def test_design_without_a_posture_is_exported_without_a_replay(problem: Problem,
     assert model.nkey == 0
 
 
-def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(problem: Problem, tmp_path: Path) -> None:
+def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(
+    problem: DesignProblem, tmp_path: Path
+) -> None:
     design = design_of(problem, Detail(evaluation=0, cases=()))
     trees = {ROBOT: problem.scene.human.tree, "human": crane()}
     (only,) = design.scene_set.models
@@ -208,7 +212,7 @@ def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(problem: Problem
     assert "- no `robot.xml`: " in (tmp_path / "README.md").read_text()
 
 
-def test_folder_with_files_is_refused_and_left_alone(problem: Problem, tmp_path: Path) -> None:
+def test_folder_with_files_is_refused_and_left_alone(problem: DesignProblem, tmp_path: Path) -> None:
     design = design_of(problem, Detail(evaluation=0, cases=()))
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(InputError, match="a new or empty folder"):

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
 from evodesign.errors import InputError
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.report.figures.joint_torques import joint_torques, torque_boxes
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, faces_of, posture_figure
@@ -51,7 +51,7 @@ def test_joint_figure_puts_each_torque_on_its_row() -> None:
     ]
 
 
-def test_posture_figure_has_a_panel_per_height_and_an_arrow_per_contact(problem: Problem) -> None:
+def test_posture_figure_has_a_panel_per_height_and_an_arrow_per_contact(problem: DesignProblem) -> None:
     stages = random_stages(problem, 5)
     figure = posture_figure(stages, "postures")
     assert titles(figure) == ["load at 0.8 m", "load at 1 m", "load at 1.2 m"]
@@ -63,7 +63,7 @@ def test_posture_figure_has_a_panel_per_height_and_an_arrow_per_contact(problem:
         assert len(body.get_paths()) > 500
 
 
-def test_arrows_begin_where_forces_act_and_follow_them_on_one_scale(problem: Problem) -> None:
+def test_arrows_begin_where_forces_act_and_follow_them_on_one_scale(problem: DesignProblem) -> None:
     stages, view = random_stages(problem, 5), Camera()
     figure = posture_figure(stages, "postures", view)
     for by_ground in (True, False):
@@ -80,7 +80,7 @@ def test_arrows_begin_where_forces_act_and_follow_them_on_one_scale(problem: Pro
                     assert np.allclose(tip, tail + scale * way)
 
 
-def test_nearer_faces_are_painted_over_farther_ones(problem: Problem) -> None:
+def test_nearer_faces_are_painted_over_farther_ones(problem: DesignProblem) -> None:
     side = Camera(azimuth=-np.pi / 2.0, elevation=0.0)
     stage = random_stages(problem, 5)[0]
     (_, body) = posture_figure([stage], "postures", side).axes[0].collections

@@ -10,11 +10,11 @@ import pytest
 
 from evodesign.analysis.front import RunningFront, front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Detail, Evaluation, Front, Generation
 from evodesign.runlog.header import header_of
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.page.chromium import Tab, browser
 
@@ -22,7 +22,9 @@ RANDOM_DESIGNS = 4
 
 
 @pytest.fixture(scope="session")
-def real_run(problem: Problem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def real_run(
+    problem: DesignProblem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory
+) -> RunLog:
     """One generation of real evaluations, with the postures that a search would log."""
     directory = tmp_path_factory.mktemp("page") / "real"
     generator = random.Random(7)
@@ -66,7 +68,7 @@ def real_run(problem: Problem, evaluator: Evaluator, tmp_path_factory: pytest.Te
 
 
 @pytest.fixture(scope="session")
-def real_page(real_run: Run) -> Path:
+def real_page(real_run: RunLog) -> Path:
     """The page of the real run."""
     from evodesign.report.page import page_content, page_html
 

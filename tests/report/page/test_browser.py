@@ -14,11 +14,11 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import AgentDetail, Objective, Sense
 from evodesign.report.page import page_content, page_html
 from evodesign.report.page.bodies import agent_body
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.page.chromium import Tab, browser
 from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
@@ -59,11 +59,11 @@ def spot(tab: Tab, number: int) -> tuple[float, float]:
     return left + x, top + y
 
 
-def front_of(run: Run) -> dict[int, Any]:
+def front_of(run: RunLog) -> dict[int, Any]:
     return {each.number: each.assessment for each in front(run.header.objectives, run.evaluations)}
 
 
-def test_front_draws_every_design_of_it_in_2d_and_3d(page: Tab, real_run: Run) -> None:
+def test_front_draws_every_design_of_it_in_2d_and_3d(page: Tab, real_run: RunLog) -> None:
     assert trace(page, "front") == list(front_of(real_run))
     assert trace(page, "unscaled") == [0]
     page.value("document.getElementById('front-3D').click()")
@@ -72,7 +72,7 @@ def test_front_draws_every_design_of_it_in_2d_and_3d(page: Tab, real_run: Run) -
     assert trace(page, "unscaled") == [0]
 
 
-def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: Run) -> None:
+def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: RunLog) -> None:
     track = "document.querySelector('[data-axis=\"length.thigh\"] .track')"
     left, top, width, height = page.place(track)
     page.drag((left + 0.5 * width, top + height / 2), (left + 0.99 * width, top + height / 2))
@@ -89,7 +89,9 @@ def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: 
     assert trace(page, "front") == list(front_of(real_run))
 
 
-def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(page: Tab, real_run: Run) -> None:
+def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(
+    page: Tab, real_run: RunLog
+) -> None:
     page.value(f"Plotly.relayout({PLOT}, {{dragmode: 'select'}}).then(() => true)")
     x, y = spot(page, page.value("window.evodesign.state.selected"))
     page.drag((x - 25, y - 25), (x + 25, y + 25))
@@ -112,7 +114,7 @@ def test_brush_moves_by_keyboard(page: Tab) -> None:
     assert high == 1.8
 
 
-def test_clicking_a_point_shows_its_card(page: Tab, real_run: Run) -> None:
+def test_clicking_a_point_shows_its_card(page: Tab, real_run: RunLog) -> None:
     marked = page.value("window.evodesign.content.marks.map(mark => mark.number)")
     shown = page.value("window.evodesign.state.selected")
     number = next(number for number in front_of(real_run) if number in marked and number != shown)
@@ -128,7 +130,7 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: Run) -> None:
         assert page.value(cell) == shown_as(value)
 
 
-def test_arrow_keys_walk_along_the_front(page: Tab, real_run: Run) -> None:
+def test_arrow_keys_walk_along_the_front(page: Tab, real_run: RunLog) -> None:
     before = page.value(SHOWN)
     page.value(f"{PLOT}.focus()")
     page.key("ArrowLeft")
@@ -138,7 +140,7 @@ def test_arrow_keys_walk_along_the_front(page: Tab, real_run: Run) -> None:
     assert int(page.value(SHOWN).removeprefix("Design ")) in front_of(real_run)
 
 
-def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: Run) -> None:
+def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     before = page.value(f"{CANVAS}.toDataURL()")
     wrenches = page.value("document.querySelector('.wrenches').textContent")
@@ -153,7 +155,7 @@ def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: Run) ->
     assert page.value(cell) == f"{force:.1f}"
 
 
-def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run) -> None:
+def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: RunLog) -> None:
     first = page.value("window.evodesign.state.selected")
     drawn = page.value(f"{CANVAS}.toDataURL()")
     known = {detail.evaluation for detail in real_run.details}
@@ -165,7 +167,9 @@ def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: Run)
     page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
 
 
-def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem, real_run: Run) -> None:
+def test_links_stand_where_our_kinematics_puts_them(
+    page: Tab, problem: DesignProblem, real_run: RunLog
+) -> None:
     detail = real_run.details[-1]
     values = list(real_run.evaluations[detail.evaluation].assessment.design.values())
     robot = problem.space.resized(problem.scene.robot.tree, values)
@@ -179,7 +183,7 @@ def test_links_stand_where_our_kinematics_puts_them(page: Tab, problem: Problem,
             check_poses(page, script, tree, posture.agents[name], turn)
 
 
-def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: Problem) -> None:
+def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: DesignProblem) -> None:
     tree = crane()
     agent = replace(problem.scene.robot, tree=tree, soles={"left": "hook", "right": "flag"})
     posture = AgentDetail(
@@ -194,7 +198,7 @@ def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: P
     check_poses(page, f"window.evodesign.linkPoses('robot', {given[0]}, {given[1]})", tree, posture, 0.0)
 
 
-def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: Run) -> None:
+def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: RunLog) -> None:
     rows = page.value(
         "[...document.querySelectorAll('#table tbody tr')].map(r => [...r.children].map(c => c.textContent))"
     )
@@ -232,7 +236,7 @@ def test_laptop_width_needs_no_sideways_scrolling(page: Tab) -> None:
         page.wait_for(f"document.documentElement.scrollWidth <= {width}")
 
 
-def open_run(tab: Tab, run: Run) -> None:
+def open_run(tab: Tab, run: RunLog) -> None:
     """Write and open the page of a run, which must report no error."""
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")
@@ -244,7 +248,7 @@ def open_run(tab: Tab, run: Run) -> None:
 
 def toy_run(
     directory: Path, count: int, *, feasible: bool = True, objectives: int = 2, title: str = "toy"
-) -> Run:
+) -> RunLog:
     more = tuple(Objective(name=f"{NAME}{i}", sense=Sense.MINIMISE, unit="kg") for i in range(3))
     parameters = tuple(
         msgspec.structs.replace(one, name=f"{one.name}.{title}") for one in toy_header().parameters
@@ -303,7 +307,7 @@ def test_names_are_shown_as_text(chromium: Tab, tmp_path: Path) -> None:
 
 
 def test_run_cut_by_a_crash_shows_what_is_there_with_a_note(
-    chromium: Tab, tmp_path: Path, real_run: Run
+    chromium: Tab, tmp_path: Path, real_run: RunLog
 ) -> None:
     log = (real_run.directory / "000.mcap").read_bytes()
     (tmp_path / "000.mcap").write_bytes(log[: len(log) * 2 // 3])
@@ -313,7 +317,7 @@ def test_run_cut_by_a_crash_shows_what_is_there_with_a_note(
 
 
 def test_browser_without_webgl_says_what_it_cannot_draw(
-    real_page: Path, tmp_path: Path, real_run: Run
+    real_page: Path, tmp_path: Path, real_run: RunLog
 ) -> None:
     with browser(tmp_path / "chromium", "--disable-3d-apis") as tab:
         open_page(tab, real_page)

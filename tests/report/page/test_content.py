@@ -13,13 +13,13 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html
 from evodesign.report.page.content import Content
 from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_generation, toy_header
 
@@ -27,11 +27,11 @@ NAME = "</script><script>alert(1)</script>"
 
 
 @pytest.fixture(scope="module")
-def content(real_run: Run) -> Content:
+def content(real_run: RunLog) -> Content:
     return page_content(real_run)
 
 
-def toy_run(directory: Path, count: int = 30) -> Run:
+def toy_run(directory: Path, count: int = 30) -> RunLog:
     header = toy_header()
     with RunWriter(directory, header) as log:
         for evaluation in toy_evaluations(header, count):
@@ -41,7 +41,7 @@ def toy_run(directory: Path, count: int = 30) -> Run:
     return read_run(directory)
 
 
-def test_every_number_of_an_evaluation_is_the_logs(real_run: Run, content: Content) -> None:
+def test_every_number_of_an_evaluation_is_the_logs(real_run: RunLog, content: Content) -> None:
     points = content.points
     assert points.number == [evaluation.number for evaluation in real_run.evaluations]
     for row, evaluation in enumerate(real_run.evaluations):
@@ -57,7 +57,7 @@ def test_every_number_of_an_evaluation_is_the_logs(real_run: Run, content: Conte
     assert content.generations == real_run.generations
 
 
-def test_every_posture_is_the_logs(real_run: Run, content: Content) -> None:
+def test_every_posture_is_the_logs(real_run: RunLog, content: Content) -> None:
     assert real_run.details
     details = {detail.evaluation: detail for detail in real_run.details}
     on_front = {evaluation.number for evaluation in front(real_run.header.objectives, real_run.evaluations)}
@@ -67,7 +67,7 @@ def test_every_posture_is_the_logs(real_run: Run, content: Content) -> None:
         assert design.cases == real_run.evaluations[number].assessment.cases
 
 
-def test_masses_are_the_resized_robots(real_run: Run, content: Content, problem: Problem) -> None:
+def test_masses_are_the_resized_robots(real_run: RunLog, content: Content, problem: DesignProblem) -> None:
     assert content.bodies is not None
     for number, design in content.designs.items():
         if design.postures:
@@ -78,7 +78,7 @@ def test_masses_are_the_resized_robots(real_run: Run, content: Content, problem:
             assert masses == {link.name: float(link.inertia.mass) for link in tree.links}
 
 
-def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: Run, content: Content) -> None:
+def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: RunLog, content: Content) -> None:
     marks = {mark.label: mark.number for mark in content.marks}
     assert marks["unscaled robot"] == 0
     objectives = {
@@ -92,16 +92,18 @@ def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: Run,
     assert "knee" in marks
 
 
-def test_asked_designs_are_marked(real_run: Run) -> None:
+def test_asked_designs_are_marked(real_run: RunLog) -> None:
     assert (5, "asked") in {(mark.number, mark.kind) for mark in page_content(real_run, (5,)).marks}
 
 
-def test_design_that_the_run_does_not_hold_is_refused(real_run: Run) -> None:
+def test_design_that_the_run_does_not_hold_is_refused(real_run: RunLog) -> None:
     with pytest.raises(InputError, match="12 evaluations, found 99"):
         page_content(real_run, (99,))
 
 
-def test_what_is_left_out_is_said(real_run: Run, monkeypatch: pytest.MonkeyPatch, content: Content) -> None:
+def test_what_is_left_out_is_said(
+    real_run: RunLog, monkeypatch: pytest.MonkeyPatch, content: Content
+) -> None:
     monkeypatch.setattr(gather, "MOST_POSTURES", 1)
     monkeypatch.setattr(gather, "MOST_POINTS", 6)
     small = page_content(real_run)
@@ -127,7 +129,7 @@ def embedded(page: str) -> Content:
     return msgspec.json.decode(gzip.decompress(base64.b64decode(block)), type=Content)
 
 
-def test_names_are_text_and_come_back_as_they_were(real_run: Run, content: Content) -> None:
+def test_names_are_text_and_come_back_as_they_were(real_run: RunLog, content: Content) -> None:
     named = msgspec.structs.replace(content, facts=msgspec.structs.replace(content.facts, problem=NAME))
     page = page_html(named)
     assert NAME not in page
@@ -180,7 +182,7 @@ def test_any_number_of_objectives(tmp_path: Path, count: int) -> None:
     assert {"best"} <= {mark.kind for mark in made.marks}
 
 
-def test_run_cut_by_a_crash_gives_a_page_with_a_note(tmp_path: Path, real_run: Run) -> None:
+def test_run_cut_by_a_crash_gives_a_page_with_a_note(tmp_path: Path, real_run: RunLog) -> None:
     log = (real_run.directory / "000.mcap").read_bytes()
     (tmp_path / "000.mcap").write_bytes(log[: len(log) * 2 // 3])
     made = page_content(read_run(tmp_path))

@@ -6,19 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.progress import SILENT
 from evodesign.records import Evaluation
 from evodesign.report.page.gather import gradients_of
 from evodesign.runlog.header import header_of
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 STEP = 1e-3
 
 
 def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
-    problem: Problem, evaluator: Evaluator, tmp_path: Path
+    problem: DesignProblem, evaluator: Evaluator, tmp_path: Path
 ) -> None:
     space = problem.space
     values = space.unscaled(problem.scene.robot.tree)
@@ -33,7 +33,7 @@ def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
         seconds=0.1,
         worker="here",
     )
-    run = Run(tmp_path, header, (logged,), (), (), (), complete=True, notes=())
+    run = RunLog(tmp_path, header, (logged,), (), (), (), complete=True, notes=())
     gradients = gradients_of(run, [7], 1, SILENT)
     assert set(gradients) == {7}
     place = [parameter.name for parameter in space.parameters].index("length.forearm")

@@ -10,9 +10,9 @@ import pytest
 
 from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.report.page import page_content, page_html
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 from tests.report.page.chromium import Tab
 from tests.report.page.reading import CANVAS, check_poses, open_page, shown_as
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
@@ -21,12 +21,12 @@ pytestmark = pytest.mark.needs_chromium
 
 
 @pytest.fixture(scope="module")
-def run(problem: Problem, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(problem: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
     return write_several(problem_of_several(problem), tmp_path_factory.mktemp("several") / "run")
 
 
 @pytest.fixture(scope="module")
-def page(chromium: Tab, run: Run) -> Iterator[Tab]:
+def page(chromium: Tab, run: RunLog) -> Iterator[Tab]:
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")
     open_page(chromium, path)
@@ -41,7 +41,7 @@ def choose(tab: Tab, control: str, option: int) -> None:
     tab.value(f"(() => {{ {script} s.dispatchEvent(new Event('change')); }})()")
 
 
-def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: Tab, run: Run) -> None:
+def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: Tab, run: RunLog) -> None:
     for place, (human, _, _) in enumerate(CASES):
         script = (
             f"(() => {{ const e = window.evodesign, d = e.content.designs[1], posture = d.postures[{place}];"
@@ -52,7 +52,7 @@ def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: 
         check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi)
 
 
-def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) -> None:
+def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     pictures = set()
     for place, (human, payload, height) in enumerate(CASES):
@@ -81,7 +81,7 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: Run) ->
     assert len(pictures) == len(CASES)
 
 
-def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: Run) -> None:
+def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     outcomes = run.evaluations[number].assessment.cases
     page.value("document.querySelectorAll('input[name=cases]')[1].click()")

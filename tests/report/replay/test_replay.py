@@ -19,7 +19,7 @@ from mcap.reader import make_reader
 
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.posture.check import AgentModel
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Detail
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
@@ -59,7 +59,7 @@ class Replay:
 
 
 @pytest.fixture(scope="module")
-def replay(problem: Problem) -> Replay:
+def replay(problem: DesignProblem) -> Replay:
     models, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
     stream = io.BytesIO()
     write_replay(
@@ -223,7 +223,7 @@ def test_models_are_attached_and_the_recording_says_of_what_it_is(replay: Replay
     ]
 
 
-def test_one_height_gives_a_recording_with_a_length(problem: Problem) -> None:
+def test_one_height_gives_a_recording_with_a_length(problem: DesignProblem) -> None:
     stream = io.BytesIO()
     write_replay(stream, random_company(problem, 1), random_detail(problem, 1, (1.0,)).cases, {}, {})
     times = {message.log_time for _, _, message in make_reader(io.BytesIO(stream.getvalue())).iter_messages()}

@@ -18,10 +18,10 @@ from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Objective, Parameter, ProblemSource
 
-__all__ = ["OpenedProblem", "open_problem"]
+__all__ = ["Problem", "open_problem"]
 
 
-def open_problem(path: str | os.PathLike[str], jobs: int = 1) -> OpenedProblem:
+def open_problem(path: str | os.PathLike[str], jobs: int = 1) -> Problem:
     """Open a problem file and get its inner problems ready, which takes minutes the first time.
 
     Args:
@@ -30,10 +30,10 @@ def open_problem(path: str | os.PathLike[str], jobs: int = 1) -> OpenedProblem:
     Raises:
         InputError: naming file, key, what was wanted and what was found.
     """
-    return OpenedProblem(read_source(Path(path)), jobs)
+    return Problem(read_source(Path(path)), jobs)
 
 
-class OpenedProblem:
+class Problem:
     """Designs of a problem, evaluated in this process. It can be sent to other processes (pickled).
 
     Args:
@@ -53,8 +53,8 @@ class OpenedProblem:
             problem.space.unscaled(problem.scene.robot.tree)
         )
 
-    def __reduce__(self) -> tuple[type[OpenedProblem], tuple[ProblemSource]]:
-        return OpenedProblem, (self.source,)
+    def __reduce__(self) -> tuple[type[Problem], tuple[ProblemSource]]:
+        return Problem, (self.source,)
 
     def __repr__(self) -> str:
         return f"<problem {self.name}: {len(self.parameters)} parameters, {len(self.objectives)} objectives>"

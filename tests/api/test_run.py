@@ -12,7 +12,7 @@ import pytest
 import evodesign
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front
-from evodesign.api.opened_run import OpenedRun
+from evodesign.api.run import Run
 from evodesign.errors import InputError, RunError
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
@@ -23,7 +23,7 @@ FRONT = front(HEADER.objectives, RUN)
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> OpenedRun:
+def run(tmp_path: Path) -> Run:
     with RunWriter(tmp_path / "run", HEADER) as writer:
         for evaluation in RUN:
             if evaluation in FRONT:
@@ -32,7 +32,7 @@ def run(tmp_path: Path) -> OpenedRun:
     return evodesign.open_run(str(tmp_path / "run"))
 
 
-def test_table_is_a_data_frame_of_the_log(run: OpenedRun) -> None:
+def test_table_is_a_data_frame_of_the_log(run: Run) -> None:
     table = pd.DataFrame(run.table())
     assert len(table) == len(run) == len(RUN)
     for row, evaluation in zip(table.to_dict("records"), RUN, strict=True):
@@ -47,12 +47,12 @@ def test_table_is_a_data_frame_of_the_log(run: OpenedRun) -> None:
         )
 
 
-def test_table_of_some_designs_keeps_their_order(run: OpenedRun) -> None:
+def test_table_of_some_designs_keeps_their_order(run: Run) -> None:
     designs = run.choose(different=True, limit=3)
     assert run.table(designs)["number"] == [design.number for design in designs]
 
 
-def test_front_and_choices_are_those_of_the_command_line(run: OpenedRun) -> None:
+def test_front_and_choices_are_those_of_the_command_line(run: Run) -> None:
     assert sorted(design.number or 0 for design in run.front) == [each.number for each in FRONT]
     expected = [each.number for each in knees(HEADER.objectives, FRONT)[:2]]
     assert [design.number for design in run.choose(knee=True, limit=2)] == expected
@@ -60,7 +60,7 @@ def test_front_and_choices_are_those_of_the_command_line(run: OpenedRun) -> None
     assert all(design.parameters["arm.0"] > 1.0 for design in run.choose(where="arm.0 > 1"))
 
 
-def test_designs_carry_what_the_log_holds_of_them(run: OpenedRun) -> None:
+def test_designs_carry_what_the_log_holds_of_them(run: Run) -> None:
     for design, evaluation in zip(run.designs, RUN, strict=True):
         assert design.assessment == evaluation.assessment
         assert design.parameters == evaluation.assessment.design
@@ -70,17 +70,17 @@ def test_designs_carry_what_the_log_holds_of_them(run: OpenedRun) -> None:
         assert (design.reach, design.cases) == (evaluation.assessment.reach, evaluation.assessment.cases)
 
 
-def test_postures_come_from_the_log(run: OpenedRun) -> None:
+def test_postures_come_from_the_log(run: Run) -> None:
     for each in FRONT:
         assert run.postures(each.number) == toy_detail(each).cases
 
 
-def test_run_shows_itself_and_its_problem(run: OpenedRun) -> None:
+def test_run_shows_itself_and_its_problem(run: Run) -> None:
     assert f"30 evaluations, {len(FRONT)} on the front" in repr(run)
     assert (run.parameters, run.objectives, run.notes) == (HEADER.parameters, HEADER.objectives, ())
 
 
-def test_wrong_wishes_are_refused_in_one_sentence(run: OpenedRun, tmp_path: Path) -> None:
+def test_wrong_wishes_are_refused_in_one_sentence(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"number: wanted a design of .* which has 30, found 99"):
         run.design(99)
     with pytest.raises(InputError, match="one of knee, near and different"):

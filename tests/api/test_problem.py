@@ -12,34 +12,34 @@ import pytest
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.optimize import minimize
 
-from evodesign.api.opened_problem import OpenedProblem
-from evodesign.api.opened_run import OpenedRun
+from evodesign.api.problem import Problem
 from evodesign.api.pymoo_problem import PymooProblem, as_pymoo_problem
+from evodesign.api.run import Run
 from evodesign.errors import InputError
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import Problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
 from evodesign.records import FORMAT_VERSION, Evaluation, RunHeader
-from evodesign.runlog.run import Run
+from evodesign.runlog.run import RunLog
 
 
 @pytest.fixture(scope="module")
-def opened(repository: Path, known: Precomputed) -> OpenedProblem:
+def opened(repository: Path, known: Precomputed) -> Problem:
     """The default problem, without compiling: that takes longer than it saves these tests."""
     assert known.values, "worked out before, so that the problem finds it in the cache"
     source = read_source(repository / "problems" / "icub_lifting.toml")
     text = f"{source.text}\n[solver]\ncompile = false\n"
-    return OpenedProblem(msgspec.structs.replace(source, text=text))
+    return Problem(msgspec.structs.replace(source, text=text))
 
 
 @pytest.fixture(scope="module")
-def genome(problem: Problem) -> tuple[float, ...]:
+def genome(problem: DesignProblem) -> tuple[float, ...]:
     return tuple(0.3 + 0.02 * place for place in range(len(problem.space.parameters)))
 
 
 def test_design_has_the_results_that_a_search_logs(
-    opened: OpenedProblem, evaluator: Evaluator, genome: tuple[float, ...]
+    opened: Problem, evaluator: Evaluator, genome: tuple[float, ...]
 ) -> None:
     expected = evaluator.assess(genome)
     for design in (expected.assessment.design, tuple(expected.assessment.design.values())):
@@ -49,7 +49,7 @@ def test_design_has_the_results_that_a_search_logs(
 
 
 def test_postures_that_the_log_lacks_are_solved_anew(
-    opened: OpenedProblem, problem: Problem, evaluator: Evaluator, genome: tuple[float, ...]
+    opened: Problem, problem: DesignProblem, evaluator: Evaluator, genome: tuple[float, ...]
 ) -> None:
     expected = evaluator.assess(genome)
     header = RunHeader(
@@ -67,13 +67,13 @@ def test_postures_that_the_log_lacks_are_solved_anew(
     evaluation = Evaluation(
         number=0, generation=0, genome=genome, assessment=expected.assessment, seconds=0.0, worker=""
     )
-    run = OpenedRun(Run(Path("run"), header, (evaluation,), (), (), (), complete=True, notes=()))
+    run = Run(RunLog(Path("run"), header, (evaluation,), (), (), (), complete=True, notes=()))
     assert run.design(0).postures == ()
     assert run.postures(0) == expected.cases
     assert opened.evaluate(run.design(0).parameters).postures == expected.cases
 
 
-def test_what_is_left_out_stays_unscaled(opened: OpenedProblem) -> None:
+def test_what_is_left_out_stays_unscaled(opened: Problem) -> None:
     found = opened.evaluate({"length.thigh": 1.1})
     assert found.parameters == {**opened.unscaled, "length.thigh": 1.1}
 
@@ -88,19 +88,19 @@ def test_what_is_left_out_stays_unscaled(opened: OpenedProblem) -> None:
     ],
 )
 def test_wrong_designs_are_refused_in_one_sentence(
-    opened: OpenedProblem, design: dict[str, float] | list[float], words: str
+    opened: Problem, design: dict[str, float] | list[float], words: str
 ) -> None:
     with pytest.raises(InputError, match=words):
         opened.evaluate(design)
 
 
-def test_problem_can_be_sent_to_another_process(opened: OpenedProblem) -> None:
+def test_problem_can_be_sent_to_another_process(opened: Problem) -> None:
     again = pickle.loads(pickle.dumps(opened))
     assert again.source == opened.source
     assert again.parameters == opened.parameters
 
 
-def test_pymoo_gets_minimised_values_and_the_violation(opened: OpenedProblem) -> None:
+def test_pymoo_gets_minimised_values_and_the_violation(opened: Problem) -> None:
     for_pymoo = as_pymoo_problem(opened)
     unscaled = list(opened.unscaled.values())
     tiny = [parameter.lower for parameter in opened.parameters]
@@ -118,7 +118,7 @@ def test_pymoo_gets_minimised_values_and_the_violation(opened: OpenedProblem) ->
     assert answer["G"].tolist() == [[0.0], [infeasible.violation]]
 
 
-def test_pymoo_searches_the_problem(opened: OpenedProblem) -> None:
+def test_pymoo_searches_the_problem(opened: Problem) -> None:
     result = minimize(PymooProblem(opened), NSGA2(pop_size=4), ("n_gen", 2), seed=1, verbose=False)
     bounds = [(parameter.lower, parameter.upper) for parameter in opened.parameters]
     rows = np.atleast_2d(result.pop.get("X"))

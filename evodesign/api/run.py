@@ -15,28 +15,28 @@ from evodesign.analysis.conditions import Quantity, conditions, quantities
 from evodesign.api.design import Design
 from evodesign.errors import InputError
 from evodesign.records import CaseDetail, Evaluation, Objective, Parameter
-from evodesign.runlog.run import Run, read_run
+from evodesign.runlog.run import RunLog, read_run
 
-__all__ = ["OpenedRun", "open_run"]
+__all__ = ["Run", "open_run"]
 
 
-def open_run(path: str | os.PathLike[str]) -> OpenedRun:
+def open_run(path: str | os.PathLike[str]) -> Run:
     """Open a run's directory, also one that was cut off or is still being written.
 
     Raises:
         RunError: it is not a run, or cannot be read.
     """
-    return OpenedRun(read_run(Path(path)))
+    return Run(read_run(Path(path)))
 
 
-class OpenedRun:
+class Run:
     """What a run found.
 
     Args:
         run: as it was read.
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: RunLog) -> None:
         self.run = run
         self._details = {detail.evaluation: detail.cases for detail in run.details}
 
@@ -185,9 +185,9 @@ class OpenedRun:
         design = self.design(number)
         if design.postures:
             return design.postures
-        from evodesign.api.opened_problem import OpenedProblem  # brings the solver
+        from evodesign.api.problem import Problem  # brings the solver
 
-        return OpenedProblem(self.run.header.problem).evaluate(design.parameters).postures
+        return Problem(self.run.header.problem).evaluate(design.parameters).postures
 
     @property
     def _quantities(self) -> dict[str, Quantity]:
