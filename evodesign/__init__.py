@@ -1,8 +1,9 @@
 """Humanoid robots designed by evolution for low joint torques of robot and person who hold a load together.
 
-From Python:
-
-    run = evodesign.open_run("runs/first")              front, table, designs, postures
+    run = evodesign.search("icub-lifting", "runs/first", evaluations=240, jobs=2)
+    run.plot_front("front.html")                        the Pareto front
+    run.front[0].export("best")                         URDF, MJCF, postures, replay of a design
+    run = evodesign.open_run("runs/first")              front, table, designs, postures of any run
     problem = evodesign.open_problem("problem.toml")    designs evaluated one at a time
     evodesign.as_pymoo_problem(problem)                 for pymoo's algorithms
 
@@ -14,19 +15,38 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from evodesign.api.problem import open_problem
+    from evodesign.api.design import Design
+    from evodesign.api.problem import Problem, open_problem, problems
     from evodesign.api.pymoo_problem import as_pymoo_problem
-    from evodesign.api.run import open_run
-
-__version__ = version("evodesign")
-__all__ = ["__version__", "as_pymoo_problem", "open_problem", "open_run"]
+    from evodesign.api.run import Run, open_run
+    from evodesign.api.search import resume, search
 
 HOMES = {
+    "Design": "evodesign.api.design",
+    "Problem": "evodesign.api.problem",
+    "Run": "evodesign.api.run",
     "as_pymoo_problem": "evodesign.api.pymoo_problem",
     "open_problem": "evodesign.api.problem",
     "open_run": "evodesign.api.run",
+    "problems": "evodesign.api.problem",
+    "resume": "evodesign.api.search",
+    "search": "evodesign.api.search",
 }
 """Where each public name lives."""
+
+__version__ = version("evodesign")
+__all__ = [
+    "Design",
+    "Problem",
+    "Run",
+    "__version__",
+    "as_pymoo_problem",
+    "open_problem",
+    "open_run",
+    "problems",
+    "resume",
+    "search",
+]
 
 
 def __getattr__(name: str) -> Any:

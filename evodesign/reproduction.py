@@ -8,8 +8,6 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,20 +28,18 @@ from evodesign.problem.baseline import GENERATION, Baseline, broken_limits, held
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluation_factory, evaluator_of
-from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, SearchSettings
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
-from evodesign.runlog.session_log import Observer
 from evodesign.search.base import JOINT_STARTS
 from evodesign.search.registry import make_search
+from evodesign.session import Display
 
 __all__ = [
     "Effort",
     "Experiment",
-    "ReproductionProgress",
     "reproduction",
 ]
 
@@ -77,21 +73,6 @@ class Effort:
 
 
 @dataclass(frozen=True, slots=True)
-class ReproductionProgress:
-    """What shows what is being done.
-
-    Args:
-        note: what begins, or ended early.
-        precompute: what a problem needs before its first evaluation.
-        search: a logged run.
-    """
-
-    note: Callable[[str], None]
-    precompute: Callable[[], AbstractContextManager[PrecomputeProgress]]
-    search: Callable[[], AbstractContextManager[Observer]]
-
-
-@dataclass(frozen=True, slots=True)
 class Experiment:
     """The problem under physical limits, and how it is solved.
 
@@ -100,19 +81,19 @@ class Experiment:
         directory: for the logged runs.
         effort: how much is computed.
         began: when the time given began [s], as `time.monotonic` has it.
-        progress: is shown what is being done.
+        display: shows what is being done.
     """
 
     problem: DesignProblem
     directory: Path
     effort: Effort
     began: float
-    progress: ReproductionProgress
+    display: Display
 
     def original(self) -> tuple[ReproducedRobot, float | None]:
         """The unscaled robot at its own best postures, and its reach [m]."""
         problem = self.problem
-        with self.progress.precompute() as progress:
+        with self.display.precompute() as progress:
             evaluator = evaluator_of(problem, self.effort.jobs, progress)
         result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
         cases = tuple(detail_of(case) for case in result.cases if case.solved)
@@ -121,13 +102,13 @@ class Experiment:
 
     def found(self, name: str) -> Found:
         """The best robot of a new run, with its logged postures: of the joint problem, or of the search."""
-        table, effort = self.problem.search, self.effort
+        effort = self.effort
         if name == GRADIENT:
             settings = self.problem.settings(JOINT_STARTS, min(effort.starts, GENERATION), effort.seed)
             run = self._logged(name, settings, effort.starts, SHARE_OF_BASELINE)
             title = "the best robot found by the joint problem"
         else:
-            settings = self.problem.settings(table.algorithm, table.population, effort.seed)
+            settings = self.problem.settings(seed=effort.seed)
             run = self._logged(name, settings, effort.evaluations, 1.0)
             title = f"the best robot found by {run.header.search.algorithm}"
         return self._best(run, name, title)
@@ -141,16 +122,16 @@ class Experiment:
             return time.monotonic() > end
 
         with make_pool(self.effort.pool, self.effort.jobs) as workers:
-            with self.progress.precompute() as progress:
+            with self.display.precompute() as progress:
                 factory = evaluation_factory(header, workers, progress)
             try:
-                with self.progress.search() as observer:
+                with self.display.search() as observer:
                     return evolve.start(directory, header, factory, workers, observer, stop=late)
             except Interrupted:
                 if not late():
                     raise
         run = read_run(directory)
-        self.progress.note(f"{name}: its time is over after {len(run.evaluations)} of {budget} evaluations")
+        self.display.note(f"{name}: its time is over after {len(run.evaluations)} of {budget} evaluations")
         return run
 
     def _best(self, run: RunLog, name: str, title: str) -> Found:
@@ -176,10 +157,10 @@ def reproduction(experiment: Experiment, without: DesignProblem) -> Reproduction
         experiment: the problem under physical limits, and how it is solved.
         without: the published setting.
     """
-    experiment.progress.note("the published setting")
+    experiment.display.note("the published setting")
     published = _published(without)
     by_gradient = experiment.found(GRADIENT)
-    experiment.progress.note("the robot as it is")
+    experiment.display.note("the robot as it is")
     original, highest = experiment.original()
     runs = (by_gradient, experiment.found(EVOLUTION))
     claims = [

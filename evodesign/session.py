@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import msgspec
 from evodesign.analysis.front import RunningFront, minimised
 from evodesign.analysis.run_state import RunState
 from evodesign.pool.base import Factory, Finished, Pool
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import (
     Assessed,
     Assessment,
@@ -34,6 +36,7 @@ from evodesign.runlog.session_log import Observer, SessionLog
 from evodesign.search.base import Outcome
 
 __all__ = [
+    "Display",
     "Evaluate",
     "EvaluationOutcome",
     "Session",
@@ -44,6 +47,21 @@ __all__ = [
 ]
 
 Evaluate = Factory[Genome, Assessed]
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """What shows a session to somebody.
+
+    Args:
+        note: a sentence about something that begins, is strange, or ended early.
+        precompute: what a problem needs before its first evaluation.
+        search: the search itself.
+    """
+
+    note: Callable[[str], None]
+    precompute: Callable[[], AbstractContextManager[PrecomputeProgress]]
+    search: Callable[[], AbstractContextManager[Observer]]
 
 
 @dataclass(frozen=True, slots=True)

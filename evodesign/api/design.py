@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
+from evodesign.errors import InputError
 from evodesign.records import Assessment, CaseDetail, CaseOutcome, ReachOutcome, Status
+from evodesign.runlog.run import RunLog
 
 __all__ = ["Design"]
 
@@ -19,11 +23,17 @@ class Design:
         assessment: the whole record.
         postures: of every case that was solved, of robot and person, with torques and wrenches; empty if
             they were not kept.
+        log: gives the log that holds it, for `export`.
+    Example:
+        >>> design = run.front[0]
+        >>> design.number, round(design.parameters["length.upper_arm"], 3)
+        (3, 1.0)
     """
 
     number: int | None
     assessment: Assessment
     postures: tuple[CaseDetail, ...] = ()
+    log: Callable[[], RunLog] | None = field(default=None, repr=False, compare=False)
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -64,3 +74,23 @@ class Design:
     def cases(self) -> tuple[CaseOutcome, ...]:
         """Each case in short."""
         return self.assessment.cases
+
+    def export(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write the design's files, as `evodesign export` does: URDF, MJCF, postures, a replay, a README.
+
+        Args:
+            folder: a new or empty one.
+        Returns:
+            The files.
+        Raises:
+            InputError: the folder holds files or cannot be written; or the design is of no problem or run.
+        Example:
+            >>> [file.name for file in run.front[0].export(folder)][:2]
+            ['robot.urdf', 'robot.xml']
+        """
+        from evodesign.report.export.folder import export_logged, refuse_full  # CasADi takes its time to load
+
+        if self.log is None:
+            raise InputError("design", "", "a design of a run or of a problem", "one of neither")
+        refuse_full(Path(folder))
+        return export_logged(self.log(), self.number or 0, Path(folder)).files

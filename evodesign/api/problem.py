@@ -5,53 +5,116 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
+from functools import cached_property, partial
 from pathlib import Path
+from typing import Any
 
 from evodesign.api.design import Design
 from evodesign.design.space import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.registry import make_pool
-from evodesign.problem.build import build_problem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.source import read_source
-from evodesign.records import Objective, Parameter, ProblemSource
+from evodesign.problem.shipped import shipped_problems
+from evodesign.problem.source import read_source, source_of
+from evodesign.records import Assessed, Detail, Evaluation, Objective, Parameter, ProblemSource, Task
+from evodesign.runlog.directory import name_in_path
+from evodesign.runlog.header import header_of
+from evodesign.runlog.run import RunLog
 
-__all__ = ["Problem", "open_problem"]
+__all__ = ["Problem", "open_problem", "problems"]
 
 
-def open_problem(path: str | os.PathLike[str], jobs: int = 1) -> Problem:
-    """Open a problem file and get its inner problems ready, which takes minutes the first time.
+def open_problem(problem: str | os.PathLike[str], jobs: int = 1) -> Problem:
+    """Open a problem file, or a problem that comes with evodesign.
 
     Args:
-        path: of the problem file.
-        jobs: how many processes work out what no cache holds yet.
+        problem: path of the file, or a name such as `icub-lifting`; `problems()` lists the names.
+        jobs: how many processes work out what no cache holds yet, when a design is first evaluated.
     Raises:
         InputError: naming file, key, what was wanted and what was found.
+    Example:
+        >>> problem = evodesign.open_problem("icub-lifting")
+        >>> [objective.name for objective in problem.objectives]
+        ['robot_torque', 'human_torque', 'reach_height']
     """
-    return Problem(read_source(Path(path)), jobs)
+    return Problem(read_source(problem), jobs)
+
+
+def problems() -> dict[str, str]:
+    """The problems that come with evodesign: a sentence about each, by name.
+
+    Example:
+        >>> "icub-lifting" in evodesign.problems()
+        True
+    """
+    return {problem.name: problem.description for problem in shipped_problems()}
 
 
 class Problem:
     """Designs of a problem, evaluated in this process. It can be sent to other processes (pickled).
 
+    The first evaluation gets the inner problems ready, which takes minutes the first time on a machine and
+    seconds from then on.
+
     Args:
         source: the problem and its files, as text.
         jobs: how many processes work out what no cache holds yet.
+    Attributes:
+        name: of the problem.
+        parameters: the design's, with bounds and units.
+        objectives: with senses and units.
+        unscaled: the parameters of the robot as its file describes it, by name.
     """
 
     def __init__(self, source: ProblemSource, jobs: int = 1) -> None:
         self.source = source
-        problem = build_problem(source)
-        with make_pool("joblib" if jobs > 1 else "serial", jobs) as pool:
-            self._evaluator = Evaluator(problem, cached_precomputed(problem, pool))
+        self._jobs = jobs
+        problem = self.built
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
         self.unscaled: Mapping[str, float] = problem.space.named(
             problem.space.unscaled(problem.scene.robot.tree)
         )
+
+    @classmethod
+    def from_dict(
+        cls, tables: Mapping[str, Any], folder: str | os.PathLike[str] = ".", jobs: int = 1
+    ) -> Problem:
+        """A problem from the tables of a problem file, as dictionaries and lists.
+
+        Args:
+            tables: `{"name": .., "robot": {"urdf": ..}, ..}`, the keys with their units as in a file.
+            folder: from which files are named; those that come with evodesign are found from anywhere.
+            jobs: as in `open_problem`.
+        Raises:
+            InputError: naming key, what was wanted and what was found.
+        Example:
+            >>> import tomllib
+            >>> tables = tomllib.loads(evodesign.open_problem("icub-lifting").source.text)
+            >>> tables["task"]["heights_m"] = [0.9]
+            >>> evodesign.Problem.from_dict(tables).tasks
+            (Hold(height_m=0.9),)
+        """
+        return cls(source_of(tables, folder), jobs)
+
+    @cached_property
+    def built(self) -> DesignProblem:
+        """Everything that the file says, with all names resolved."""
+        return build_problem(self.source)
+
+    @property
+    def tasks(self) -> tuple[Task, ...]:
+        """What robot and people do with every load, such as `Hold(height_m=1.2)`."""
+        return self.built.tasks
+
+    @cached_property
+    def _evaluator(self) -> Evaluator:
+        with make_pool("joblib" if self._jobs > 1 else "serial", self._jobs) as pool:
+            return Evaluator(self.built, cached_precomputed(self.built, pool))
 
     def __reduce__(self) -> tuple[type[Problem], tuple[ProblemSource]]:
         return Problem, (self.source,)
@@ -68,9 +131,26 @@ class Problem:
             InputError: an unknown name, a wrong number of values, a value that is no positive number, an
                 allocation parameter beyond its range, or a density that is neither a material's nor the
                 unscaled robot's where there are materials.
+        Example:
+            >>> design = problem.evaluate({"length.upper_arm": 1.2})  # the rest as in the unscaled robot
+            >>> design.feasible, sorted(design.objectives)
+            (True, ['human_torque', 'reach_height', 'robot_torque'])
         """
-        found = self._evaluator.assess_values(self._values(design))
-        return Design(None, found.assessment, found.cases)
+        values = self._values(design)
+        found = self._evaluator.assess_values(values)
+        return Design(None, found.assessment, found.cases, partial(self._log, values, found))
+
+    def _log(self, values: tuple[float, ...], found: Assessed) -> RunLog:
+        """A run of one design, in memory."""
+        built = self.built
+        genome = built.space.genome(values)
+        evaluation = Evaluation(
+            number=0, generation=0, genome=genome, assessment=found.assessment, seconds=0.0, worker=""
+        )
+        detail = Detail(evaluation=0, cases=found.cases)
+        header = header_of(built, built.settings(), 1)
+        directory = Path(name_in_path(self.name))
+        return RunLog(directory, header, (evaluation,), (), (), (detail,), complete=True, notes=())
 
     def _values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
         names = [parameter.name for parameter in self.parameters]
@@ -92,7 +172,7 @@ class Problem:
                 wanted, sound = "a positive number", math.isfinite(values[name]) and values[name] > 0.0
             if not sound:
                 raise InputError("design", name, wanted, f"{values[name]}")
-        for parameter, name in zip(self._evaluator.problem.space.parameters, names, strict=True):
+        for parameter, name in zip(self.built.space.parameters, names, strict=True):
             if values[name] != self.unscaled[name]:
                 refuse_no_choice(parameter, values[name], "design", name)
         return tuple(float(values[name]) for name in names)

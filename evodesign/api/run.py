@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,46 +34,46 @@ class Run:
     """What a run found.
 
     Args:
-        run: as it was read.
+        log: as it was read.
     """
 
-    def __init__(self, run: RunLog) -> None:
-        self.run = run
-        self._details = {detail.evaluation: detail.cases for detail in run.details}
+    def __init__(self, log: RunLog) -> None:
+        self.log = log
+        self._details = {detail.evaluation: detail.cases for detail in log.details}
 
     def __repr__(self) -> str:
         return (
-            f"<run of {self.name} in {self.run.directory}: {len(self)} evaluations, "
+            f"<run of {self.name} in {self.log.directory}: {len(self)} evaluations, "
             f"{len(self.front)} on the front>"
         )
 
     def __len__(self) -> int:
-        return len(self.run.evaluations)
+        return len(self.log.evaluations)
 
     @property
     def name(self) -> str:
         """Of the problem."""
-        return self.run.header.problem_name
+        return self.log.header.problem_name
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The design parameters, with bounds and units."""
-        return self.run.header.parameters
+        return self.log.header.parameters
 
     @property
     def objectives(self) -> tuple[Objective, ...]:
         """The objectives, with senses and units."""
-        return self.run.header.objectives
+        return self.log.header.objectives
 
     @property
     def notes(self) -> tuple[str, ...]:
         """A sentence for everything that is missing or strange in the log."""
-        return self.run.notes
+        return self.log.notes
 
     @property
     def designs(self) -> tuple[Design, ...]:
         """Every evaluated design, in order of number."""
-        return tuple(self._design(evaluation) for evaluation in self.run.evaluations)
+        return tuple(self._design(evaluation) for evaluation in self.log.evaluations)
 
     @property
     def front(self) -> tuple[Design, ...]:
@@ -85,10 +86,10 @@ class Run:
         Raises:
             InputError: the run has no such design.
         """
-        for evaluation in self.run.evaluations:
+        for evaluation in self.log.evaluations:
             if evaluation.number == number:
                 return self._design(evaluation)
-        wanted = f"a design of {self.run.directory}, which has {len(self)}"
+        wanted = f"a design of {self.log.directory}, which has {len(self)}"
         raise InputError("number", "", wanted, f"{number}")
 
     def choose(
@@ -122,8 +123,33 @@ class Run:
             aspiration=near or {},
             limit=limit,
         )
-        chosen = choose(self.objectives, self.run.evaluations, choice)
+        chosen = choose(self.objectives, self.log.evaluations, choice)
         return tuple(self._design(evaluation) for evaluation in chosen.designs)
+
+    def plot_front(self, path: str | os.PathLike[str]) -> Path:
+        """Write a figure of the front: a page for a browser, with which one can zoom and read off numbers.
+
+        Args:
+            path: of the HTML file.
+        Returns:
+            The path.
+        Raises:
+            InputError: the file cannot be written; or the run has no feasible design, or one objective, or
+                more than three.
+        Example:
+            >>> run.plot_front(folder / "front.html").name
+            'front.html'
+        """
+        from evodesign.report.front_figure import front_html  # plotly takes its time to load
+
+        page = front_html(self.log.header, self.log.evaluations)
+        try:
+            Path(path).write_text(page, encoding="utf-8")
+        except OSError as error:
+            raise InputError(
+                "path", "", "a file that can be written", f"'{path}' ({error.strerror})"
+            ) from error
+        return Path(path)
 
     def table(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
         """Designs as columns: `pandas.DataFrame(run.table())`.
@@ -136,7 +162,7 @@ class Run:
             exist.
         """
         wanted = None if designs is None else [design.number for design in designs]
-        by_number = {evaluation.number: evaluation for evaluation in self.run.evaluations}
+        by_number = {evaluation.number: evaluation for evaluation in self.log.evaluations}
         rows = [
             by_number[number] for number in (by_number if wanted is None else wanted) if number is not None
         ]
@@ -187,13 +213,17 @@ class Run:
             return design.postures
         from evodesign.api.problem import Problem  # brings the solver
 
-        return Problem(self.run.header.problem).evaluate(design.parameters).postures
+        return Problem(self.log.header.problem).evaluate(design.parameters).postures
 
     @property
     def _quantities(self) -> dict[str, Quantity]:
-        first = self.run.evaluations[0] if self.run.evaluations else None
-        return quantities(self.run.header, first)
+        first = self.log.evaluations[0] if self.log.evaluations else None
+        return quantities(self.log.header, first)
 
     def _design(self, evaluation: Evaluation) -> Design:
         postures = self._details.get(evaluation.number, ())
-        return Design(evaluation.number, evaluation.assessment, postures)
+        return Design(evaluation.number, evaluation.assessment, postures, partial(_same, self.log))
+
+
+def _same(log: RunLog) -> RunLog:
+    return log

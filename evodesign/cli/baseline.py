@@ -29,18 +29,17 @@ def baseline(
 ) -> None:
     """The paper's way: postures at all heights and the design in one program, from many starts."""
     from evodesign.analysis.failures import causes
+    from evodesign.api.sessions import new_directory
     from evodesign.cli.output import print_lines
-    from evodesign.cli.session import new_directory
     from evodesign.problem.baseline import GENERATION, refuse_unsuited
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source
-    from evodesign.runlog.directory import name_in_path
     from evodesign.runlog.run import read_run
     from evodesign.search.base import JOINT_STARTS
 
     built = build_problem(read_source(problem))
     refuse_unsuited(built)
-    directory = new_directory(f"{name_in_path(built.name)}-baseline") if run is None else run
+    directory = new_directory(f"{built.name}-baseline") if run is None else run
     search(
         problem,
         directory,

@@ -33,20 +33,16 @@ def branch(
     """Begin a new run with the first generations of another, and go on with another seed or search."""
     from msgspec.structs import replace
 
+    from evodesign.api.sessions import new_directory
     from evodesign.cli.output import show_notes
-    from evodesign.cli.session import given, new_directory
-    from evodesign.runlog.directory import name_in_path
     from evodesign.runlog.rewrite import begin_branch
     from evodesign.runlog.run import read_run
 
     old = read_run(run)
-    settings = replace(
-        old.header.search,
-        algorithm=given(algorithm, old.header.search.algorithm),
-        population=given(population, old.header.search.population),
-        seed=given(seed, old.header.search.seed),
-    )
-    directory = new_directory(name_in_path(old.header.problem_name)) if to is None else to
+    asked = {"algorithm": algorithm, "population": population, "seed": seed}
+    given = {name: value for name, value in asked.items() if value is not None}
+    settings = replace(old.header.search, **given)
+    directory = new_directory(old.header.problem_name) if to is None else to
     past = begin_branch(old, directory, branch_from, settings)
     show_notes([f"{past} evaluations taken over from {run}; the new run lies in {directory}"])
     resume(

@@ -21,19 +21,13 @@ def export(
     """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
     from evodesign.cli.output import print_lines, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.report.export.design import ExportedDesign
-    from evodesign.report.export.folder import export_design, refuse_full
-    from evodesign.report.opened_design import open_design
+    from evodesign.report.export.folder import export_logged, refuse_full
     from evodesign.runlog.run import read_run
 
     refuse_full(to)  # before anything takes time
     logged = read_run(run)
     show_notes(logged.notes)
     with precompute_progress() as progress:
-        opened = open_design(logged, design, jobs, progress)
-    exported = ExportedDesign(
-        run.resolve().name, logged.header, opened.evaluation, opened.scene_set(), opened.cases
-    )
-    done = export_design(exported, to, on_front=opened.on_front)
+        done = export_logged(logged, design, to, jobs, progress)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())
     print_lines(*map(str, done.files))

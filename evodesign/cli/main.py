@@ -19,6 +19,7 @@ from evodesign.cli.export import export
 from evodesign.cli.front import front
 from evodesign.cli.merge import merge
 from evodesign.cli.polish import polish
+from evodesign.cli.problems import problems
 from evodesign.cli.recover import recover
 from evodesign.cli.report import report
 from evodesign.cli.reproduce import reproduce
@@ -47,6 +48,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "evaluate": evaluate,
     "polish": polish,
     "check": check,
+    "problems": problems,
     "starts": starts,
     "verify": verify,
     "recover": recover,

@@ -23,7 +23,12 @@ def checked_hours(hours: float | None) -> float | None:
     return hours
 
 
-ProblemPath = Annotated[Path, typer.Argument(metavar="PROBLEM", help="Problem file (TOML).")]
+ProblemPath = Annotated[
+    Path,
+    typer.Argument(
+        metavar="PROBLEM", help="A problem file (TOML), or a name that `evodesign problems` lists."
+    ),
+]
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
 NewRun = Annotated[
     Path | None, typer.Option("--run", help="Directory of the new run.", show_default="runs/NAME-TIME")

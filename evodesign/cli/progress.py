@@ -6,11 +6,9 @@ On a terminal something is redrawn in place; elsewhere there is a plain line per
 from __future__ import annotations
 
 import sys
-import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TextIO
 
 from rich.console import Group
 from rich.live import Live
@@ -26,8 +24,8 @@ from rich.progress import (
 from rich.table import Table
 
 from evodesign.analysis.failures import causes, failures
+from evodesign.api.progress_lines import PrecomputeLines, SearchLines
 from evodesign.cli.output import console, figure, heading, show_notes
-from evodesign.cli.tables.live import generation_line
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.session_log import Observer
@@ -51,51 +49,14 @@ def search_progress() -> Iterator[Observer]:
 @contextmanager
 def precompute_progress() -> Iterator[PrecomputeProgress]:
     """What suits standard error for a problem's pieces; it shows nothing until one is missing."""
-    progress = PrecomputeBar() if sys.stderr.isatty() else PrecomputeLines(sys.stderr)
+    if not sys.stderr.isatty():
+        yield PrecomputeLines(sys.stderr)
+        return
+    bar = PrecomputeBar()
     try:
-        yield progress
+        yield bar
     finally:
-        progress.close()
-
-
-class SearchLines(Observer):
-    """One line when a session starts and one per generation."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._began = time.monotonic()
-        self._known = self._done = self._budget = 0
-        self._failures: Counter[Status] = Counter()
-
-    def started(self, header: RunHeader, evaluations_done: int) -> None:
-        """Say what begins."""
-        self._began, self._budget = time.monotonic(), header.budget
-        self._known = self._done = evaluations_done
-        search = header.search
-        known = f", {evaluations_done} known" if evaluations_done else ""
-        _write(
-            self._stream,
-            f"{header.problem_name}: {search.algorithm}, population {search.population}, seed {search.seed}, "
-            f"{header.budget} evaluations{known}",
-        )
-
-    def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
-        """Only count."""
-        self._done = done
-        self._failures += failures([evaluation])
-
-    def generation_done(self, generation: Generation) -> None:
-        """Say where the search stands."""
-        failed = f"; failed in this session: {causes(self._failures)}" if self._failures else ""
-        _write(self._stream, f"{generation_line(generation, self._budget)}, {self._left()} left{failed}")
-
-    def _left(self) -> str:
-        """The time left, from the pace of this session."""
-        if self._done == self._known:
-            return "unknown time"
-        pace = (time.monotonic() - self._began) / (self._done - self._known)
-        minutes, rest = divmod(round(pace * (self._budget - self._done)), 60)
-        return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+        bar.close()
 
 
 class SearchPanel(Observer):
@@ -188,39 +149,7 @@ class _Tally:
                 self.best[objective.name] = better(value, self.best.get(objective.name, value))
 
 
-class ShownProgress(PrecomputeProgress):
-    """Progress that is shown on standard error until it is closed."""
-
-    def note(self, sentence: str) -> None:
-        """Say it."""
-        show_notes([sentence])
-
-    def close(self) -> None:
-        """Give the terminal back."""
-
-
-class PrecomputeLines(ShownProgress):
-    """One line for each piece."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._began = time.monotonic()
-        self._pieces = self._done = 0
-
-    def missing(self, pieces: int) -> None:
-        """Say what begins."""
-        if not self._pieces:
-            _write(self._stream, "making the problem ready, once; the next time it is read from the cache")
-        self._pieces += pieces
-
-    def done(self, piece: str) -> None:
-        """Say what is done."""
-        self._done += 1
-        seconds = time.monotonic() - self._began
-        _write(self._stream, f"ready {self._done}/{self._pieces}: {piece} ({seconds:.0f} s)")
-
-
-class PrecomputeBar(ShownProgress):
+class PrecomputeBar(PrecomputeProgress):
     """A bar over all pieces, with the one that was done last."""
 
     def __init__(self) -> None:
@@ -245,11 +174,10 @@ class PrecomputeBar(ShownProgress):
         """Move the bar."""
         self._progress.update(self._task, advance=1, description=piece)
 
+    def note(self, sentence: str) -> None:
+        """Say it."""
+        show_notes([sentence])
+
     def close(self) -> None:
         """Give the terminal back."""
         self._progress.stop()
-
-
-def _write(stream: TextIO, line: str) -> None:
-    stream.write(line + "\n")
-    stream.flush()

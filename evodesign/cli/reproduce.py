@@ -22,12 +22,12 @@ def reproduce(
         Path | None,
         typer.Option(help="New folder for runs, figures and robots.", show_default="runs/reproduce-TIME"),
     ] = None,
-    problem: Annotated[Path, typer.Option(metavar="FILE", help="The problem with physical limits.")] = Path(
-        "problems/sartore2022.toml"
-    ),
+    problem: Annotated[
+        str, typer.Option(metavar="PROBLEM", help="The problem with physical limits.")
+    ] = "sartore2022",
     published: Annotated[
-        Path, typer.Option(metavar="FILE", help="The published setting, without limits.")
-    ] = Path("problems/sartore2022_as_published.toml"),
+        str, typer.Option(metavar="PROBLEM", help="The published setting, without limits.")
+    ] = "sartore2022-as-published",
     starts: Annotated[int, typer.Option(min=1, help="Starts of the joint problem.")] = 50,
     evaluations: Annotated[int, typer.Option(min=1, help="Designs that the search evaluates.")] = 480,
     seed: Annotated[int, typer.Option(min=0, help="Of starts and search.")] = 1,
@@ -39,20 +39,19 @@ def reproduce(
     json: Json = False,
 ) -> None:
     """Sartore et al. 2022 again: its table, claims and figures, with verdicts, then by evolution."""
-    from evodesign.cli.output import console, print_json, print_lines, show_notes
-    from evodesign.cli.progress import precompute_progress, search_progress
-    from evodesign.cli.session import new_directory
+    from evodesign.api.sessions import new_directory
+    from evodesign.cli.output import console, print_json, print_lines
+    from evodesign.cli.session import DISPLAY
     from evodesign.cli.tables.reproduction import claims_table, reproduction_lines, torque_table
     from evodesign.report.export.folder import refuse_full
     from evodesign.report.reproduction import reproduction_json, write_reproduction
-    from evodesign.reproduction import Effort, Experiment, ReproductionProgress, reproduction
+    from evodesign.reproduction import Effort, Experiment, reproduction
 
     began = time.monotonic()
     directory = new_directory("reproduce") if to is None else to
     refuse_full(directory)
     effort = Effort(starts, evaluations, seed, minutes, jobs, pool)
-    progress = ReproductionProgress(lambda note: show_notes([note]), precompute_progress, search_progress)
-    experiment = Experiment(_scalar(problem), directory, effort, began, progress)
+    experiment = Experiment(_scalar(problem), directory, effort, began, DISPLAY)
     done = reproduction(experiment, _scalar(published))
     compared = (done.original, *(one.robot for one in done.found))
     files = write_reproduction(directory, compared, (done.published.original, done.published.optimised))
@@ -65,12 +64,12 @@ def reproduce(
     print_lines(*reproduction_lines(done, directory, seconds))
 
 
-def _scalar(path: Path) -> DesignProblem:
+def _scalar(name: str) -> DesignProblem:
     """A problem with one objective, so that one robot is the best."""
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source
 
-    problem = build_problem(read_source(path))
+    problem = build_problem(read_source(name))
     if len(problem.objectives) != 1:
-        raise InputError(str(path), "objectives", "one objective to reproduce", f"{len(problem.objectives)}")
+        raise InputError(name, "objectives", "one objective to reproduce", f"{len(problem.objectives)}")
     return problem

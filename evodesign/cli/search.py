@@ -36,39 +36,20 @@ def search(
     json: options.Json = False,
 ) -> None:
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
-    from msgspec.structs import replace
-
-    from evodesign import evolve
-    from evodesign.cli.output import show_notes
-    from evodesign.cli.progress import search_progress
-    from evodesign.cli.session import factory_of, given, new_directory, show_result, with_budgets
-    from evodesign.cli.stopping import Stop, resumable
-    from evodesign.pool.registry import make_pool
+    from evodesign.api.sessions import Budgets, Workers, begin, new_directory
+    from evodesign.cli.session import DISPLAY, show_result
+    from evodesign.cli.stopping import SignalledStop
     from evodesign.problem.build import build_problem
-    from evodesign.problem.notes import notes
     from evodesign.problem.source import read_source
-    from evodesign.runlog.directory import name_in_path, refuse_run
-    from evodesign.runlog.header import header_of
-    from evodesign.search.registry import make_asynchronous_search, make_search
 
     built = build_problem(read_source(problem, symmetry))
-    show_notes(notes(built))
-    table = built.search
-    settings = built.settings(
-        given(algorithm, table.algorithm),
-        given(population, table.population),
-        given(seed, table.seed),
-        given(asynchronous, table.asynchronous),
+    done = begin(
+        built,
+        new_directory(built.name) if run is None else run,
+        built.settings(algorithm, population, seed, asynchronous),
+        Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations),
+        Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
+        DISPLAY,
+        SignalledStop,
     )
-    header = header_of(built, settings, table.evaluations)
-    header = replace(header, hours=table.hours, stagnation_generations=table.stagnation_generations)
-    header = with_budgets(header, evaluations, hours, stagnation_generations)
-    directory = new_directory(name_in_path(built.name)) if run is None else run
-    refuse_run(directory)  # before anything takes time; the search's settings too
-    (make_asynchronous_search if settings.asynchronous else make_search)(settings)
-    stop = Stop(header.hours)
-    with resumable(directory, stop), make_pool(pool, jobs, scheduler) as workers:
-        factory = factory_of(header, workers, cache=cache)
-        with search_progress() as observer, stop.heeded():
-            done = evolve.start(directory, header, factory, workers, observer, stop=stop)
     show_result(done, json=json)

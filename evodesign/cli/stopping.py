@@ -11,22 +11,18 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from types import FrameType
 
+from evodesign.api.sessions import SECONDS_PER_HOUR
 from evodesign.cli.output import show_notes
-from evodesign.errors import Interrupted
-from evodesign.runlog.directory import segments
 
-__all__ = ["GRACE_SECONDS", "Stop", "resumable"]
+__all__ = ["GRACE_SECONDS", "SignalledStop"]
 
 GRACE_SECONDS = 30.0
 """How long evaluations in flight may take to arrive after a stop was asked for."""
 
-SECONDS_PER_HOUR = 3600.0
 
-
-class Stop:
+class SignalledStop:
     """Whether a session is to stop; asked by the loop, told by signals.
 
     Before and after `heeded`, a signal is a KeyboardInterrupt.
@@ -86,15 +82,3 @@ class Stop:
         sentence = f"waiting for what is in flight, at most {self._grace:g} s ({remark})"
         # a thread of its own: the signal may have come while the main thread was writing
         threading.Thread(target=show_notes, args=([sentence],), daemon=True).start()
-
-
-@contextmanager
-def resumable(directory: Path, stop: Stop) -> Iterator[None]:
-    """Turn a stop into an error that says how to go on, also one before or after the loop itself."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        hint = f"; go on with: evodesign resume {directory}" if segments(directory) else ""
-        raise Interrupted(f"stopped{hint}") from None
-    except Interrupted as interrupted:
-        raise Interrupted(f"{stop.why}: {interrupted}" if stop.why else f"{interrupted}") from None

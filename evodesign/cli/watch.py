@@ -78,7 +78,7 @@ def _on_terminal(run: FollowedRun, every: float) -> None:
 
 def _in_lines(run: FollowedRun, every: float) -> None:
     """One line per generation until the session ends."""
-    from evodesign.cli.tables.live import generation_line
+    from evodesign.api.progress_lines import generation_line
 
     told = 0
     while True:

@@ -110,23 +110,29 @@ class DesignProblem:
         return scene_of(self.scenes, case.pair)
 
     def settings(
-        self, algorithm: str, population: int, seed: int, asynchronous: bool = False
+        self,
+        algorithm: str | None = None,
+        population: int | None = None,
+        seed: int | None = None,
+        asynchronous: bool | None = None,
     ) -> SearchSettings:
-        """Settings of a search over this problem.
+        """Settings of a search over this problem: those given, and the file's for the others.
 
         Raises:
             InputError: starts of the joint problem, and a density of materials.
         """
+        table = self.search
+        algorithm = table.algorithm if algorithm is None else algorithm
         if algorithm == JOINT_STARTS:
             refuse_choices(self.space, self.source)
         return SearchSettings(
             algorithm=algorithm,
             dimension=len(self.space.parameters),
             objectives=len(self.objectives),
-            population=population,
-            seed=seed,
+            population=table.population if population is None else population,
+            seed=table.seed if seed is None else seed,
             start=self.joint_start if algorithm == JOINT_STARTS else self.start,
-            asynchronous=asynchronous,
+            asynchronous=table.asynchronous if asynchronous is None else asynchronous,
             choices=self.space.counts if any(self.space.counts) else msgspec.UNSET,
         )
 

@@ -109,7 +109,11 @@ def _cache(subject: str, progress: PrecomputeProgress = SILENT) -> Cache | None:
 
 
 NO_PART_OF_EVALUATIONS: Exceptions = {
-    ProblemFile: {"name": "is a word for results", "search": "says which designs are evaluated, and when"},
+    ProblemFile: {
+        "name": "is a word for results",
+        "description": "is for people",
+        "search": "says which designs are evaluated, and when",
+    },
     SolverTable: {
         "evaluation_seconds": "what such a limit ended is not kept",
         "evaluation_memory_gb": "what such a limit ended is not kept",

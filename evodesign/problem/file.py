@@ -251,7 +251,7 @@ class SolverTable(Table, frozen=True):
 
 
 class ProblemFile(Table, frozen=True):
-    """A whole problem file."""
+    """A whole problem file; `description` says in a sentence what it is about."""
 
     name: Name
     robot: RobotTable
@@ -266,6 +266,7 @@ class ProblemFile(Table, frozen=True):
     solver: SolverTable = SolverTable()
     baseline: BaselineTable = BaselineTable()
     disturbance: tuple[DisturbanceTable, ...] = ()
+    description: str = ""
 
     @property
     def people(self) -> dict[str, HumanTable]:

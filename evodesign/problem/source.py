@@ -6,41 +6,109 @@ Errors name file, key, what was wanted and what was found, so that a user can ac
 from __future__ import annotations
 
 import math
+import os
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 import msgspec
+import tomli_w
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.shipped import SHIPPED, problem_path
 from evodesign.records import ProblemSource
 
-__all__ = ["decode_toml", "read_source", "read_text"]
+__all__ = ["copy_source", "decode_toml", "read_source", "read_text", "source_of"]
 
 
-def read_source(path: Path, symmetry: str | None = None) -> ProblemSource:
+GIVEN = "the problem given"
+"""What messages call a problem that no file holds."""
+
+
+def read_source(problem: str | os.PathLike[str], symmetry: str | None = None) -> ProblemSource:
     """A problem file and every file it names, as text.
 
     Args:
-        path: of the problem file.
+        problem: path of the problem file, or name of a problem that comes with evodesign.
         symmetry: of postures, in place of the file's; None leaves it to the file.
     Raises:
         InputError: a file is missing or is not UTF-8 text, or the problem file does not decode.
     """
-    text = read_text(path, str(path), "")
-    tables = decode_toml(text, str(path), ProblemFile)
+    path = problem_path(problem)
+    return _source(read_text(path, str(path), ""), str(path), path.parent, symmetry)
+
+
+def source_of(
+    tables: Mapping[str, Any], folder: str | os.PathLike[str] = ".", symmetry: str | None = None
+) -> ProblemSource:
+    """The tables of a problem file, given as dictionaries, with every file they name.
+
+    Args:
+        tables: as in a problem file: `{"name": .., "robot": {"urdf": ..}, ..}`.
+        folder: from which the files are named; robots that come with evodesign are found from anywhere.
+        symmetry: as in `read_source`.
+    Raises:
+        InputError: as `read_source`; or a value that TOML does not have.
+    """
+    try:
+        text = tomli_w.dumps(msgspec.to_builtins(dict(tables), enc_hook=_plain))
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InputError(GIVEN, "", "values that TOML has", f"{error}") from error
+    return _source(text, GIVEN, Path(folder), symmetry)
+
+
+def _plain(value: Any) -> Any:
+    """A path as text, an array as a list, a NumPy number as one of Python."""
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a value of type {type(value).__name__}")
+
+
+def _source(text: str, source: str, folder: Path, symmetry: str | None) -> ProblemSource:
+    tables = decode_toml(text, source, ProblemFile)
     named = {
         "robot.urdf": tables.robot.urdf,
         **{f"{key}.urdf": table.urdf for key, table in tables.people.items()},
         "search.start": tables.search.start,
     }
     files = {
-        name: read_text(path.parent / name, str(path), key) for key, name in named.items() if name is not None
+        name: read_text(_named(folder, name), source, key) for key, name in named.items() if name is not None
     }
-    return ProblemSource(path=str(path), text=text, files=files, symmetry=symmetry)
+    return ProblemSource(path=source, text=text, files=files, symmetry=symmetry)
+
+
+def _named(folder: Path, name: str) -> Path:
+    """A file that a problem names: from its folder, or else one of those that come with evodesign."""
+    path = folder / name
+    shipped = SHIPPED / name
+    return shipped if not path.exists() and shipped.is_file() else path
+
+
+def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
+    """Write a problem and the files that it names side by side into a new folder.
+
+    Returns:
+        The files, that of the problem first; its keys name the others where they are now.
+    Raises:
+        InputError: the folder cannot be made, or is there already.
+    """
+    problem = folder / Path(source.path).name
+    text, files = source.text, {}
+    for name, content in source.files.items():
+        files[folder / Path(name).name] = content
+        text = text.replace(f'"{name}"', f'"{Path(name).name}"')
+    try:
+        folder.mkdir(parents=True)
+        for path, content in {problem: text, **files}.items():
+            path.write_text(content, encoding="utf-8")
+    except OSError as error:
+        raise InputError("--to", "", "a new folder", f"'{folder}' ({error.strerror})") from error
+    return problem, *files
 
 
 def read_text(path: Path, source: str, key: str) -> str:

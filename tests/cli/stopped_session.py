@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from evodesign.cli.stopping import Stop
+from evodesign.cli.stopping import SignalledStop
 from evodesign.errors import Interrupted
 from evodesign.evolve import start
 from evodesign.pool.registry import make_pool
@@ -19,7 +19,7 @@ from tests.faults.synthetic import Synthetic, synthetic_header
 def main() -> int:
     directory, seconds, grace, hours = sys.argv[1:]
     header = synthetic_header(budget=40, seed=1, population=20)
-    stop = Stop(float(hours) or None, float(grace))
+    stop = SignalledStop(float(hours) or None, float(grace))
     with make_pool("joblib", 2) as pool:
         try:
             with stop.heeded():

@@ -15,10 +15,9 @@ from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
 from evodesign.cli.output import figure, heading, shown, visible
 from evodesign.cli.tables.table import designs_table, names, numbers
-from evodesign.records import Generation
 from evodesign.report.live.state import MOST_KNEES, LiveState, word
 
-__all__ = ["generation_line", "screen", "sparkline"]
+__all__ = ["screen", "sparkline"]
 
 BARS = "▁▂▃▄▅▆▇█"
 SPARKS = 40
@@ -56,16 +55,6 @@ def _bar(done: int, budget: int) -> Table:
     line = Table.grid(expand=True)
     line.add_row(ProgressBar(total=max(budget, 1), completed=done))
     return line
-
-
-def generation_line(generation: Generation, budget: int) -> str:
-    """One generation of a search with a budget as a line of text."""
-    best = " ".join(f"{visible(name)} {figure(value)}" for name, value in generation.best.items())
-    return (
-        f"generation {generation.number}: {generation.evaluations}/{budget} evaluations, "
-        f"feasible {generation.feasible_share:.0%}, hypervolume {figure(generation.hypervolume)}, "
-        f"best {best or '-'}"
-    )
 
 
 def sparkline(values: Sequence[float], ends: tuple[float, float] | None = None) -> str:

@@ -17,15 +17,18 @@ import msgspec
 from evodesign.errors import InputError, ModelError, on_one_line
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT
+from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.records import Objective, materials_of
 from evodesign.report.export.design import ExportedDesign, design_json, postures_csv, wrenches_csv
+from evodesign.report.opened_design import open_design
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
 from evodesign.report.replay.recording import SECONDS_PER_CASE, several, time_scale, timed, write_replay
+from evodesign.runlog.run import RunLog
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["FILES", "Exported", "export_design", "readme_text", "refuse_full"]
+__all__ = ["FILES", "Exported", "export_design", "export_logged", "readme_text", "refuse_full"]
 
 FILES: Final[Mapping[str, str]] = {
     "robot.urdf": """\
@@ -183,6 +186,27 @@ def refuse_full(directory: Path) -> None:
             raise InputError("--to", "", wanted, f"'{directory}', which holds files")
     except OSError as error:
         raise InputError("--to", "", wanted, f"'{directory}' ({error.strerror})") from error
+
+
+def export_logged(
+    run: RunLog, number: int, directory: Path, jobs: int = 1, progress: PrecomputeProgress = SILENT
+) -> Exported:
+    """Write the folder of a design of a run; one without logged postures is solved anew.
+
+    Args:
+        run: that holds it.
+        number: of the evaluation.
+        directory: a new or empty folder.
+        jobs: that may work out what a solve needs first.
+        progress: is shown what is worked out.
+    Raises:
+        RunError: the run holds no evaluation yet.
+        InputError: it holds none of that number; or as `export_design`.
+    """
+    opened = open_design(run, number, jobs, progress)
+    name = run.directory.resolve().name
+    design = ExportedDesign(name, run.header, opened.evaluation, opened.scene_set(), opened.cases)
+    return export_design(design, directory, on_front=opened.on_front)
 
 
 def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) -> Exported:

@@ -1,0 +1,248 @@
+"""Sessions of a search: a run is begun, or gone on with. The command line and Python both do it here."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+
+from evodesign import evolve
+from evodesign.errors import InputError, Interrupted, ResumeMismatch
+from evodesign.pool.base import Pool
+from evodesign.pool.registry import make_pool
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.evaluate import AssessmentFactory
+from evodesign.problem.factory import Remembering, evaluation_factory
+from evodesign.problem.notes import notes
+from evodesign.problem.source import read_source
+from evodesign.records import ProblemSource, RunHeader, SearchSettings
+from evodesign.runlog.directory import name_in_path, refuse_run, segments
+from evodesign.runlog.header import header_of, renewed, source_differences, version_differences, versions
+from evodesign.runlog.run import RunLog, read_run
+from evodesign.search.registry import make_asynchronous_search, make_search
+from evodesign.session import Display, Evaluate
+
+__all__ = ["Budgets", "Deadline", "Stop", "Workers", "begin", "new_directory", "proceed"]
+
+SECONDS_PER_HOUR = 3600.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Budgets:
+    """When a search ends, where not as the problem or the log says.
+
+    Args:
+        evaluations: of the run in total.
+        hours: wall time of this session; 0 for no limit.
+        stagnation_generations: in which the hypervolume may stand still; 0 for any number.
+    """
+
+    evaluations: int | None = None
+    hours: float | None = None
+    stagnation_generations: int | None = None
+
+    def of(self, header: RunHeader) -> RunHeader:
+        """A header with these budgets."""
+        hours = header.hours if self.hours is None else self.hours
+        stagnation = self.stagnation_generations
+        return msgspec.structs.replace(
+            header,
+            budget=header.budget if self.evaluations is None else self.evaluations,
+            hours=hours or None,
+            stagnation_generations=header.stagnation_generations if stagnation is None else stagnation,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Workers:
+    """Where evaluations run.
+
+    Args:
+        jobs: evaluations at the same time.
+        pool: serial, joblib or dask.
+        scheduler: address of a Dask scheduler.
+        cache: whether designs that were evaluated before are looked up, and new ones kept.
+    """
+
+    jobs: int = 1
+    pool: str = "joblib"
+    scheduler: str | None = None
+    cache: bool = False
+
+
+class Stop(Protocol):
+    """Asked by the loop whether a session is to stop."""
+
+    @property
+    def why(self) -> str:
+        """What used up the session, as a clause; empty when a person stopped it."""
+
+    def __call__(self) -> bool:
+        """Whether no further evaluation is to begin."""
+
+    def heeded(self) -> AbstractContextManager[None]:
+        """Within this, the loop asks."""
+
+
+class Deadline:
+    """A stop at the end of a session's wall time, and at no other request than Ctrl-C.
+
+    Args:
+        hours: from now on; None for no end.
+    """
+
+    def __init__(self, hours: float | None) -> None:
+        self._hours = hours
+        self._end = None if hours is None else time.monotonic() + hours * SECONDS_PER_HOUR
+
+    def __call__(self) -> bool:
+        """Whether the time is over."""
+        return self._end is not None and time.monotonic() > self._end
+
+    @property
+    def why(self) -> str:
+        """As in `Stop`."""
+        return f"its wall time of {self._hours:g} h is over" if self() else ""
+
+    def heeded(self) -> AbstractContextManager[None]:
+        """Nothing breaks in, so there is nothing to hold off."""
+        return nullcontext()
+
+
+def new_directory(name: str) -> Path:
+    """Where a new run of a name lies, unless somebody says."""
+    return Path("runs") / f"{name_in_path(name)}-{datetime.now():%Y%m%d-%H%M%S}"
+
+
+def begin(
+    problem: DesignProblem,
+    directory: Path,
+    settings: SearchSettings,
+    budgets: Budgets,
+    workers: Workers,
+    display: Display,
+    make_stop: Callable[[float | None], Stop] = Deadline,
+) -> RunLog:
+    """Begin a run and use up its budget.
+
+    Args:
+        problem: whose designs are searched.
+        directory: of the new run.
+        settings: of the search.
+        budgets: beside those of the problem.
+        workers: where evaluations run.
+        display: shows the session.
+        make_stop: makes the stop of a session of so many hours.
+    Raises:
+        InputError: settings that no search can use, or a pool that there is not.
+        RunError: the directory holds a run already, or cannot be written.
+        Interrupted: stopped; what had arrived is logged.
+    """
+    for note in notes(problem):
+        display.note(note)
+    table = problem.search
+    header = msgspec.structs.replace(
+        header_of(problem, settings, table.evaluations),
+        hours=table.hours,
+        stagnation_generations=table.stagnation_generations,
+    )
+    header = budgets.of(header)
+    refuse_run(directory)  # before anything takes time; the search's settings too
+    (make_asynchronous_search if settings.asynchronous else make_search)(settings)
+    stop = make_stop(header.hours)
+    with _resumable(directory, stop), make_pool(workers.pool, workers.jobs, workers.scheduler) as pool:
+        factory = _factory(header, pool, workers, display)
+        with display.search() as observer, stop.heeded():
+            return evolve.start(directory, header, factory, pool, observer, stop=stop)
+
+
+def proceed(
+    directory: Path,
+    budgets: Budgets,
+    workers: Workers,
+    display: Display,
+    make_stop: Callable[[float | None], Stop] = Deadline,
+    *,
+    accept_versions: bool = False,
+) -> RunLog:
+    """Go on with a run that was stopped or killed, or give a finished one a larger budget.
+
+    Args:
+        directory: of the run.
+        budgets: beside those of the log.
+        workers: as in `begin`.
+        display: as in `begin`.
+        make_stop: as in `begin`.
+        accept_versions: go on although packages that decide results have other versions.
+    Raises:
+        RunError: not a run, another process is writing it, or packages have other versions.
+        ResumeMismatch: the log holds a genome that the rebuilt search does not ask for.
+        Interrupted: as in `begin`.
+    """
+
+    def renew(header: RunHeader) -> RunHeader:
+        new, remarks = renewed(header, directory, accept_versions)
+        for remark in remarks:
+            display.note(remark)
+        return budgets.of(new)
+
+    logged = read_run(directory).header
+    _note_changed_problem(logged.problem, display)
+    stop = make_stop(budgets.of(logged).hours)
+    with (
+        _resumable(directory, stop),
+        make_pool(workers.pool, workers.jobs, workers.scheduler) as pool,
+        display.search() as observer,
+        stop.heeded(),
+    ):
+        factory_of = partial(_factory, pool=pool, workers=workers, display=display)
+        try:
+            return evolve.resume(
+                directory, factory_of, pool, observer, budgets.evaluations, stop=stop, renew=renew
+            )
+        except ResumeMismatch as mismatch:
+            raise _explained(mismatch, logged) from mismatch
+
+
+def _factory(header: RunHeader, pool: Pool, workers: Workers, display: Display) -> Evaluate:
+    """The evaluation of a header's problem; the pool works out what is missing for it."""
+    with display.precompute() as progress:
+        factory = evaluation_factory(header, pool, progress)
+    if workers.cache and isinstance(factory, AssessmentFactory):  # a start is no design to know again
+        return Remembering(factory)
+    return factory
+
+
+@contextmanager
+def _resumable(directory: Path, stop: Stop) -> Iterator[None]:
+    """Turn a stop into an error that says how to go on, also one before or after the loop itself."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        hint = f"; go on with: evodesign resume {directory}" if segments(directory) else ""
+        raise Interrupted(f"stopped{hint}") from None
+    except Interrupted as interrupted:
+        raise Interrupted(f"{stop.why}: {interrupted}" if stop.why else f"{interrupted}") from None
+
+
+def _note_changed_problem(source: ProblemSource, display: Display) -> None:
+    """Say so if the files that a run was started with hold something else now."""
+    try:
+        now = read_source(source.path, source.symmetry)
+    except InputError:
+        return  # moved, gone or never a file: the run has its own copy
+    if differing := source_differences(source, now):
+        display.note(f"since the run began, {'; '.join(differing)}; it goes on with its own copy")
+
+
+def _explained(mismatch: ResumeMismatch, header: RunHeader) -> ResumeMismatch:
+    """The mismatch with the versions that may have caused it."""
+    differing = version_differences(header.versions, versions())
+    return ResumeMismatch(f"{mismatch}; the log is of {', '.join(differing)}") if differing else mismatch
