@@ -9,7 +9,7 @@ RUN ?=
 JOBS ?= 2
 PYTEST := $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 QUICK := tests/analysis tests/body tests/conformance/test_searches.py tests/design tests/golden tests/human tests/runlog \
-	tests/search tests/test_evolve.py tests/tree
+	tests/searches tests/test_evolve.py tests/tree
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 export OMP_NUM_THREADS = 1

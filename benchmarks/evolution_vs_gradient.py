@@ -42,9 +42,9 @@ from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Evaluation, Genome, Objective, SearchSettings, Sense, Status
-from evodesign.search.base import JOINT_STARTS, Outcome
-from evodesign.search.cma_instances import default_population
-from evodesign.search.registry import make_search
+from evodesign.searches.base import JOINT_STARTS, Outcome
+from evodesign.searches.cma_instances import default_population
+from evodesign.searches.registry import make_search
 
 HERE = Path(__file__).parent
 PROBLEM = HERE.parent / "problems" / "sartore2022.toml"

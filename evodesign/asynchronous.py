@@ -14,7 +14,7 @@ from contextlib import closing
 from evodesign.analysis.run_state import RunState, stagnant
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.records import Evaluation, Genome, Turn
-from evodesign.search.base import AsynchronousSearch
+from evodesign.searches.base import AsynchronousSearch
 from evodesign.session import Session, conclude, evaluation_outcome, remember, search_outcome
 
 __all__ = ["evolve_asynchronously"]

@@ -35,8 +35,8 @@ from evodesign.runlog.directory import locked, make_directory, run_segments
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.session_log import Observer, SessionLog, Silent
 from evodesign.runlog.writer import RunWriter
-from evodesign.search import registry
-from evodesign.search.base import Search
+from evodesign.searches import registry
+from evodesign.searches.base import Search
 from evodesign.session import Evaluate, Session, conclude, evaluation_outcome, remember, search_outcome
 
 __all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]

@@ -33,8 +33,8 @@ from evodesign.report.reproduction import Found, Published, ReproducedRobot, Rep
 from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
-from evodesign.search.base import JOINT_STARTS
-from evodesign.search.registry import make_search
+from evodesign.searches.base import JOINT_STARTS
+from evodesign.searches.registry import make_search
 from evodesign.session import Display
 
 __all__ = [

@@ -33,7 +33,7 @@ from evodesign.records import (
     design_of,
 )
 from evodesign.runlog.session_log import Observer, SessionLog
-from evodesign.search.base import Outcome
+from evodesign.searches.base import Outcome
 
 __all__ = [
     "Display",

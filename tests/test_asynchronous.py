@@ -19,7 +19,7 @@ from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Turn
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.search.registry import ASYNCHRONOUS_SEARCHES
+from evodesign.searches.registry import ASYNCHRONOUS_SEARCHES
 from tests.pool.faulty import Slow
 from tests.runlog.toys import ToyTask, essence, toy_assessment, toy_header
 

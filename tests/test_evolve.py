@@ -24,7 +24,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Status
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
-from evodesign.search.registry import SEARCHES
+from evodesign.searches.registry import SEARCHES
 from tests.runlog.toys import (
     OrderedPool,
     ToySearch,

@@ -185,7 +185,7 @@ def test_any_changed_line_below_is_another_code_and_none_beside(tmp_path: Path) 
         assert closure.digest() != before, name
         path.write_bytes(content)
     beside = {path.relative_to(package).as_posix() for path in package.rglob("*.*")} - closure.files.keys()
-    assert {"cli/main.py", "report/page/content.py", "search/nsga2.py", "evolve.py"} <= beside
+    assert {"cli/main.py", "report/page/content.py", "searches/nsga2.py", "evolve.py"} <= beside
     for name in beside:
         (package / name).write_bytes(b"\n")
     assert import_closure(package, *EVALUATING).digest() == before

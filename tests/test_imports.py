@@ -19,7 +19,7 @@ HEAVY = ("casadi", "pinocchio")
         "evodesign.analysis.hypervolume",
         "evodesign.runlog.run",
         "evodesign.runlog.writer",
-        "evodesign.search.registry",
+        "evodesign.searches.registry",
         "evodesign.pool.registry",
         "evodesign.evolve",
         "evodesign.report.front_figure",

@@ -19,8 +19,8 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import QUANTITIES, CaseQuantity
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Genome, SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.registry import SEARCHES, make_search
+from evodesign.searches.base import Outcome
+from evodesign.searches.registry import SEARCHES, make_search
 
 
 def foot_force(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
@@ -28,6 +28,7 @@ def foot_force(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return max(float(postures[ROBOT].foot_wrenches[side][2]) for side in SIDES)
 
 
+@pytest.mark.slow
 def test_an_objective(problem: DesignProblem, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(QUANTITIES, "foot_force", CaseQuantity("N", foot_force))
     text = problem.source.text.replace('"human_torque"', '"foot_force", "worst_foot_force", "q50_foot_force"')

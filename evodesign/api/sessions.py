@@ -26,7 +26,7 @@ from evodesign.records import ProblemSource, RunHeader, SearchSettings
 from evodesign.runlog.directory import name_in_path, refuse_run, segments
 from evodesign.runlog.header import header_of, renewed, source_differences, version_differences, versions
 from evodesign.runlog.run import RunLog, read_run
-from evodesign.search.registry import make_asynchronous_search, make_search
+from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.session import Display, Evaluate
 
 __all__ = ["Budgets", "Deadline", "Stop", "Workers", "begin", "new_directory", "proceed"]

@@ -35,7 +35,7 @@ def baseline(
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source
     from evodesign.runlog.run import read_run
-    from evodesign.search.base import JOINT_STARTS
+    from evodesign.searches.base import JOINT_STARTS
 
     built = build_problem(read_source(problem))
     refuse_unsuited(built)

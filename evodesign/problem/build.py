@@ -38,7 +38,7 @@ from evodesign.problem.loads import payloads, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
 from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, SearchSettings, Sense, Task
-from evodesign.search.base import JOINT_STARTS
+from evodesign.searches.base import JOINT_STARTS
 from evodesign.tree.model import Tree
 
 __all__ = ["DesignProblem", "build_problem"]

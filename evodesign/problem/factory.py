@@ -33,7 +33,7 @@ from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
 from evodesign.records import Assessed, Genome, ProblemSource, RunHeader, Status
-from evodesign.search.base import JOINT_STARTS
+from evodesign.searches.base import JOINT_STARTS
 
 __all__ = ["Remembering", "cached_precomputed", "evaluation_factory", "evaluator_of", "problem_digest"]
 

@@ -22,7 +22,7 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Assessment, Genome, Sense
-from evodesign.search.descent import Iterate, Slopes, descend
+from evodesign.searches.descent import Iterate, Slopes, descend
 
 __all__ = ["Aim", "Polished", "Step", "aim_of", "polish"]
 

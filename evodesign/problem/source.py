@@ -90,25 +90,27 @@ def _named(folder: Path, name: str) -> Path:
 
 
 def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
-    """Write a problem and the files that it names side by side into a new folder.
+    """Write a problem and the files that it names into a new folder.
 
     Returns:
         The files, that of the problem first; its keys name the others where they are now.
     Raises:
         InputError: the folder cannot be made, or is there already.
     """
-    problem = folder / Path(source.path).name
     text, files = source.text, {}
     for name, content in source.files.items():
-        files[folder / Path(name).name] = content
-        text = text.replace(f'"{name}"', f'"{Path(name).name}"')
+        inside = Path(*(part for part in Path(name).parts if part not in ("..", Path(name).anchor)))
+        files[folder / inside] = content
+        text = text.replace(f'"{name}"', f'"{inside.as_posix()}"')
+    files = {folder / Path(source.path).name: text, **files}
     try:
         folder.mkdir(parents=True)
-        for path, content in {problem: text, **files}.items():
+        for path, content in files.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(content, encoding="utf-8")
     except OSError as error:
         raise InputError("--to", "", "a new folder", f"'{folder}' ({error.strerror})") from error
-    return problem, *files
+    return tuple(files)
 
 
 def read_text(path: Path, source: str, key: str) -> str:

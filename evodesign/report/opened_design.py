@@ -13,7 +13,7 @@ from evodesign.mechanics.scene import HUMAN
 from evodesign.records import CaseDetail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
-from evodesign.search.base import JOINT_STARTS
+from evodesign.searches.base import JOINT_STARTS
 
 if TYPE_CHECKING:
     from evodesign.mechanics.scene import Agent

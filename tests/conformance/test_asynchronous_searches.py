@@ -9,8 +9,8 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings
-from evodesign.search.base import JOINT_STARTS, Outcome
-from evodesign.search.registry import ASYNCHRONOUS_SEARCHES, SEARCHES, make_asynchronous_search, make_search
+from evodesign.searches.base import JOINT_STARTS, Outcome
+from evodesign.searches.registry import ASYNCHRONOUS_SEARCHES, SEARCHES, make_asynchronous_search, make_search
 
 ALGORITHMS = sorted(ASYNCHRONOUS_SEARCHES)
 LEARNING = sorted(set(ASYNCHRONOUS_SEARCHES) - {"random"})

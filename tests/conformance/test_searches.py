@@ -10,8 +10,8 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings, SearchStage
-from evodesign.search.base import JOINT_STARTS, Outcome
-from evodesign.search.registry import SEARCHES, make_search
+from evodesign.searches.base import JOINT_STARTS, Outcome
+from evodesign.searches.registry import SEARCHES, make_search
 
 ALGORITHMS = sorted(SEARCHES)
 LEARNING = sorted(set(SEARCHES) - {"random", JOINT_STARTS})
@@ -112,8 +112,8 @@ class TestEverySearch:
         script = (
             "import json\n"
             "from evodesign.records import SearchSettings\n"
-            "from evodesign.search.base import JOINT_STARTS, Outcome\n"
-            "from evodesign.search.registry import make_search\n"
+            "from evodesign.searches.base import JOINT_STARTS, Outcome\n"
+            "from evodesign.searches.registry import make_search\n"
             f"search = make_search(SearchSettings(algorithm={algorithm!r}, dimension=5, objectives=1,\n"
             "    population=12, seed=1))\n"
             "asked = []\n"

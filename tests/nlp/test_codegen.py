@@ -136,6 +136,7 @@ def test_library_holds_the_exact_derivatives(cache: Cache, compiler: Compiler) -
 
 @pytest.mark.needs_compiler
 @pytest.mark.usefixtures("home")
+@pytest.mark.slow
 def test_compiled_reach_of_the_default_problem_is_the_same(problem: DesignProblem) -> None:
     """One real compilation: about six seconds."""
     reaches = [

@@ -81,6 +81,7 @@ class Trouble(Silent):
                 cluster.add_worker("--no-nanny")
 
 
+@pytest.mark.slow
 def test_workers_and_a_scheduler_that_come_and_go_change_nothing(tmp_path: Path) -> None:
     header = header_of("nsga2", population=24, budget=120)
     alone = start(tmp_path / "alone", header, Slow(header.parameters, 0.0), SerialPool(), Silent())

@@ -18,8 +18,8 @@ from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import FORMAT_VERSION, ProblemSource, RunHeader, Status
 from evodesign.runlog.run import RunLog
-from evodesign.search.base import JOINT_STARTS
-from evodesign.search.registry import make_search
+from evodesign.searches.base import JOINT_STARTS
+from evodesign.searches.registry import make_search
 
 
 @pytest.fixture(scope="module")

@@ -121,7 +121,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         ("identity.py", True),
         ("cli/main.py", False),
         ("report/page/content.py", False),
-        ("search/nsga2.py", False),
+        ("searches/nsga2.py", False),
     ],
 )
 def test_what_other_code_found_is_not_given_back(

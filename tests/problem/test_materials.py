@@ -15,8 +15,8 @@ from evodesign.problem.designs import designs_text, read_designs, start_genomes
 from evodesign.problem.model_json import model_json
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, design_of, materials_of
-from evodesign.search.base import JOINT_STARTS
-from evodesign.search.registry import make_search
+from evodesign.searches.base import JOINT_STARTS
+from evodesign.searches.registry import make_search
 from tests.fuzz.test_fuzz_inputs import POPULATION, PROBLEM, TEXTS
 
 BOUNDS = "lower_kg_per_m3 = 500.0\nupper_kg_per_m3 = 4000.0\n"

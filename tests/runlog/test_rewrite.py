@@ -16,7 +16,7 @@ from evodesign.records import RunHeader
 from evodesign.runlog.directory import locked
 from evodesign.runlog.rewrite import begin_branch, merge, recover
 from evodesign.runlog.run import RunLog, digest, read_run
-from evodesign.search.registry import make_search
+from evodesign.searches.registry import make_search
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence, shuffled
 

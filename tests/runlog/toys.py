@@ -37,7 +37,7 @@ from evodesign.records import (
     design_of,
 )
 from evodesign.runlog.run import RunLog
-from evodesign.search.base import Outcome
+from evodesign.searches.base import Outcome
 
 OBJECTIVES = (
     Objective(name="robot_torque", sense=Sense.MINIMISE, unit="N m"),

@@ -15,9 +15,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from evodesign.records import Genome, SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.discrete import snapped
-from evodesign.search.ranking import check_outcomes
+from evodesign.searches.base import Outcome
+from evodesign.searches.discrete import snapped
+from evodesign.searches.ranking import check_outcomes
 
 __all__ = [
     "AsynchronousRandom",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evodesign.search.descent import Descent, DescentProblem, Iterate, Slopes, descend
+from evodesign.searches.descent import Descent, DescentProblem, Iterate, Slopes, descend
 
 Array = NDArray[np.float64]
 

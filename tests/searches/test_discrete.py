@@ -10,11 +10,11 @@ from pymoo.core.problem import Problem
 
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings, choice_at, middle_of
-from evodesign.search.base import Outcome
-from evodesign.search.discrete import least_deviations, snapped
-from evodesign.search.nsga2 import MixedCrossover, MixedMutation
-from evodesign.search.quasi_random import SobolStream
-from evodesign.search.registry import make_asynchronous_search, make_search
+from evodesign.searches.base import Outcome
+from evodesign.searches.discrete import least_deviations, snapped
+from evodesign.searches.nsga2 import MixedCrossover, MixedMutation
+from evodesign.searches.quasi_random import SobolStream
+from evodesign.searches.registry import make_asynchronous_search, make_search
 
 COUNTS = (0, 4, 3, 7)
 
@@ -164,7 +164,7 @@ def test_right_choices_are_found_where_random_sampling_finds_none(algorithm, see
 def stuck(monkeypatch):
     """Take from both searches what they do about choices beyond rounding and exchange."""
     monkeypatch.setattr(
-        "evodesign.search.cma_instances.least_deviations", lambda counts, _: [0.0] * len(counts)
+        "evodesign.searches.cma_instances.least_deviations", lambda counts, _: [0.0] * len(counts)
     )
     monkeypatch.setattr(MixedMutation, "_do", lambda self, problem, points, *_, **__: points)
 

@@ -5,9 +5,9 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings, SearchStage
-from evodesign.search.base import Outcome, Search
-from evodesign.search.registry import SEARCHES, make_search
-from evodesign.search.restarted import fittest
+from evodesign.searches.base import Outcome, Search
+from evodesign.searches.registry import SEARCHES, make_search
+from evodesign.searches.restarted import fittest
 
 
 def settings(

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.search.hypervolume_improvement import HypervolumeImprovement, local_upper_bounds
+from evodesign.searches.hypervolume_improvement import HypervolumeImprovement, local_upper_bounds
 
 SIDE = 4
 """The reference is (4, 4, 4); points have coordinates from 0 to 5, so that some lie beyond."""

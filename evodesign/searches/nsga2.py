@@ -36,10 +36,10 @@ from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
 from evodesign.records import Genome, SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.discrete import Array, snapped
-from evodesign.search.quasi_random import Beginning, SobolStream, first_generation, generator_of
-from evodesign.search.ranking import check_outcomes, with_outcomes
+from evodesign.searches.base import Outcome
+from evodesign.searches.discrete import Array, snapped
+from evodesign.searches.quasi_random import Beginning, SobolStream, first_generation, generator_of
+from evodesign.searches.ranking import check_outcomes, with_outcomes
 
 __all__ = ["AsynchronousNsga2", "MixedCrossover", "MixedMutation", "Nsga2"]
 

@@ -6,7 +6,7 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings
-from evodesign.search.registry import SEARCHES, make_search
+from evodesign.searches.registry import SEARCHES, make_search
 
 
 def settings(**changes):
@@ -48,7 +48,7 @@ def test_settings_that_no_search_can_use_are_refused(changes, message):
 def test_a_search_is_used_without_robots():
     script = (
         "import sys\n"
-        "import evodesign.search.registry\n"
+        "import evodesign.searches.registry\n"
         "print([name for name in ('casadi', 'pinocchio') if name in sys.modules])\n"
     )
     done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)

@@ -9,9 +9,9 @@ from scipy.optimize import minimize
 
 from evodesign.errors import InputError
 from evodesign.records import SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.cma_es import CmaEs
-from evodesign.search.cma_instances import MARGIN, default_population, improvement_cost
+from evodesign.searches.base import Outcome
+from evodesign.searches.cma_es import CmaEs
+from evodesign.searches.cma_instances import MARGIN, default_population, improvement_cost
 
 FAILED = Outcome(None, None)
 

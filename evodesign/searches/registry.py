@@ -12,22 +12,22 @@ from typing import Any, Final
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SearchSettings, choice_at, middle_of
-from evodesign.search.base import JOINT_STARTS, AsynchronousSearch, Search
-from evodesign.search.restarted import Restarted
+from evodesign.searches.base import JOINT_STARTS, AsynchronousSearch, Search
+from evodesign.searches.restarted import Restarted
 
 __all__ = ["ASYNCHRONOUS_SEARCHES", "SEARCHES", "make_asynchronous_search", "make_search"]
 
 SEARCHES: Final[Mapping[str, str]] = {
-    "cma-es": "evodesign.search.cma_es:CmaEs",
-    JOINT_STARTS: "evodesign.search.quasi_random:QuasiRandom",
-    "nsga2": "evodesign.search.nsga2:Nsga2",
-    "random": "evodesign.search.quasi_random:QuasiRandom",
+    "cma-es": "evodesign.searches.cma_es:CmaEs",
+    JOINT_STARTS: "evodesign.searches.quasi_random:QuasiRandom",
+    "nsga2": "evodesign.searches.nsga2:Nsga2",
+    "random": "evodesign.searches.quasi_random:QuasiRandom",
 }
 
 ASYNCHRONOUS_SEARCHES: Final[Mapping[str, str]] = {
-    "cma-es": "evodesign.search.cma_es:AsynchronousCmaEs",
-    "nsga2": "evodesign.search.nsga2:AsynchronousNsga2",
-    "random": "evodesign.search.quasi_random:AsynchronousRandom",
+    "cma-es": "evodesign.searches.cma_es:AsynchronousCmaEs",
+    "nsga2": "evodesign.searches.nsga2:AsynchronousNsga2",
+    "random": "evodesign.searches.quasi_random:AsynchronousRandom",
 }
 """The same without generations."""
 

@@ -18,8 +18,8 @@ from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
 
 from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings
-from evodesign.search.base import Outcome, Search
-from evodesign.search.ranking import with_outcomes
+from evodesign.searches.base import Outcome, Search
+from evodesign.searches.ranking import with_outcomes
 
 __all__ = ["Restarted", "fittest"]
 

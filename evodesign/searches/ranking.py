@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from evodesign.records import Genome
-from evodesign.search.base import Outcome
+from evodesign.searches.base import Outcome
 
 __all__ = ["check_outcomes", "infeasibility", "ranks", "usable", "with_outcomes"]
 

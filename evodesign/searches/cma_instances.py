@@ -32,11 +32,11 @@ from cma.recombination_weights import RecombinationWeights
 
 from evodesign.errors import InputError
 from evodesign.records import Genome, SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.discrete import Array, least_deviations
-from evodesign.search.hypervolume_improvement import HypervolumeImprovement
-from evodesign.search.quasi_random import SobolStream
-from evodesign.search.ranking import ranks, usable
+from evodesign.searches.base import Outcome
+from evodesign.searches.discrete import Array, least_deviations
+from evodesign.searches.hypervolume_improvement import HypervolumeImprovement
+from evodesign.searches.quasi_random import SobolStream
+from evodesign.searches.ranking import ranks, usable
 
 __all__ = ["Instances", "check_settings", "default_population", "improvement_cost", "instance_count"]
 

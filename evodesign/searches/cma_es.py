@@ -22,11 +22,11 @@ import cma
 import numpy as np
 
 from evodesign.records import Genome, SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.cma_instances import Instances, check_settings, instance_count
-from evodesign.search.discrete import Array, snapped
-from evodesign.search.quasi_random import Beginning, SobolStream, first_generation, generator_of
-from evodesign.search.ranking import check_outcomes
+from evodesign.searches.base import Outcome
+from evodesign.searches.cma_instances import Instances, check_settings, instance_count
+from evodesign.searches.discrete import Array, snapped
+from evodesign.searches.quasi_random import Beginning, SobolStream, first_generation, generator_of
+from evodesign.searches.ranking import check_outcomes
 
 __all__ = ["AsynchronousCmaEs", "CmaEs"]
 

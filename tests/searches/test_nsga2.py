@@ -2,8 +2,8 @@ import numpy as np
 from pymoo.core.population import Population
 
 from evodesign.records import SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.nsga2 import Nsga2
+from evodesign.searches.base import Outcome
+from evodesign.searches.nsga2 import Nsga2
 
 FAILED = Outcome(None, None)
 

@@ -2,8 +2,8 @@ import numpy as np
 from scipy.stats import qmc
 
 from evodesign.records import SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.quasi_random import QuasiRandom, SobolPoints, SobolStream
+from evodesign.searches.base import Outcome
+from evodesign.searches.quasi_random import QuasiRandom, SobolPoints, SobolStream
 
 
 def test_the_stream_does_not_depend_on_how_it_is_taken():

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.search.base import Outcome
-from evodesign.search.ranking import check_outcomes, infeasibility, ranks, usable
+from evodesign.searches.base import Outcome
+from evodesign.searches.ranking import check_outcomes, infeasibility, ranks, usable
 
 BEST = Outcome((1.0,), 0.0)
 GOOD = Outcome((5.0,), 0.0)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from evodesign.records import SearchSettings
-from evodesign.search.base import Outcome
-from evodesign.search.registry import make_search
+from evodesign.searches.base import Outcome
+from evodesign.searches.registry import make_search
 
 DIMENSION = 16
 POPULATION = 48

@@ -1,0 +1,70 @@
+"""The stop button of a real notebook kernel, pressed during a search with workers."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jupyter_client.blocking.client import BlockingKernelClient
+from jupyter_client.kernelspec import KernelSpec
+from jupyter_client.manager import KernelManager
+
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.runlog.run import read_run
+
+
+class ThisPython(KernelManager):
+    @property
+    def kernel_spec(self) -> KernelSpec:
+        command = [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}"]
+        return KernelSpec(argv=command, display_name="tests", language="python")
+
+
+@pytest.fixture
+def kernel(known: Precomputed) -> Iterator[tuple[ThisPython, BlockingKernelClient]]:
+    assert known.values, "worked out before, so that no search has to"
+    manager = ThisPython()
+    manager.start_kernel()
+    client = manager.blocking_client()
+    client.start_channels()
+    client.wait_for_ready(timeout=60)
+    yield manager, client
+    client.stop_channels()
+    manager.shutdown_kernel(now=True)
+
+
+def reply(client: BlockingKernelClient, request: str) -> dict[str, Any]:
+    while True:
+        answer = client.get_shell_msg(timeout=120)
+        if answer["parent_header"].get("msg_id") == request:
+            return dict(answer["content"])
+
+
+@pytest.mark.slow
+def test_the_stop_button_leaves_a_run_that_the_next_cell_resumes(
+    kernel: tuple[ThisPython, BlockingKernelClient], tmp_path: Path
+) -> None:
+    manager, client = kernel
+    place = tmp_path / "run"
+    cell = (
+        "import evodesign\n"
+        f"run = evodesign.search('icub-lifting', {str(place)!r}, population=4, evaluations=4000, jobs=2,\n"
+        "    callback=lambda event: print('one'))"
+    )
+    request = client.execute(cell)
+    while client.get_iopub_msg(timeout=120)["content"].get("text", "").strip() == "":
+        pass
+    manager.interrupt_kernel()
+    stopped = reply(client, request)
+    assert (stopped["status"], stopped["ename"]) == ("error", "Interrupted")
+    assert f"evodesign resume {place}" in stopped["evalue"]
+    known = len(read_run(place).evaluations)
+    assert 1 <= known < 400
+    resumed = reply(
+        client, client.execute(f"evodesign.resume({str(place)!r}, evaluations={known + 3}, jobs=2)")
+    )
+    assert resumed["status"] == "ok", resumed
+    assert len(read_run(place).evaluations) == known + 3
