@@ -44,14 +44,16 @@ def front(
             help="Only designs such as 'reach_height >= 1.5 and robot_torque@1.2 < 10'.",
         ),
     ] = None,
-    limit: Annotated[int | None, typer.Option(min=1, help="At most so many.", show_default="all")] = None,
+    limit: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="At most so many.", show_default="all")
+    ] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV instead of tables.")] = False,
     json: Json = False,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write a figure of the front (HTML).")
     ] = None,
 ) -> None:
-    """The designs of a run that no other design beats in every objective, or a choice of them."""
+    """The Pareto front of a run, or a choice of its designs."""
     from evodesign.cli.output import show_notes, write_text
     from evodesign.runlog.run import read_run
 

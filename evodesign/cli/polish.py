@@ -31,10 +31,10 @@ def polish(
             metavar="NAME=NUMBER,...", help="Several objectives, weighted relative to their values."
         ),
     ] = None,
-    evaluations: Annotated[int, typer.Option(min=2, help="Designs that may be evaluated.")] = 60,
+    evaluations: Annotated[int, typer.Option(min=2, metavar="N", help="Designs that may be evaluated.")] = 60,
     to: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="New file of designs.", show_default="RUN/polished-DESIGN.toml"),
+        typer.Option(metavar="FILE", help="New file of designs.", show_default="in RUN"),
     ] = None,
     jobs: Jobs = CORES,
     json: Json = False,

@@ -5,17 +5,15 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterator
 
-from rich.table import Table
-
 from evodesign.analysis.comparison import Comparison, best_designs
 from evodesign.analysis.comparison_json import hypervolume_summary
 from evodesign.cli.output import figure, heading, shown
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 
 __all__ = ["comparison_tables", "lines_after", "lines_before"]
 
 
-def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
+def comparison_tables(comparison: Comparison) -> tuple[FittedTable, ...]:
     """Searches, runs, tests and best designs; those that would be empty are left out."""
     tables = [_searches(comparison), _runs(comparison)]
     if any(test.p is not None for test in comparison.tests):
@@ -48,7 +46,7 @@ def lines_after(comparison: Comparison) -> Iterator[str]:
         yield f"hypervolumes after {comparison.evaluations} evaluations, against {corner}"
 
 
-def _searches(comparison: Comparison) -> Table:
+def _searches(comparison: Comparison) -> FittedTable:
     measured = numbers("runs", "hypervolume, median", "least", "greatest", "median share of all")
     table = titled("Searches", [*names("search"), *measured])
     for name, members in comparison.searches.items():
@@ -63,7 +61,7 @@ def _searches(comparison: Comparison) -> Table:
     return table
 
 
-def _runs(comparison: Comparison) -> Table:
+def _runs(comparison: Comparison) -> FittedTable:
     best = [f"best {heading(objective)}" for objective in comparison.objectives]
     table = titled("Runs", [*names("run", "search"), *numbers("seed", "front", "hypervolume", *best)])
     for each in comparison.runs:
@@ -78,7 +76,7 @@ def _runs(comparison: Comparison) -> Table:
     return table
 
 
-def _tests(comparison: Comparison) -> Table:
+def _tests(comparison: Comparison) -> FittedTable:
     columns = [*names("between", "test"), *numbers("p", "first better"), *names("finding at 5 %")]
     table = titled("Rank tests of the hypervolumes", columns)
     for test in comparison.tests:
@@ -94,9 +92,9 @@ def _tests(comparison: Comparison) -> Table:
     return table
 
 
-def _best(comparison: Comparison) -> Table:
+def _best(comparison: Comparison) -> FittedTable:
     columns = [*names("", "run"), *numbers("design", *map(heading, comparison.objectives))]
-    table = titled("Best designs of all runs", columns)
+    table = titled("Best designs of all runs", columns, keys=3)
     for each in best_designs(comparison):
         values = each.evaluation.assessment.objectives
         table.add_row(

@@ -14,14 +14,14 @@ from rich.text import Text
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
 from evodesign.cli.output import figure, heading, shown, visible
-from evodesign.cli.tables.table import designs_table, names, numbers
+from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Generation
 from evodesign.report.live.state import MOST_KNEES, LiveState, word
 
 __all__ = ["generation_line", "screen", "sparkline"]
 
 BARS = "▁▂▃▄▅▆▇█"
-SPARKS = 40
+SPARKS = 30
 """Most signs of a sparkline."""
 
 
@@ -112,7 +112,7 @@ def _numbers(live_state: LiveState) -> Table:
     generations = live_state.generations
     volumes = [each.hypervolume for each in generations if each.hypervolume is not None]
     share = f"{live_state.feasible / live_state.done:.0%}" if live_state.done else "-"
-    columns = (*names(""), *numbers(""), Column(style="cyan", no_wrap=True))
+    columns = (Column(), Column(justify="right", no_wrap=True), Column(style="cyan", no_wrap=True))
     table = Table(*columns, box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_row("generations", str(len(generations)), "")
     table.add_row("feasible", share, sparkline([each.feasible_share for each in generations], (0.0, 1.0)))
@@ -127,7 +127,7 @@ def _numbers(live_state: LiveState) -> Table:
     return table
 
 
-def _knees(live_state: LiveState) -> Table:
+def _knees(live_state: LiveState) -> FittedTable:
     found = knees(live_state.header.objectives, live_state.front)
     title = f"Knees of the front, {len(found[:MOST_KNEES])} of {len(found)}"
     return designs_table(title, live_state.header.objectives, found[:MOST_KNEES])

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from rich.markup import escape
-from rich.table import Table
 
 from evodesign.cli.output import figure, heading
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.polish import Aim, Polished
 from evodesign.runlog.run import RunLog
@@ -17,7 +16,7 @@ from evodesign.runlog.run import RunLog
 __all__ = ["polish_json", "polish_tables"]
 
 
-def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[Table, Table]:
+def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[FittedTable, FittedTable]:
     """Objectives and changed parameters before and after."""
     columns = [*names("objective"), *numbers("before", "after", "change")]
     objectives = titled(f"{problem.name}: design {number}", columns)

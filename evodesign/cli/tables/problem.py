@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from evodesign.cli.output import figure, shown, visible
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.model_json import model_json
@@ -22,7 +22,7 @@ CAPTION = (
 )
 
 
-def model_tables(problem: DesignProblem) -> tuple[Table, ...]:
+def model_tables(problem: DesignProblem) -> tuple[FittedTable | Table, ...]:
     """What was understood, for a person: agents, task, the robot's links, and the parameters."""
     shown = model_json(problem)
     return (
@@ -34,7 +34,7 @@ def model_tables(problem: DesignProblem) -> tuple[Table, ...]:
     )
 
 
-def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
+def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> FittedTable:
     """Robot and people; of several people, also who each is and how tall."""
     several = any("who" in agent for agent in agents)
     who = names("agent", *(("person",) if several else ()), "model")
@@ -82,19 +82,19 @@ def _disturbance_text(disturbance: dict[str, Any]) -> str:
     return f"{disturbance['name']}: {', '.join(parts) or 'nothing changes'}"
 
 
-def _links_table(links: Iterable[dict[str, Any]]) -> Table:
+def _links_table(links: Iterable[dict[str, Any]]) -> FittedTable:
     """Every link that has mass; the frames without are named below."""
     frames = [link["link"] for link in links if link["kind"] == "frame"]
-    caption = f"{CAPTION}\nwithout mass: {', '.join(frames)}" if frames else CAPTION
-    table = titled("links of the robot", names("link", "shape", "grows along", "density", "mass [kg]"))
-    table.caption, table.caption_justify = escape(caption), "left"
+    caption = f"{CAPTION}\nwithout mass: {visible(', '.join(frames))}" if frames else CAPTION
+    columns = names("link", "shape", "grows along", "density", "mass [kg]")
+    table = titled("links of the robot", columns, caption=caption)
     for link in links:
         if link["kind"] != "frame":
             _add_link(table, link)
     return table
 
 
-def _add_link(table: Table, link: dict[str, Any]) -> None:
+def _add_link(table: FittedTable, link: dict[str, Any]) -> None:
     """A link's rows, one for each solid."""
     figures = (figure(link["density_kg_per_m3"]), figure(link["mass_kg"]))
     for number, shape in enumerate(link["solids"] or [link["kind"]]):
@@ -102,7 +102,7 @@ def _add_link(table: Table, link: dict[str, Any]) -> None:
         table.add_row(escape(name), shape, escape(_growth(link, number)), density, mass)
 
 
-def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
+def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
     table = titled("parameters", names("parameter", "from", "to", "unit", "links"))
     for parameter in parameters:
         bounds = (figure(parameter["lower"]), figure(parameter["upper"]), parameter["unit"])
@@ -113,7 +113,7 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
     return table
 
 
-def _materials_table(materials: Iterable[dict[str, Any]]) -> Table:
+def _materials_table(materials: Iterable[dict[str, Any]]) -> FittedTable:
     columns = [*names("material"), *numbers("density [kg/m^3]"), *names("source")]
     table = titled("materials", columns)
     for material in materials:

@@ -6,22 +6,21 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from rich.markup import escape
-from rich.table import Table
 
 from evodesign.analysis.failures import causes
 from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
 from evodesign.cli.output import figure
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.report.reproduction import Reproduction
 
 __all__ = ["claims_table", "reproduction_lines", "torque_table"]
 
 
-def torque_table(done: Reproduction) -> Table:
+def torque_table(done: Reproduction) -> FittedTable:
     """Table II of the paper with ours beside it, row under row."""
     heights = list(PAPER_OPTIMISED)
     columns = [*names("model", "agent", "setting"), *numbers(*(f"{height:g} m" for height in heights))]
-    table = titled("Table II: torque norm [N m] by height of the load", columns)
+    table = titled("Table II: torque norm [N m] by height of the load", columns, keys=3)
     for model, rows in done.by_setting.items():
         for agent in ("human", "robot"):
             for number, (setting, torque_norms) in enumerate(rows.items()):
@@ -33,7 +32,7 @@ def torque_table(done: Reproduction) -> Table:
     return table
 
 
-def claims_table(claims: Iterable[Claim]) -> Table:
+def claims_table(claims: Iterable[Claim]) -> FittedTable:
     """Every claim with its verdict."""
     table = titled("Claims", names("claim", "by", "paper", "here", "verdict"))
     for claim in claims:
