@@ -9,8 +9,9 @@ from typing import TypeVar
 import msgspec
 
 from evodesign.cli.front import print_front
-from evodesign.cli.output import show_notes
+from evodesign.cli.output import console, print_commands, print_lines, show_notes, visible
 from evodesign.cli.progress import precompute_progress
+from evodesign.cli.tables.result import chosen_designs, next_commands, result_lines, result_table
 from evodesign.pool.base import Pool
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering, evaluation_factory
@@ -55,7 +56,7 @@ def factory_of(header: RunHeader, pool: Pool, *, cache: bool) -> Evaluate:
 
 
 def show_result(run: RunLog, *, json: bool) -> None:
-    """The front, and why the search ended if it was not for its budget of evaluations."""
+    """A few designs of the front, why the search ended if not for its budget, and what to do next."""
     if len(run.evaluations) < run.header.budget:
         show_notes(
             [
@@ -64,4 +65,11 @@ def show_result(run: RunLog, *, json: bool) -> None:
                 f"evodesign resume {run.directory} --stagnation-generations 0"
             ]
         )
-    print_front(run, json=json)
+    if json:
+        print_front(run, json=True)
+        return
+    chosen = chosen_designs(run.header.objectives, run.evaluations)
+    if chosen:
+        console().print(result_table(run, chosen))
+    print_lines(*map(visible, result_lines(run, chosen)), "go on with:")
+    print_commands(*next_commands(run, chosen))
