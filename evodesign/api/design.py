@@ -19,6 +19,10 @@ class Design:
         assessment: the whole record.
         postures: of every case that was solved, of robot and person, with torques and wrenches; empty if
             they were not kept.
+    Example:
+        >>> design = run.design(4)
+        >>> design.feasible, design.objectives["reach_height"]
+        (True, 1.343...)
     """
 
     number: int | None
@@ -27,12 +31,12 @@ class Design:
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """Values by name: length multipliers, densities [kg/m^3], allocations."""
+        """Values by name: length multipliers [1], densities [kg/m^3], allocations [1]."""
         return self.assessment.design
 
     @property
     def objectives(self) -> Mapping[str, float]:
-        """Natural values by name; those that do not exist are missing."""
+        """Natural values by name, each in its objective's unit; those that do not exist are missing."""
         return self.assessment.objectives
 
     @property
@@ -57,10 +61,10 @@ class Design:
 
     @property
     def reach(self) -> ReachOutcome | None:
-        """Interval of load heights that the robot can hold."""
+        """Interval of load heights [m] that the robot can hold."""
         return self.assessment.reach
 
     @property
     def cases(self) -> tuple[CaseOutcome, ...]:
-        """Each case in short."""
+        """Each case in short: status, reason, torque norms [N m], residual [1]."""
         return self.assessment.cases
