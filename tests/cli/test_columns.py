@@ -27,10 +27,14 @@ from evodesign.cli import output
 from evodesign.cli.main import COMMANDS, app
 from evodesign.cli.tables.reproduction import claims_table, reproduction_lines, torque_table
 from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.run import read_run
+from tests.report.scenes import random_detail
+from tests.report.several import problem_of_several, write_several
 
 NARROW, WIDE = 80, 300
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -174,6 +178,24 @@ def test_the_tables_of_a_reproduction_are_whole(place: Path, both: BothWidths) -
     assert_whole(*both.texts)
 
 
+def test_cards_of_several_people_and_loads_are_whole(
+    problem: DesignProblem, place: Path, both: BothWidths
+) -> None:
+    write_several(problem_of_several(problem), place / "several")
+    app(["show", "several", "1"], standalone_mode=False)
+    assert_whole(*both.texts)
+
+
+def test_tables_over_many_heights_go_on_below(problem: DesignProblem, both: BothWidths) -> None:
+    heights = tuple(0.5 + 0.125 * number for number in range(12))
+    cases = random_detail(problem, 1, heights).cases
+    output.console().print(torques_by_height(cases))
+    output.console().print(forces_by_height(cases))
+    assert_whole(*both.texts)
+    narrow, wide = both.texts
+    assert (wide.count("┏"), narrow.count("agent") > 2) == (2, True)
+
+
 @pytest.mark.parametrize("command", ["", *COMMANDS])
 def test_help_is_whole_and_asked_for_in_two_ways(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     def printed(option: str, **settings: int) -> str:
@@ -228,6 +250,12 @@ def test_where_all_columns_find_room_a_header_is_one_line() -> None:
     both = BothWidths()
     both.print(table)
     assert all("mass [kg]" in text for text in both.texts)
+
+
+def test_a_table_without_rows_says_so() -> None:
+    both = BothWidths()
+    both.print(titled("parameters that changed", names("parameter")))
+    assert both.texts[0] == "parameters that changed\nnone\n"
 
 
 def test_a_word_longer_than_the_terminal_is_folded_as_the_last_resort() -> None:

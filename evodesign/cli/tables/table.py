@@ -85,9 +85,12 @@ class FittedTable:
             self._rows[-1] = (self._rows[-1][0], True)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
-        """The title, one table or several, the caption."""
+        """The title, one table or several, the caption; in place of a table without rows the word none."""
         if self.title:
             yield Text(self.title, style="table.title")
+        if not self._rows:
+            yield Text("none")
+            return
         room = options.max_width - EDGE
         natural = self._widest(range(len(self.columns)), stacked=False)
         if sum(natural) <= room:
