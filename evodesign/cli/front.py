@@ -95,7 +95,7 @@ def _choice(
 def print_front(run: RunLog, choice: Choice | None = None, *, json: bool = False, csv: bool = False) -> None:
     """Print the front of a run, or a choice of it."""
     from evodesign.analysis.choice import Choice, choose
-    from evodesign.cli.output import console, print_json, print_lines, visible
+    from evodesign.cli.output import console, print_json, print_lines, printable
     from evodesign.cli.tables.front import front_csv, front_json, front_lines, front_table
 
     choice = Choice() if choice is None else choice
@@ -108,4 +108,4 @@ def print_front(run: RunLog, choice: Choice | None = None, *, json: bool = False
         rows = chosen.designs if choice.limit is not None else chosen.designs[:ROWS]
         if rows:
             console().print(front_table(run, choice, rows))
-        print_lines(*map(visible, front_lines(run, choice, chosen, len(rows))))
+        print_lines(*map(printable, front_lines(run, choice, chosen, len(rows))))

@@ -19,14 +19,14 @@ from evodesign.records import Objective
 
 __all__ = [
     "console",
-    "figure",
     "heading",
+    "markup",
     "print_commands",
     "print_json",
     "print_lines",
+    "printable",
+    "rounded",
     "show_notes",
-    "shown",
-    "visible",
     "write_text",
 ]
 
@@ -40,19 +40,19 @@ def console(*, stderr: bool = False) -> Console:
     return Console(file=stream, width=None if stream.isatty() else PLAIN_WIDTH)
 
 
-def figure(value: float | None) -> str:
+def rounded(value: float | None) -> str:
     """A number with four significant figures, or a dash for none."""
     return "-" if value is None else f"{value:.4g}"
 
 
-def visible(text: str) -> str:
+def printable(text: str) -> str:
     """Text with control characters as their escapes: names in a user's file may hold them."""
     return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
 
 
-def shown(name: str) -> str:
+def markup(name: str) -> str:
     """A name from a user's file as rich's markup that shows it as it stands."""
-    return escape(visible(name))
+    return escape(printable(name))
 
 
 def heading(objective: Objective) -> str:

@@ -9,7 +9,7 @@ from typing import TypeVar
 import msgspec
 
 from evodesign.cli.front import print_front
-from evodesign.cli.output import console, print_commands, print_lines, show_notes, visible
+from evodesign.cli.output import console, print_commands, print_lines, printable, show_notes
 from evodesign.cli.progress import precompute_progress
 from evodesign.cli.tables.result import chosen_designs, next_commands, result_lines, result_table
 from evodesign.pool.base import Pool
@@ -71,5 +71,5 @@ def show_result(run: RunLog, *, json: bool) -> None:
     chosen = chosen_designs(run.header.objectives, run.evaluations)
     if chosen:
         console().print(result_table(run, chosen))
-    print_lines(*map(visible, result_lines(run, chosen)), "go on with:")
+    print_lines(*map(printable, result_lines(run, chosen)), "go on with:")
     print_commands(*next_commands(run, chosen))

@@ -9,7 +9,7 @@ from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.text import Text
 
-from evodesign.cli.output import figure, heading
+from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
@@ -63,7 +63,7 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
 
 def _reach(assessment: Assessment) -> str:
     reach = assessment.reach
-    return f"{figure(reach.lowest_m)} to {figure(reach.highest_m)} m" if reach else "unknown"
+    return f"{rounded(reach.lowest_m)} to {rounded(reach.highest_m)} m" if reach else "unknown"
 
 
 def _title(opened: OpenedDesign) -> Text:
@@ -87,9 +87,9 @@ def _objectives(opened: OpenedDesign) -> FittedTable:
         values = [value for value in found if value is not None]
         own = assessment.objectives.get(objective.name)
         table.add_row(
-            escape(on_one_line(heading(objective))), figure(own), figure(best(values, default=None))
+            escape(on_one_line(heading(objective))), rounded(own), rounded(best(values, default=None))
         )
-    table.add_row(escape("violation [m]"), figure(assessment.violation), "")
+    table.add_row(escape("violation [m]"), rounded(assessment.violation), "")
     return table
 
 
@@ -104,7 +104,7 @@ def _parameters(opened: OpenedDesign) -> FittedTable:
         ends = (f"{parameter.lower:g}", f"{parameter.upper:g}")
         table.add_row(
             escape(on_one_line(parameter.name)),
-            figure(value),
+            rounded(value),
             escape(on_one_line(unit)),
             ends[0],
             bar,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from rich.markup import escape
 
-from evodesign.cli.output import figure, shown
+from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT
@@ -32,18 +32,18 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
     for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
         iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
-            *(shown(name_of(outcome)) for name_of in labels.values()),
-            _height(outcome) if labels else figure(outcome.case.task.height_m),
-            figure(outcome.robot_torque_norm),
-            figure(outcome.human_torque_norm),
+            *(markup(name_of(outcome)) for name_of in labels.values()),
+            _height(outcome) if labels else rounded(outcome.case.task.height_m),
+            rounded(outcome.robot_torque_norm),
+            rounded(outcome.human_torque_norm),
             *iterations,
             _residual(outcome),
             _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
-            own = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
+            own = [rounded(norms[agent]) for agent in (ROBOT, HUMAN)]
             blank = ["" for _ in iterations]
-            table.add_row(*("" for _ in labels), "", *own, *blank, "", shown(f"under '{name}'"))
+            table.add_row(*("" for _ in labels), "", *own, *blank, "", markup(f"under '{name}'"))
         if following is not None and outcome.case.pair != following.case.pair:
             table.add_section()
     return table
@@ -84,7 +84,7 @@ def _add_summary(table: FittedTable, name: str, outcomes: Sequence[CaseOutcome],
         for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, agent)])
     ]
     share = f"{len(solved)} of {len(outcomes)}"
-    table.add_row(shown(name), share, *map(figure, measured), end_section=last)
+    table.add_row(markup(name), share, *map(rounded, measured), end_section=last)
 
 
 def _norms(outcome: CaseOutcome, agent: str) -> Iterator[float]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from evodesign.analysis.comparison import Comparison, best_designs
 from evodesign.analysis.comparison_json import hypervolume_summary
-from evodesign.cli.output import figure, heading, shown
+from evodesign.cli.output import heading, markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 
 __all__ = ["comparison_tables", "lines_after", "lines_before"]
@@ -53,9 +53,9 @@ def _searches(comparison: Comparison) -> FittedTable:
         summary = hypervolume_summary(members) or {}
         shares = [each.share for each in members if each.share is not None]
         table.add_row(
-            shown(name),
+            markup(name),
             str(len(members)),
-            *(figure(summary.get(key)) for key in ("median", "least", "greatest")),
+            *(rounded(summary.get(key)) for key in ("median", "least", "greatest")),
             f"{statistics.median(shares):.1%}" if shares else "-",
         )
     return table
@@ -66,12 +66,12 @@ def _runs(comparison: Comparison) -> FittedTable:
     table = titled("Runs", [*names("run", "search"), *numbers("seed", "front", "hypervolume", *best)])
     for each in comparison.runs:
         table.add_row(
-            shown(each.run.directory.name),
-            shown(each.search),
+            markup(each.run.directory.name),
+            markup(each.search),
             str(each.run.header.search.seed),
             str(len(each.front)),
-            figure(each.hypervolume),
-            *(figure(each.best.get(objective.name)) for objective in comparison.objectives),
+            rounded(each.hypervolume),
+            *(rounded(each.best.get(objective.name)) for objective in comparison.objectives),
         )
     return table
 
@@ -83,11 +83,11 @@ def _tests(comparison: Comparison) -> FittedTable:
         if test.p is None:
             continue
         table.add_row(
-            shown(" / ".join(test.samples)),
+            markup(" / ".join(test.samples)),
             test.name,
-            figure(test.p),
+            rounded(test.p),
             "-" if test.effect is None else f"{test.effect:.0%}",
-            shown(test.finding),
+            markup(test.finding),
         )
     return table
 
@@ -98,9 +98,9 @@ def _best(comparison: Comparison) -> FittedTable:
     for each in best_designs(comparison):
         values = each.evaluation.assessment.objectives
         table.add_row(
-            shown(each.reason),
-            shown(each.run.run.directory.name),
+            markup(each.reason),
+            markup(each.run.run.directory.name),
             str(each.evaluation.number),
-            *(figure(values[objective.name]) for objective in comparison.objectives),
+            *(rounded(values[objective.name]) for objective in comparison.objectives),
         )
     return table

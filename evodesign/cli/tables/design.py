@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from rich.markup import escape
 
-from evodesign.cli.output import figure, heading
+from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
@@ -46,9 +46,9 @@ def _assessment_tables(
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
         value = assessment.objectives.get(objective.name)
-        summary.add_row(escape(heading(objective)), figure(value))
-    summary.add_row(escape("violation [m]"), figure(assessment.violation))
-    summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
+        summary.add_row(escape(heading(objective)), rounded(value))
+    summary.add_row(escape("violation [m]"), rounded(assessment.violation))
+    summary.add_row(escape("reach [m]"), f"{rounded(result.reach.lowest)} to {rounded(result.reach.highest)}")
     if not any(outcome.case.label for outcome in assessment.cases):
         return summary, cases_table(assessment, "the load at each height")
     return (

@@ -10,7 +10,7 @@ from typing import Any
 
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.analysis.failures import causes, failures
-from evodesign.cli.output import visible
+from evodesign.cli.output import printable
 from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Evaluation, materials_of
 from evodesign.runlog.run import RunLog
@@ -78,7 +78,7 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
 
 def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> FittedTable:
     """Designs with their objectives, in the given order."""
-    title = f"{TITLES[choice.order]} {visible(run.header.problem_name)}"
+    title = f"{TITLES[choice.order]} {printable(run.header.problem_name)}"
     return designs_table(title, run.header.objectives, designs)
 
 

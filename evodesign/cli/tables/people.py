@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from evodesign.cli.output import shown
+from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Case
 
@@ -66,8 +66,8 @@ def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) ->
     for case, asked in cases:
         strain, task = asked.strain, asked.task
         table.add_row(
-            shown(case),
-            "-" if strain is None else shown(f"{strain.joint}, {strain.movement}"),
+            markup(case),
+            "-" if strain is None else markup(f"{strain.joint}, {strain.movement}"),
             "-" if strain is None else f"{strain.share:.1%}",
             f"{task.horizontal:.2f}",
             f"{task.vertical:.2f}",

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from evodesign.analysis.choice import Choice, choose
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front, to_minimise
-from evodesign.cli.output import figure, heading
+from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.front import front_lines, least_violated
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Evaluation, Objective
@@ -47,7 +47,7 @@ def result_table(run: RunLog, chosen: Chosen) -> FittedTable:
         table.add_row(
             str(number),
             KNEE if KNEE in reasons else "",
-            *(f"{'* ' * (each.name in reasons)}{figure(values[each.name])}" for each in objectives),
+            *(f"{'* ' * (each.name in reasons)}{rounded(values[each.name])}" for each in objectives),
         )
     return table
 

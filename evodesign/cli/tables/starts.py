@@ -7,7 +7,7 @@ from typing import Any
 
 from rich.markup import escape
 
-from evodesign.cli.output import figure
+from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.posture.formulations.human_value import COST_UNIT
@@ -39,7 +39,7 @@ def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
     for name, found, unit in _portfolios(problem, known):
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
-        miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
+        miss = f"{rounded(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
         table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
     return table
 
@@ -49,7 +49,7 @@ def _people_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
     columns = [*names(*["person and load"][:several]), *numbers("height", "known", "largest error")]
     table = titled("the person's part V(X), X the internal force", columns, keys=1 + several)
     for case, error in _errors(problem, known):
-        shown = "-" if error is None else f"{figure(error)} N^2 m^2"
+        shown = "-" if error is None else f"{rounded(error)} N^2 m^2"
         row = (str(case.task), "no: solved jointly" if error is None else "yes", shown)
         table.add_row(*([escape(case.label)] if several else []), *row)
     return table

@@ -15,7 +15,7 @@ from rich.markup import render
 from rich.table import Table
 from rich.text import Text
 
-from evodesign.cli.output import figure, heading, visible
+from evodesign.cli.output import heading, printable, rounded
 from evodesign.records import Evaluation, Objective
 
 __all__ = ["FittedTable", "TableColumn", "designs_table", "names", "numbers", "titled"]
@@ -153,12 +153,12 @@ def titled(title: str, columns: Sequence[TableColumn], *, keys: int = 1, caption
 
 def names(*headers: str) -> list[TableColumn]:
     """Columns of text."""
-    return [TableColumn(visible(header), of_numbers=False) for header in headers]
+    return [TableColumn(printable(header), of_numbers=False) for header in headers]
 
 
 def numbers(*headers: str) -> list[TableColumn]:
     """Columns of numbers."""
-    return [TableColumn(visible(header), of_numbers=True) for header in headers]
+    return [TableColumn(printable(header), of_numbers=True) for header in headers]
 
 
 def designs_table(title: str, objectives: Sequence[Objective], designs: Iterable[Evaluation]) -> FittedTable:
@@ -166,5 +166,5 @@ def designs_table(title: str, objectives: Sequence[Objective], designs: Iterable
     table = titled(title, numbers("design", *map(heading, objectives)))
     for each in designs:
         values = each.assessment.objectives
-        table.add_row(str(each.number), *(figure(values[objective.name]) for objective in objectives))
+        table.add_row(str(each.number), *(rounded(values[objective.name]) for objective in objectives))
     return table
