@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -24,6 +26,13 @@ def test_alone_it_shows_its_help() -> None:
     shown = done.stdout + done.stderr
     assert "Usage: evodesign [OPTIONS] COMMAND" in shown
     assert [name for name in COMMANDS if f"\n  {name} " not in shown] == []
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_readme_names_every_command(command: str, repository: Path) -> None:
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    (commands,) = re.findall(r"## Using it\n\n```\n(.*?)```", text, re.DOTALL)
+    assert re.search(rf"\b{command}\b", commands)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

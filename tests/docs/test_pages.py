@@ -1,4 +1,4 @@
-"""The README leads to every page and every command, and the citation file is that of this version."""
+"""The README leads to every page and every problem, and the citation file is that of this version."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 import yaml
 
 import evodesign
-from evodesign.cli.main import COMMANDS
 
 REPOSITORY = Path(__file__).parents[2]
 README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
@@ -25,12 +24,6 @@ def test_the_readme_leads_to_every_page(page: Path) -> None:
 @pytest.mark.parametrize("file", sorted((REPOSITORY / "problems").glob("*.toml")), ids=lambda file: file.stem)
 def test_the_readme_names_every_problem(file: Path) -> None:
     assert f"{file.name}`" in README or f"](problems/{file.name})" in README
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_the_readme_names_every_command(command: str) -> None:
-    (commands,) = re.findall(r"## Using it\n\n```\n(.*?)```", README, re.DOTALL)
-    assert re.search(rf"\b{command}\b", commands)
 
 
 def test_links_within_contributing_lead_to_its_sections() -> None:
