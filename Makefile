@@ -14,7 +14,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test test-quick test-all test-bare check bench faults robot clean
+.PHONY: help install search test test-quick test-all test-bare check bench faults robot api clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST) | expand --tabs=20
@@ -71,6 +71,9 @@ faults: $(VENV)/installed-dev  ## kill searches and damage logs, hundreds of tim
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py
+
+api: $(VENV)/installed  ## write docs/api.md from the docstrings
+	$(BIN)/python -m docs.write_api
 
 clean:  ## remove the virtual environment and caches
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -25,9 +25,9 @@ class Design:
             they were not kept.
         log: gives the log that holds it, for `export`.
     Example:
-        >>> design = run.front[0]
-        >>> design.number, round(design.parameters["length.upper_arm"], 3)
-        (3, 1.0)
+        >>> design = run.design(4)
+        >>> design.feasible, design.objectives["reach_height"]
+        (True, 1.343...)
     """
 
     number: int | None
@@ -37,12 +37,12 @@ class Design:
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """Values by name: length multipliers, densities [kg/m^3], allocations."""
+        """Values by name: length multipliers [1], densities [kg/m^3], allocations [1]."""
         return self.assessment.design
 
     @property
     def objectives(self) -> Mapping[str, float]:
-        """Natural values by name; those that do not exist are missing."""
+        """Natural values by name, each in its objective's unit; those that do not exist are missing."""
         return self.assessment.objectives
 
     @property
@@ -67,12 +67,12 @@ class Design:
 
     @property
     def reach(self) -> ReachOutcome | None:
-        """Interval of load heights that the robot can hold."""
+        """Interval of load heights [m] that the robot can hold."""
         return self.assessment.reach
 
     @property
     def cases(self) -> tuple[CaseOutcome, ...]:
-        """Each case in short."""
+        """Each case in short: status, reason, torque norms [N m], residual [1]."""
         return self.assessment.cases
 
     def export(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
@@ -85,8 +85,8 @@ class Design:
         Raises:
             InputError: the folder holds files or cannot be written; or the design is of no problem or run.
         Example:
-            >>> [file.name for file in run.front[0].export(folder)][:2]
-            ['robot.urdf', 'robot.xml']
+            >>> [file.name for file in run.design(4).export("design-4")][:3]
+            ['README.md', 'robot.urdf', 'robot.xml']
         """
         from evodesign.report.export.folder import export_logged, refuse_full  # CasADi takes its time to load
 

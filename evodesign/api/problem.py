@@ -36,9 +36,8 @@ def open_problem(problem: str | os.PathLike[str], jobs: int = 1) -> Problem:
     Raises:
         InputError: naming file, key, what was wanted and what was found.
     Example:
-        >>> problem = evodesign.open_problem("icub-lifting")
-        >>> [objective.name for objective in problem.objectives]
-        ['robot_torque', 'human_torque', 'reach_height']
+        >>> evodesign.open_problem("problem.toml")
+        <problem golden-lifting: 3 parameters, 3 objectives>
     """
     return Problem(read_source(problem), jobs)
 
@@ -63,10 +62,14 @@ class Problem:
         source: the problem and its files, as text.
         jobs: how many processes work out what no cache holds yet.
     Attributes:
+        source: the problem and its files, as text.
         name: of the problem.
-        parameters: the design's, with bounds and units.
-        objectives: with senses and units.
-        unscaled: the parameters of the robot as its file describes it, by name.
+        parameters: each with bounds in its own unit.
+        objectives: each with sense and unit.
+        unscaled: parameter values by name of the robot as its file has it.
+    Example:
+        >>> [f"{objective.sense} {objective.name} [{objective.unit}]" for objective in problem.objectives]
+        ['minimise robot_torque [N m]', 'minimise worst_human_torque [N m]', 'maximise reach_height [m]']
     """
 
     def __init__(self, source: ProblemSource, jobs: int = 1) -> None:
@@ -126,15 +129,16 @@ class Problem:
         """The results of a design, with its postures. They depend on nothing but problem and design.
 
         Args:
-            design: values by name, those left out as in the unscaled robot; or one value per parameter.
+            design: values by name, each in its parameter's unit, those left out as in the unscaled robot; or
+                one value per parameter.
         Raises:
             InputError: an unknown name, a wrong number of values, a value that is no positive number, an
                 allocation parameter beyond its range, or a density that is neither a material's nor the
                 unscaled robot's where there are materials.
         Example:
-            >>> design = problem.evaluate({"length.upper_arm": 1.2})  # the rest as in the unscaled robot
-            >>> design.feasible, sorted(design.objectives)
-            (True, ['human_torque', 'reach_height', 'robot_torque'])
+            >>> longer = problem.evaluate({"length.shank": 1.1})
+            >>> longer.feasible, longer.objectives["robot_torque"]
+            (True, 2.25...)
         """
         values = self._values(design)
         found = self._evaluator.assess_values(values)

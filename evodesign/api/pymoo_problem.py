@@ -28,6 +28,10 @@ def as_pymoo_problem(problem: Problem | str | os.PathLike[str]) -> PymooProblem:
 
     Raises:
         InputError: the file cannot be used.
+    Example:
+        >>> for_pymoo = evodesign.as_pymoo_problem(problem)
+        >>> for_pymoo.n_var, for_pymoo.n_obj, for_pymoo.n_ieq_constr
+        (3, 3, 1)
     """
     return PymooProblem(problem if isinstance(problem, Problem) else open_problem(problem))
 
@@ -37,6 +41,12 @@ class PymooProblem(ElementwiseProblem):  # type: ignore[misc]
 
     Args:
         problem: whose designs are evaluated.
+    Attributes:
+        problem: the same.
+    Example:
+        >>> evaluated = evodesign.as_pymoo_problem(problem).evaluate(np.array([[1.0, 1.1, 0.0]]))
+        >>> [values.shape for values in evaluated]
+        [(1, 3), (1, 1)]
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -67,7 +77,10 @@ class PymooProblem(ElementwiseProblem):  # type: ignore[misc]
         """Natural objective values by name of rows of minimised ones, such as a result's `F`.
 
         Args:
-            minimised_values: (designs, objectives).
+            minimised_values: (designs, objectives), each in its objective's unit.
+        Example:
+            >>> evodesign.as_pymoo_problem(problem).natural(np.array([[2.0, 0.5, -1.3]]))
+            [{'robot_torque': 2.0, 'worst_human_torque': 0.5, 'reach_height': 1.3}]
         """
         return [
             {

@@ -26,15 +26,24 @@ def open_run(path: str | os.PathLike[str]) -> Run:
 
     Raises:
         RunError: it is not a run, or cannot be read.
+    Example:
+        >>> evodesign.open_run("runs/first")
+        <run of golden-lifting in runs/first: 5 evaluations, 3 on the front>
     """
     return Run(read_run(Path(path)))
 
 
 class Run:
-    """What a run found.
+    """What a run found; its length is the number of evaluations.
 
     Args:
         log: as it was read.
+    Attributes:
+        log: the records as they are.
+    Example:
+        >>> run = evodesign.open_run("runs/first")
+        >>> len(run), [design.number for design in run.front]
+        (5, [4, 2, 1])
     """
 
     def __init__(self, log: RunLog) -> None:
@@ -57,7 +66,7 @@ class Run:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The design parameters, with bounds and units."""
+        """The design parameters, each with bounds in its own unit."""
         return self.log.header.parameters
 
     @property
@@ -85,6 +94,9 @@ class Run:
 
         Raises:
             InputError: the run has no such design.
+        Example:
+            >>> run.design(4).parameters["length.shank"]
+            1.489...
         """
         for evaluation in self.log.evaluations:
             if evaluation.number == number:
@@ -107,11 +119,16 @@ class Run:
             where: conditions such as `reach_height >= 1.5 and robot_torque@1.2 < 10`; the front is that of
                 the designs that meet them.
             knee: only knees, sharpest first.
-            near: closest first to these values of objectives.
+            near: closest first to these values of objectives, in their units.
             different: the most different designs, as many as the limit says.
             limit: at most so many.
         Raises:
             InputError: more than one way to choose, or a name that the run does not know.
+        Example:
+            >>> [design.number for design in run.choose(where="reach_height >= 1.34")]
+            [4, 2]
+            >>> [design.number for design in run.choose(near={"reach_height": 1.4}, limit=1)]
+            [2]
         """
         orders = {Order.KNEE: knee, Order.NEAR: near is not None, Order.DIFFERENT: different}
         asked = [order for order, wanted in orders.items() if wanted]
@@ -137,8 +154,8 @@ class Run:
             InputError: the file cannot be written; or the run has no feasible design, or one objective, or
                 more than three.
         Example:
-            >>> run.plot_front(folder / "front.html").name
-            'front.html'
+            >>> run.plot_front("front.html")
+            PosixPath('front.html')
         """
         from evodesign.report.front_figure import front_html  # plotly takes its time to load
 
@@ -160,6 +177,10 @@ class Run:
             Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
             the reach [m], torque norms by height and by case [N m], parameters; None where a value does not
             exist.
+        Example:
+            >>> table = run.table(run.front)
+            >>> table["number"], table["feasible"]
+            ([4, 2, 1], [True, True, True])
         """
         wanted = None if designs is None else [design.number for design in designs]
         by_number = {evaluation.number: evaluation for evaluation in self.log.evaluations}
@@ -184,6 +205,10 @@ class Run:
         Returns:
             Columns by name: number, human, payload (empty where the problem has one), height [m], status,
             reason, robot_torque and human_torque [N m], residual; None where a value does not exist.
+        Example:
+            >>> cases = run.cases([design])
+            >>> [*zip(cases["human"], cases["height"])]
+            [('short', 0.8), ('short', 1.0), ('tall', 0.8), ('tall', 1.0)]
         """
         chosen = self.designs if designs is None else designs
         rows = [(design.number, outcome) for design in chosen for outcome in design.cases]
@@ -205,8 +230,15 @@ class Run:
         The log holds them for every design that was on the front when it was found. For another one they are
         solved anew, which takes seconds and needs the solver.
 
+        Returns:
+            Base positions [m] and angles [rad], joint positions [rad], joint torques [N m], forces [N] and
+            moments [N m] at hands and feet of both agents.
         Raises:
             InputError: the run has no such design.
+        Example:
+            >>> posture = run.postures(4)[0]
+            >>> posture.case.name, posture.agents["robot"].torques_n_m["l_elbow"]
+            ('short, 0.8 m', -0.0546...)
         """
         design = self.design(number)
         if design.postures:

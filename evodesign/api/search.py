@@ -77,8 +77,8 @@ def search(
         RunError: the directory holds a run already, or cannot be written.
         Interrupted: stopped by Ctrl-C (in a notebook: the stop button); `resume` goes on.
     Example:
-        >>> run = evodesign.search("icub-lifting", folder / "first", evaluations=4, population=4)
-        >>> len(run)
+        >>> new = evodesign.search("problem.toml", "runs/new", evaluations=4, population=4, pool="serial")
+        >>> len(new)
         4
     """
     opened = problem if isinstance(problem, Problem) else open_problem(problem)
@@ -129,8 +129,8 @@ def resume(
         ResumeMismatch: the log holds a genome that the search does not ask for.
         Interrupted: as in `search`.
     Example:
-        >>> len(evodesign.resume(copy_of_run, evaluations=len(run)))  # has them all
-        24
+        >>> len(evodesign.resume("runs/new", evaluations=6, pool="serial"))
+        6
     """
     _at_least(1, evaluations=evaluations, jobs=jobs)
     _at_least(0, hours=hours, stagnation_generations=stagnation_generations)

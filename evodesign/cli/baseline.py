@@ -16,12 +16,14 @@ __all__ = ["baseline"]
 
 def baseline(
     problem: ProblemPath,
-    starts: Annotated[int, typer.Option(min=1, help="How many starts.")] = 50,
+    starts: Annotated[int, typer.Option(min=1, metavar="N", help="How many starts.")] = 50,
     seed: Annotated[
-        int | None, typer.Option(min=0, help="Of the starts.", show_default="as in the problem")
+        int | None,
+        typer.Option(min=0, metavar="N", help="Random seed of the starts.", show_default="as in the problem"),
     ] = None,
     run: Annotated[
-        Path | None, typer.Option(help="Directory of the new run.", show_default="runs/NAME-baseline-TIME")
+        Path | None,
+        typer.Option(metavar="DIR", help="Directory of the new run.", show_default="in runs/"),
     ] = None,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",

@@ -23,7 +23,7 @@ def compare(
     """Several runs side by side: hypervolumes, rank tests over seeds, the best designs of all."""
     from evodesign.analysis import comparison
     from evodesign.analysis.comparison_json import comparison_json
-    from evodesign.cli.output import console, print_json, print_lines, show_notes, visible, write_text
+    from evodesign.cli.output import console, print_json, print_lines, printable, show_notes, write_text
     from evodesign.cli.tables.comparison import comparison_tables, lines_after, lines_before
     from evodesign.runlog.run import read_run
 
@@ -44,7 +44,7 @@ def compare(
         print_json({"comparisons": [comparison_json(each) for each in comparisons]})
         return
     for each in comparisons:
-        print_lines(*map(visible, lines_before(each, alone=len(comparisons) == 1)))
+        print_lines(*map(printable, lines_before(each, alone=len(comparisons) == 1)))
         for table in comparison_tables(each):
             console().print(table)
-        print_lines(*map(visible, lines_after(each)))
+        print_lines(*map(printable, lines_after(each)))

@@ -26,7 +26,7 @@ def evaluate(
     ] = None,
     name: Annotated[
         str | None,
-        typer.Option(help="Which design of the file.", show_default="the file's only one"),
+        typer.Option(metavar="NAME", help="Which design of the file.", show_default="the file's only one"),
     ] = None,
     symmetry: SymmetryName = None,
     jobs: Jobs = CORES,

@@ -44,14 +44,16 @@ def front(
             help="Only designs such as 'reach_height >= 1.5 and robot_torque@1.2 < 10'.",
         ),
     ] = None,
-    limit: Annotated[int | None, typer.Option(min=1, help="At most so many.", show_default="all")] = None,
+    limit: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="At most so many.", show_default="all")
+    ] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV instead of tables.")] = False,
     json: Json = False,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write a figure of the front (HTML).")
     ] = None,
 ) -> None:
-    """The designs of a run that no other design beats in every objective, or a choice of them."""
+    """The Pareto front of a run, or a choice of its designs."""
     from evodesign.cli.output import show_notes, write_text
     from evodesign.runlog.run import read_run
 
@@ -93,7 +95,7 @@ def _choice(
 def print_front(run: RunLog, choice: Choice | None = None, *, json: bool = False, csv: bool = False) -> None:
     """Print the front of a run, or a choice of it."""
     from evodesign.analysis.choice import Choice, choose
-    from evodesign.cli.output import console, print_json, print_lines, visible
+    from evodesign.cli.output import console, print_json, print_lines, printable
     from evodesign.cli.tables.front import front_csv, front_json, front_lines, front_table
 
     choice = Choice() if choice is None else choice
@@ -106,4 +108,4 @@ def print_front(run: RunLog, choice: Choice | None = None, *, json: bool = False
         rows = chosen.designs if choice.limit is not None else chosen.designs[:ROWS]
         if rows:
             console().print(front_table(run, choice, rows))
-        print_lines(*map(visible, front_lines(run, choice, chosen, len(rows))))
+        print_lines(*map(printable, front_lines(run, choice, chosen, len(rows))))

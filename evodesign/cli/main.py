@@ -1,4 +1,4 @@
-"""The commands' one door: registers them and turns errors into exit codes.
+"""The command line: registers the commands and turns errors into exit codes.
 
 What a command needs is imported when it is called: showing a front must not wait for CasADi to load.
 """
@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from importlib.metadata import version
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from evodesign.cli.baseline import baseline
 from evodesign.cli.branch import branch
@@ -57,21 +60,51 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "reproduce": reproduce,
 }
 
+
+class WholeHelp(TyperGroup):
+    """A list of commands that does not cut off what is said of each."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Each command with all of its first sentence."""
+        rows = [
+            (name, self.commands[name].get_short_help_str(limit=1000)) for name in self.list_commands(ctx)
+        ]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
 app = typer.Typer(
     name="evodesign",
-    help="Design humanoid robots by evolution, so that robot and person lifting together both strain less.",
+    cls=WholeHelp,
+    help="Humanoid robots designed by evolution for low joint torques of robot and person who hold a load.",
     no_args_is_help=True,
-    add_completion=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
 for name, command in COMMANDS.items():
     app.command(name)(command)
 
 
+def _show_version(asked: bool) -> None:
+    if asked:
+        sys.stdout.write(f"evodesign {version('evodesign')}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def _app(
+    _version: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version and exit.", is_eager=True, callback=_show_version),
+    ] = False,
+) -> None: ...
+
+
 def main() -> None:
     """Run a command; errors that evodesign knows end it with one sentence."""
     try:
-        app()
+        app(prog_name="evodesign")
     except Interrupted as stop:
         _leave(f"{stop}", STOPPED)
     except KeyboardInterrupt:  # a search turns it into Interrupted as soon as there is a run
@@ -81,5 +114,7 @@ def main() -> None:
 
 
 def _leave(sentence: str, code: int) -> None:
-    sys.stderr.write(sentence + "\n")
+    from evodesign.cli.output import print_lines
+
+    print_lines(sentence, stderr=True)
     raise SystemExit(code)

@@ -31,21 +31,26 @@ ProblemPath = Annotated[
 ]
 RunPath = Annotated[Path, typer.Argument(metavar="RUN", help="Directory of a run.")]
 NewRun = Annotated[
-    Path | None, typer.Option("--run", help="Directory of the new run.", show_default="runs/NAME-TIME")
+    Path | None,
+    typer.Option("--run", metavar="DIR", help="Directory of the new run.", show_default="in runs/"),
 ]
 Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 SymmetryName = Annotated[
     str | None,
-    typer.Option("--symmetry", help="Postures: on, off or polish.", show_default="as in the problem"),
+    typer.Option(
+        "--symmetry", metavar="MODE", help="Postures: on, off or polish.", show_default="as in the problem"
+    ),
 ]
 Evaluations = Annotated[
-    int | None, typer.Option(min=1, help="Total evaluations of the run.", show_default="as in the problem")
+    int | None,
+    typer.Option(min=1, metavar="N", help="Total evaluations of the run.", show_default="as in the problem"),
 ]
 Hours = Annotated[
     float | None,
     typer.Option(
-        help="Wall time of a session; then it stops, resumable. 0 for no limit.",
+        metavar="H",
+        help="Wall time [h] of a session; then it stops, resumable. 0 for no limit.",
         show_default="no limit",
         callback=checked_hours,
     ),
@@ -60,14 +65,21 @@ Stagnation = Annotated[
     ),
 ]
 Algorithm = Annotated[
-    str | None, typer.Option(help="nsga2, cma-es or random.", show_default="as in the problem")
+    str | None,
+    typer.Option(metavar="NAME", help="nsga2, cma-es or random.", show_default="as in the problem"),
 ]
 PopulationSize = Annotated[
-    int | None, typer.Option(min=2, help="Evaluations of a generation.", show_default="as in the problem")
+    int | None,
+    typer.Option(min=2, metavar="N", help="Evaluations of a generation.", show_default="as in the problem"),
 ]
-Seed = Annotated[int | None, typer.Option(min=0, help="Of the search.", show_default="as in the problem")]
-Jobs = Annotated[int, typer.Option(min=1, help="Evaluations that run at the same time.")]
-PoolName = Annotated[str, typer.Option("--pool", help="Where evaluations run: serial, joblib or dask.")]
+Seed = Annotated[
+    int | None,
+    typer.Option(min=0, metavar="N", help="Random seed of the search.", show_default="as in the problem"),
+]
+Jobs = Annotated[int, typer.Option(min=1, metavar="N", help="Evaluations that run at the same time.")]
+PoolName = Annotated[
+    str, typer.Option("--pool", metavar="NAME", help="Where evaluations run: serial, joblib or dask.")
+]
 Scheduler = Annotated[
     str | None,
     typer.Option(

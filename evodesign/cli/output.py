@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import msgspec
-from rich.console import Console
+from rich.console import Console, ConsoleOptions
 from rich.markup import escape
+from rich.text import Text
 
 from evodesign.errors import InputError
 from evodesign.records import Objective
 
 __all__ = [
     "console",
-    "figure",
     "heading",
+    "markup",
+    "print_commands",
     "print_json",
     "print_lines",
+    "printable",
+    "rounded",
     "show_notes",
-    "shown",
-    "visible",
     "write_text",
 ]
 
@@ -31,24 +35,24 @@ PLAIN_WIDTH = 110
 
 
 def console(*, stderr: bool = False) -> Console:
-    """A console on standard output or error; tables keep their width when piped."""
+    """A console on standard output or error, as wide as the terminal; tables keep their width when piped."""
     stream = sys.stderr if stderr else sys.stdout
     return Console(file=stream, width=None if stream.isatty() else PLAIN_WIDTH)
 
 
-def figure(value: float | None) -> str:
+def rounded(value: float | None) -> str:
     """A number with four significant figures, or a dash for none."""
     return "-" if value is None else f"{value:.4g}"
 
 
-def visible(text: str) -> str:
+def printable(text: str) -> str:
     """Text with control characters as their escapes: names in a user's file may hold them."""
     return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
 
 
-def shown(name: str) -> str:
+def markup(name: str) -> str:
     """A name from a user's file as rich's markup that shows it as it stands."""
-    return escape(visible(name))
+    return escape(printable(name))
 
 
 def heading(objective: Objective) -> str:
@@ -57,10 +61,31 @@ def heading(objective: Objective) -> str:
     return f"{objective.name} [{objective.unit}] {arrow}"
 
 
+@dataclass(frozen=True, slots=True)
+class WrappedLine:
+    """A line of text that goes on below at a space where the terminal ends; a longer word stays whole."""
+
+    line: str
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Text]:
+        """The lines that it takes."""
+        lines = wrap(self.line, options.max_width, break_long_words=False, break_on_hyphens=False)
+        for line in lines or [""]:
+            yield Text(line, no_wrap=True, overflow="ignore")
+
+
 def print_lines(*lines: str, stderr: bool = False) -> None:
-    """Lines of text on standard output or error, as they stand."""
+    """Lines of text on standard output or error: wrapped on a terminal, as they stand elsewhere."""
+    out = console(stderr=stderr)
     for line in lines:
-        console(stderr=stderr).print(line, highlight=False, markup=False, soft_wrap=True)
+        part = WrappedLine(line) if out.is_terminal else line
+        out.print(part, highlight=False, markup=False, soft_wrap=not out.is_terminal, crop=False)
+
+
+def print_commands(*commands: str) -> None:
+    """Commands to go on with on standard output, each whole in a line, so that it can be copied."""
+    for command in commands:
+        console().print(f"  {command}", highlight=False, markup=False, soft_wrap=True)
 
 
 def print_json(value: Any) -> None:

@@ -31,10 +31,10 @@ def polish(
             metavar="NAME=NUMBER,...", help="Several objectives, weighted relative to their values."
         ),
     ] = None,
-    evaluations: Annotated[int, typer.Option(min=2, help="Designs that may be evaluated.")] = 60,
+    evaluations: Annotated[int, typer.Option(min=2, metavar="N", help="Designs that may be evaluated.")] = 60,
     to: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="New file of designs.", show_default="RUN/polished-DESIGN.toml"),
+        typer.Option(metavar="FILE", help="New file of designs.", show_default="in RUN"),
     ] = None,
     jobs: Jobs = CORES,
     json: Json = False,
@@ -101,9 +101,9 @@ def _weights(objective: str | None, weights: str | None) -> dict[str, float]:
 
 def _show(step: Step, budget: int) -> None:
     """One line of progress per evaluation."""
-    from evodesign.cli.output import figure, print_lines
+    from evodesign.cli.output import print_lines, rounded
 
-    values = " ".join(f"{name} {figure(value)}" for name, value in step.assessment.objectives.items())
+    values = " ".join(f"{name} {rounded(value)}" for name, value in step.assessment.objectives.items())
     word = "better" if step.taken else "not better"
     line = f"evaluation {step.number}/{budget}: {word}: {values or step.assessment.reason}"
     print_lines(line, stderr=True)

@@ -25,7 +25,7 @@ from rich.table import Table
 
 from evodesign.analysis.failures import causes, failures
 from evodesign.api.progress_lines import PrecomputeLines, SearchLines
-from evodesign.cli.output import console, figure, heading, show_notes
+from evodesign.cli.output import console, heading, rounded, show_notes
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.session_log import Observer
@@ -113,10 +113,10 @@ class SearchPanel(Observer):
         table = Table(box=None, show_header=False, padding=(0, 2))
         table.add_row("feasible", tally.feasible_share, "failed", causes(tally.failures))
         number = "-" if generation is None else str(generation.number)
-        volume = figure(None if generation is None else generation.hypervolume)
+        volume = rounded(None if generation is None else generation.hypervolume)
         table.add_row("generation", number, "hypervolume", volume)
         for objective in tally.objectives:
-            table.add_row("best", figure(tally.best.get(objective.name)), escape(heading(objective)), "")
+            table.add_row("best", rounded(tally.best.get(objective.name)), escape(heading(objective)), "")
         return table
 
 

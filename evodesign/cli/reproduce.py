@@ -20,7 +20,7 @@ __all__ = ["reproduce"]
 def reproduce(
     to: Annotated[
         Path | None,
-        typer.Option(help="New folder for runs, figures and robots.", show_default="runs/reproduce-TIME"),
+        typer.Option(metavar="DIR", help="New folder for runs, figures and robots.", show_default="in runs/"),
     ] = None,
     problem: Annotated[
         str, typer.Option(metavar="PROBLEM", help="The problem with physical limits.")
@@ -28,17 +28,20 @@ def reproduce(
     published: Annotated[
         str, typer.Option(metavar="PROBLEM", help="The published setting, without limits.")
     ] = "sartore2022-as-published",
-    starts: Annotated[int, typer.Option(min=1, help="Starts of the joint problem.")] = 50,
-    evaluations: Annotated[int, typer.Option(min=1, help="Designs that the search evaluates.")] = 480,
-    seed: Annotated[int, typer.Option(min=0, help="Of starts and search.")] = 1,
+    starts: Annotated[int, typer.Option(min=1, metavar="N", help="Starts of the joint problem.")] = 50,
+    evaluations: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Designs that the search evaluates.")
+    ] = 480,
+    seed: Annotated[int, typer.Option(min=0, metavar="N", help="Random seed of starts and search.")] = 1,
     minutes: Annotated[
-        float, typer.Option(min=0.1, help="After which both have ended, with what they have by then.")
+        float,
+        typer.Option(min=0.1, metavar="M", help="After which both have ended, with what they have by then."),
     ] = 12.0,
     jobs: Jobs = CORES,
     pool: PoolName = "joblib",
     json: Json = False,
 ) -> None:
-    """Sartore et al. 2022 again: its table, claims and figures, with verdicts, then by evolution."""
+    """The paper's experiment again: its table, claims and figures, with verdicts, then by evolution."""
     from evodesign.api.sessions import new_directory
     from evodesign.cli.output import console, print_json, print_lines
     from evodesign.cli.session import DISPLAY

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from evodesign.cli.front import print_front
-from evodesign.cli.output import show_notes
+from evodesign.cli.output import console, print_commands, print_lines, printable, show_notes
 from evodesign.cli.progress import precompute_progress, search_progress
+from evodesign.cli.tables.result import chosen_designs, next_commands, result_lines, result_table
 from evodesign.runlog.run import RunLog
 from evodesign.session import Display
 
@@ -15,7 +16,7 @@ DISPLAY = Display(lambda note: show_notes([note]), precompute_progress, search_p
 
 
 def show_result(run: RunLog, *, json: bool) -> None:
-    """The front, and why the search ended if it was not for its budget of evaluations."""
+    """A few designs of the front, why the search ended if not for its budget, and what to do next."""
     if len(run.evaluations) < run.header.budget:
         show_notes(
             [
@@ -24,4 +25,11 @@ def show_result(run: RunLog, *, json: bool) -> None:
                 f"evodesign resume {run.directory} --stagnation-generations 0"
             ]
         )
-    print_front(run, json=json)
+    if json:
+        print_front(run, json=True)
+        return
+    chosen = chosen_designs(run.header.objectives, run.evaluations)
+    if chosen:
+        console().print(result_table(run, chosen))
+    print_lines(*map(printable, result_lines(run, chosen)), "go on with:")
+    print_commands(*next_commands(run, chosen))

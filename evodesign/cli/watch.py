@@ -22,8 +22,10 @@ def watch(
     serve: Annotated[
         bool, typer.Option("--serve", help="On a local page that refreshes itself, for this machine alone.")
     ] = False,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0 for any free one.")] = 8765,
-    every: Annotated[float, typer.Option(min=0.1, help="Seconds between two looks.")] = 1.0,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, metavar="PORT", help="Of the page; 0 for any free one.")
+    ] = 8765,
+    every: Annotated[float, typer.Option(min=0.1, metavar="S", help="Seconds between two looks.")] = 1.0,
     once: Annotated[bool, typer.Option("--once", help="Show the present state and leave.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the present state as JSON and leave.")] = False,
 ) -> None:

@@ -58,7 +58,8 @@ def whole(
 def test_search_prints_its_front_and_where_the_run_lies(whole: tuple[Path, str, str]) -> None:
     run, stdout, stderr = whole
     assert str(run) in stdout
-    assert "robot_torque [N m]" in stdout
+    assert "robot_torque" in stdout
+    assert f"evodesign report {run}\n" in stdout
     lines = [line for line in stderr.splitlines() if line.startswith("generation ")]
     assert len(lines) == BUDGET // POPULATION
     assert "hypervolume" in lines[-1]

@@ -13,7 +13,7 @@ import pytest
 from mcap.reader import make_reader
 
 from evodesign.cli.export import export
-from evodesign.cli.output import figure
+from evodesign.cli.output import rounded
 from evodesign.cli.show import show
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
@@ -86,12 +86,12 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
     assert text.splitlines()[0] == "icub-lifting: design 0"
     for objective in logged.header.objectives:
         value = evaluation.assessment.objectives[objective.name]
-        assert [row[1] for row in rows if row[0].startswith(f"{objective.name} [")] == [figure(value)]
+        assert [row[1] for row in rows if row[0].startswith(f"{objective.name} [")] == [rounded(value)]
     for name, value in evaluation.assessment.design.items():
-        assert [row[1] for row in rows if row[0] == name] == [figure(value)]
+        assert [row[1] for row in rows if row[0] == name] == [rounded(value)]
     for outcome in evaluation.assessment.cases:
-        expected = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
-        assert [row[1:3] for row in rows if row[0] == figure(outcome.case.task.height_m)] == [expected]
+        expected = [rounded(outcome.robot_torque_norm), rounded(outcome.human_torque_norm)]
+        assert [row[1:3] for row in rows if row[0] == rounded(outcome.case.task.height_m)] == [expected]
     for agent in ("robot", "human"):
         torques = [height.agents[agent].torques_n_m for height in detail.cases]
         shown = {row[1]: row[2:] for row in rows if row[0] == agent and row[1] in torques[0]}
@@ -101,9 +101,9 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
             peak for joint, peak in peaks.items() if joint not in shown
         )
         for joint, values in shown.items():
-            assert values == [figure(at[joint]) for at in torques]
+            assert values == [rounded(at[joint]) for at in torques]
         feet = [height.agents[agent].foot_wrenches["left"] for height in detail.cases]
-        expected = [figure(sum(part**2 for part in wrench[:3]) ** 0.5) for wrench in feet]
+        expected = [rounded(sum(part**2 for part in wrench[:3]) ** 0.5) for wrench in feet]
         assert [row[2:] for row in rows if row[:2] == [agent, "left foot"]] == [expected]
 
 

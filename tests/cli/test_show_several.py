@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from evodesign.cli.output import figure
+from evodesign.cli.output import rounded
 from evodesign.cli.show import show
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
@@ -34,7 +34,7 @@ def test_card_has_a_row_for_each_case_and_sums_them_up(
     rows = cells(capsys.readouterr().out)
     outcomes = run.evaluations[1].assessment.cases
     for (human, payload, height), outcome in zip(CASES, outcomes, strict=True):
-        norms = [figure(outcome.robot_torque_norm), figure(outcome.human_torque_norm)]
+        norms = [rounded(outcome.robot_torque_norm), rounded(outcome.human_torque_norm)]
         assert [row[3:5] for row in rows if row[:3] == [human, payload, f"{height:g} m"]] == [norms]
     table = pd.DataFrame(
         [
@@ -51,7 +51,7 @@ def test_card_has_a_row_for_each_case_and_sums_them_up(
     }
     for name, group in groups.items():
         numbers = (group.robot.mean(), group.robot.max(), group.person.mean(), group.person.max())
-        expected = [name, f"{len(group)} of {len(group)}", *map(figure, numbers)]
+        expected = [name, f"{len(group)} of {len(group)}", *map(rounded, numbers)]
         assert expected in rows
 
 
@@ -67,10 +67,10 @@ def test_card_names_the_case_of_largest_torque_and_contact_force(
         sizes = torques.abs()
         for joint in sizes.max().sort_values(ascending=False).index[:6]:
             case = sizes[joint].idxmax()
-            numbers = [figure(sizes[joint].mean()), figure(torques[joint][case])]
+            numbers = [rounded(sizes[joint].mean()), rounded(torques[joint][case])]
             assert [agent, joint, *numbers, case] in rows
         forces = [float(np.linalg.norm(posture.hand_wrenches["left"][:3])) for posture in postures]
-        numbers = [figure(float(np.mean(forces))), figure(max(forces))]
+        numbers = [rounded(float(np.mean(forces))), rounded(max(forces))]
         assert [agent, "left hand", *numbers, names[int(np.argmax(forces))]] in rows
 
 

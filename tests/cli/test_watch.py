@@ -78,5 +78,5 @@ def test_sparklines_rise_from_the_least_to_the_greatest() -> None:
     assert sparkline([]) == ""
     assert sparkline([2.0, 2.0]) == "▁▁"
     assert sparkline([0.5], (0.0, 1.0)) == "▅"
-    assert len(sparkline([float(number) for number in range(1000)])) == 40
+    assert len(sparkline([float(number) for number in range(1000)])) == 30
     assert sparkline([float(number) for number in range(1000)])[-1] == "█"

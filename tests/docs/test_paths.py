@@ -1,4 +1,4 @@
-"""Every file that README and docs name is there: links, paths of the repository, modules."""
+"""Every file that README, CONTRIBUTING and docs name is there: links, paths of the repository, modules."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ import pytest
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = sorted(
-    [REPOSITORY / "README.md", *(REPOSITORY / "docs").rglob("*.md"), *(REPOSITORY / "docs").rglob("*.ipynb")]
+    [
+        REPOSITORY / "README.md",
+        REPOSITORY / "CONTRIBUTING.md",
+        *(REPOSITORY / "docs").rglob("*.md"),
+        *(REPOSITORY / "docs").rglob("*.ipynb"),
+    ]
     + [REPOSITORY / folder / "README.md" for folder in ("problems/robots", "runs")]
 )
 LINK = re.compile(r"\]\(([^)\s]+)\)")

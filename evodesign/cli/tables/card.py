@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
-from evodesign.cli.output import figure, heading
+from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, Parameter, materials_of
@@ -38,7 +37,10 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
     assessment = opened.evaluation.assessment
     several = any(outcome.case.label for outcome in assessment.cases)
     reach = f"reach: {_reach(assessment)}"
-    sections: dict[str, Table] = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
+    made_of = materials_of(opened.run.header.parameters, assessment.design)
+    sections = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
+    if made_of:
+        sections["materials"] = _materials(made_of)
     if several:
         sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
         sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
@@ -61,7 +63,7 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
 
 def _reach(assessment: Assessment) -> str:
     reach = assessment.reach
-    return f"{figure(reach.lowest_m)} to {figure(reach.highest_m)} m" if reach else "unknown"
+    return f"{rounded(reach.lowest_m)} to {rounded(reach.highest_m)} m" if reach else "unknown"
 
 
 def _title(opened: OpenedDesign) -> Text:
@@ -76,7 +78,7 @@ def _title(opened: OpenedDesign) -> Text:
     return title
 
 
-def _objectives(opened: OpenedDesign) -> Table:
+def _objectives(opened: OpenedDesign) -> FittedTable:
     table = titled("", [*names("objective"), *numbers("value", "best of the run")])
     assessment = opened.evaluation.assessment
     for objective in opened.run.header.objectives:
@@ -85,15 +87,14 @@ def _objectives(opened: OpenedDesign) -> Table:
         values = [value for value in found if value is not None]
         own = assessment.objectives.get(objective.name)
         table.add_row(
-            escape(on_one_line(heading(objective))), figure(own), figure(best(values, default=None))
+            escape(on_one_line(heading(objective))), rounded(own), rounded(best(values, default=None))
         )
-    table.add_row(escape("violation [m]"), figure(assessment.violation), "")
+    table.add_row(escape("violation [m]"), rounded(assessment.violation), "")
     return table
 
 
-def _parameters(opened: OpenedDesign) -> Table:
-    made_of = materials_of(opened.run.header.parameters, opened.evaluation.assessment.design)
-    within = names("within its bounds", "upper", *(["material"] if made_of else []))
+def _parameters(opened: OpenedDesign) -> FittedTable:
+    within = names("within its bounds", "upper")
     columns = [*names("parameter"), *numbers("value"), *names("unit"), *numbers("lower"), *within]
     table = titled("", columns)
     for parameter in opened.run.header.parameters:
@@ -103,13 +104,19 @@ def _parameters(opened: OpenedDesign) -> Table:
         ends = (f"{parameter.lower:g}", f"{parameter.upper:g}")
         table.add_row(
             escape(on_one_line(parameter.name)),
-            figure(value),
+            rounded(value),
             escape(on_one_line(unit)),
             ends[0],
             bar,
             ends[1],
-            *([escape(on_one_line(made_of.get(parameter.name, "")))] if made_of else []),
         )
+    return table
+
+
+def _materials(made_of: Mapping[str, str]) -> FittedTable:
+    table = titled("", names("parameter", "material"))
+    for parameter, material in made_of.items():
+        table.add_row(escape(on_one_line(parameter)), escape(on_one_line(material)))
     return table
 
 

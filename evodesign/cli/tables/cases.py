@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from rich.markup import escape
-from rich.table import Table
 
-from evodesign.cli.output import figure, shown
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import markup, rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome
@@ -19,7 +18,7 @@ ALONE = ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "
 SEVERAL = ("height", "robot |tau|", "human |tau|", "residual")
 
 
-def cases_table(assessment: Assessment, title: str) -> Table:
+def cases_table(assessment: Assessment, title: str) -> FittedTable:
     """A design's postures in short, height by height; of several people or loads, case by case.
 
     Args:
@@ -28,22 +27,23 @@ def cases_table(assessment: Assessment, title: str) -> Table:
     """
     outcomes = assessment.cases
     labels = _name_columns(outcomes)
-    table = titled(title, [*names(*labels), *numbers(*(SEVERAL if labels else ALONE)), *names("status")])
+    columns = [*names(*labels), *numbers(*(SEVERAL if labels else ALONE)), *names("status")]
+    table = titled(title, columns, keys=len(labels) + 1)
     for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
         iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
-            *(shown(name_of(outcome)) for name_of in labels.values()),
-            _height(outcome) if labels else figure(outcome.case.task.height_m),
-            figure(outcome.robot_torque_norm),
-            figure(outcome.human_torque_norm),
+            *(markup(name_of(outcome)) for name_of in labels.values()),
+            _height(outcome) if labels else rounded(outcome.case.task.height_m),
+            rounded(outcome.robot_torque_norm),
+            rounded(outcome.human_torque_norm),
             *iterations,
             _residual(outcome),
             _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
-            own = [figure(norms[agent]) for agent in (ROBOT, HUMAN)]
+            own = [rounded(norms[agent]) for agent in (ROBOT, HUMAN)]
             blank = ["" for _ in iterations]
-            table.add_row(*("" for _ in labels), "", *own, *blank, "", shown(f"under '{name}'"))
+            table.add_row(*("" for _ in labels), "", *own, *blank, "", markup(f"under '{name}'"))
         if following is not None and outcome.case.pair != following.case.pair:
             table.add_section()
     return table
@@ -58,7 +58,7 @@ def _status(outcome: CaseOutcome) -> str:
     return escape(on_one_line(status))
 
 
-def summary_table(assessment: Assessment, title: str) -> Table:
+def summary_table(assessment: Assessment, title: str) -> FittedTable:
     """Torque norms [N m] over all cases, and over those with each person or load, or at each height.
 
     Torques under disturbances count as the objectives count them, each beside the undisturbed one.
@@ -76,7 +76,7 @@ def summary_table(assessment: Assessment, title: str) -> Table:
     return table
 
 
-def _add_summary(table: Table, name: str, outcomes: Sequence[CaseOutcome], *, last: bool) -> None:
+def _add_summary(table: FittedTable, name: str, outcomes: Sequence[CaseOutcome], *, last: bool) -> None:
     solved = [outcome for outcome in outcomes if outcome.robot_torque_norm is not None]
     measured = [
         number
@@ -84,7 +84,7 @@ def _add_summary(table: Table, name: str, outcomes: Sequence[CaseOutcome], *, la
         for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, agent)])
     ]
     share = f"{len(solved)} of {len(outcomes)}"
-    table.add_row(shown(name), share, *map(figure, measured), end_section=last)
+    table.add_row(markup(name), share, *map(rounded, measured), end_section=last)
 
 
 def _norms(outcome: CaseOutcome, agent: str) -> Iterator[float]:

@@ -5,17 +5,15 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterator
 
-from rich.table import Table
-
 from evodesign.analysis.comparison import Comparison, best_designs
 from evodesign.analysis.comparison_json import hypervolume_summary
-from evodesign.cli.output import figure, heading, shown
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import heading, markup, rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 
 __all__ = ["comparison_tables", "lines_after", "lines_before"]
 
 
-def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
+def comparison_tables(comparison: Comparison) -> tuple[FittedTable, ...]:
     """Searches, runs, tests and best designs; those that would be empty are left out."""
     tables = [_searches(comparison), _runs(comparison)]
     if any(test.p is not None for test in comparison.tests):
@@ -48,61 +46,61 @@ def lines_after(comparison: Comparison) -> Iterator[str]:
         yield f"hypervolumes after {comparison.evaluations} evaluations, against {corner}"
 
 
-def _searches(comparison: Comparison) -> Table:
+def _searches(comparison: Comparison) -> FittedTable:
     measured = numbers("runs", "hypervolume, median", "least", "greatest", "median share of all")
     table = titled("Searches", [*names("search"), *measured])
     for name, members in comparison.searches.items():
         summary = hypervolume_summary(members) or {}
         shares = [each.share for each in members if each.share is not None]
         table.add_row(
-            shown(name),
+            markup(name),
             str(len(members)),
-            *(figure(summary.get(key)) for key in ("median", "least", "greatest")),
+            *(rounded(summary.get(key)) for key in ("median", "least", "greatest")),
             f"{statistics.median(shares):.1%}" if shares else "-",
         )
     return table
 
 
-def _runs(comparison: Comparison) -> Table:
+def _runs(comparison: Comparison) -> FittedTable:
     best = [f"best {heading(objective)}" for objective in comparison.objectives]
     table = titled("Runs", [*names("run", "search"), *numbers("seed", "front", "hypervolume", *best)])
     for each in comparison.runs:
         table.add_row(
-            shown(each.run.directory.name),
-            shown(each.search),
+            markup(each.run.directory.name),
+            markup(each.search),
             str(each.run.header.search.seed),
             str(len(each.front)),
-            figure(each.hypervolume),
-            *(figure(each.best.get(objective.name)) for objective in comparison.objectives),
+            rounded(each.hypervolume),
+            *(rounded(each.best.get(objective.name)) for objective in comparison.objectives),
         )
     return table
 
 
-def _tests(comparison: Comparison) -> Table:
+def _tests(comparison: Comparison) -> FittedTable:
     columns = [*names("between", "test"), *numbers("p", "first better"), *names("finding at 5 %")]
     table = titled("Rank tests of the hypervolumes", columns)
     for test in comparison.tests:
         if test.p is None:
             continue
         table.add_row(
-            shown(" / ".join(test.samples)),
+            markup(" / ".join(test.samples)),
             test.name,
-            figure(test.p),
+            rounded(test.p),
             "-" if test.effect is None else f"{test.effect:.0%}",
-            shown(test.finding),
+            markup(test.finding),
         )
     return table
 
 
-def _best(comparison: Comparison) -> Table:
+def _best(comparison: Comparison) -> FittedTable:
     columns = [*names("", "run"), *numbers("design", *map(heading, comparison.objectives))]
-    table = titled("Best designs of all runs", columns)
+    table = titled("Best designs of all runs", columns, keys=3)
     for each in best_designs(comparison):
         values = each.evaluation.assessment.objectives
         table.add_row(
-            shown(each.reason),
-            shown(each.run.run.directory.name),
+            markup(each.reason),
+            markup(each.run.run.directory.name),
             str(each.evaluation.number),
-            *(figure(values[objective.name]) for objective in comparison.objectives),
+            *(rounded(values[objective.name]) for objective in comparison.objectives),
         )
     return table

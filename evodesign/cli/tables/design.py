@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from rich.markup import escape
-from rich.table import Table
 
-from evodesign.cli.output import figure, heading
+from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.people import people_table
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.ergonomics import ergonomics
@@ -31,7 +30,7 @@ def design_tables(
     result: DesignResult,
     assessment: Assessment,
     sensitivities: Mapping[str, ObjectiveSensitivity],
-) -> Iterator[Table]:
+) -> Iterator[FittedTable]:
     """One design: its results, what they ask of the people, and what would change them."""
     yield from _assessment_tables(problem, name, result, assessment)
     if any(solution.solved for solution in result.cases):
@@ -42,14 +41,14 @@ def design_tables(
 
 def _assessment_tables(
     problem: DesignProblem, name: str, result: DesignResult, assessment: Assessment
-) -> tuple[Table, ...]:
+) -> tuple[FittedTable, ...]:
     """Its objectives, its postures case by case, and a summary where there are many cases."""
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
         value = assessment.objectives.get(objective.name)
-        summary.add_row(escape(heading(objective)), figure(value))
-    summary.add_row(escape("violation [m]"), figure(assessment.violation))
-    summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
+        summary.add_row(escape(heading(objective)), rounded(value))
+    summary.add_row(escape("violation [m]"), rounded(assessment.violation))
+    summary.add_row(escape("reach [m]"), f"{rounded(result.reach.lowest)} to {rounded(result.reach.highest)}")
     if not any(outcome.case.label for outcome in assessment.cases):
         return summary, cases_table(assessment, "the load at each height")
     return (
@@ -59,7 +58,7 @@ def _assessment_tables(
     )
 
 
-def _people_table(result: DesignResult) -> Table:
+def _people_table(result: DesignResult) -> FittedTable:
     """What the solved postures of a design ask of the people."""
     solved = [solution for solution in result.cases if solution.solved]
     asked = [
@@ -69,7 +68,9 @@ def _people_table(result: DesignResult) -> Table:
     return people_table(asked, titled=True)
 
 
-def _sensitivity_table(problem: DesignProblem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
+def _sensitivity_table(
+    problem: DesignProblem, sensitivities: Mapping[str, ObjectiveSensitivity]
+) -> FittedTable:
     """The parameters that move each objective most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
     columns = names("objective", "strongest parameters")

@@ -8,16 +8,14 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from rich.table import Table
-
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.analysis.failures import causes, failures
-from evodesign.cli.output import visible
-from evodesign.cli.tables.table import designs_table
+from evodesign.cli.output import printable
+from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Evaluation, materials_of
 from evodesign.runlog.run import RunLog
 
-__all__ = ["front_csv", "front_json", "front_lines", "front_table"]
+__all__ = ["front_csv", "front_json", "front_lines", "front_table", "least_violated"]
 
 TITLES = {
     Order.FIRST_OBJECTIVE: "Front of",
@@ -78,9 +76,9 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
     return text.getvalue()
 
 
-def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> Table:
+def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> FittedTable:
     """Designs with their objectives, in the given order."""
-    title = f"{TITLES[choice.order]} {visible(run.header.problem_name)}"
+    title = f"{TITLES[choice.order]} {printable(run.header.problem_name)}"
     return designs_table(title, run.header.objectives, designs)
 
 
@@ -106,7 +104,7 @@ def _remarks(run: RunLog, choice: Choice, chosen: Chosen, shown: int) -> list[st
         return [f"{shown} of {chosen.found} {kind} are shown{more}"]
     if any(evaluation.feasible for evaluation in run.evaluations):
         return [f"no feasible design{_such(choice)}"] if choice.where else []
-    nearest = _least_violated(run.evaluations)
+    nearest = least_violated(run.evaluations)
     if nearest is None:
         return ["no design was evaluated to an end"] if run.evaluations else ["nothing was evaluated yet"]
     return [
@@ -119,6 +117,7 @@ def _such(choice: Choice) -> str:
     return f" with {' and '.join(map(str, choice.where))}" if choice.where else ""
 
 
-def _least_violated(evaluations: Sequence[Evaluation]) -> Evaluation | None:
+def least_violated(evaluations: Sequence[Evaluation]) -> Evaluation | None:
+    """The design that comes nearest to feasibility; None if no violation is known."""
     known = [each for each in evaluations if each.assessment.violation is not None]
     return min(known, key=lambda each: each.assessment.violation or 0.0, default=None)

@@ -13,14 +13,14 @@ from rich.text import Text
 
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.hypervolume import best
-from evodesign.cli.output import figure, heading, shown, visible
-from evodesign.cli.tables.table import designs_table, names, numbers
+from evodesign.cli.output import heading, markup, printable, rounded
+from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.report.live.state import MOST_KNEES, LiveState, word
 
 __all__ = ["screen", "sparkline"]
 
 BARS = "▁▂▃▄▅▆▇█"
-SPARKS = 40
+SPARKS = 30
 """Most signs of a sparkline."""
 
 
@@ -36,8 +36,8 @@ def screen(directory: Path, live_state: LiveState, *, ended: bool, now: float) -
     header = live_state.header
     search = header.search
     title = (
-        f"[bold]{shown(header.problem_name)}[/bold]  {shown(search.algorithm)}, "
-        f"population {search.population}, seed {search.seed}  {shown(str(directory))}"
+        f"[bold]{markup(header.problem_name)}[/bold]  {markup(search.algorithm)}, "
+        f"population {search.population}, seed {search.seed}  {markup(str(directory))}"
     )
     parts: list[RenderableType] = [
         Text.from_markup(title),
@@ -79,7 +79,7 @@ def _pace(directory: Path, live_state: LiveState, state: str, now: float) -> str
         case "finished":
             return f"{count}, finished"
         case "stopped":
-            return f"{count}, stopped; go on with: evodesign resume {visible(str(directory))}"
+            return f"{count}, stopped; go on with: evodesign resume {printable(str(directory))}"
         case "silent":
             silent = _span(now - (live_state.latest or now))
             return f"{count}, nothing new for {silent}: it was killed, or an evaluation takes long"
@@ -101,22 +101,22 @@ def _numbers(live_state: LiveState) -> Table:
     generations = live_state.generations
     volumes = [each.hypervolume for each in generations if each.hypervolume is not None]
     share = f"{live_state.feasible / live_state.done:.0%}" if live_state.done else "-"
-    columns = (*names(""), *numbers(""), Column(style="cyan", no_wrap=True))
+    columns = (Column(), Column(justify="right", no_wrap=True), Column(style="cyan", no_wrap=True))
     table = Table(*columns, box=None, show_header=False, padding=(0, 2, 0, 0))
     table.add_row("generations", str(len(generations)), "")
     table.add_row("feasible", share, sparkline([each.feasible_share for each in generations], (0.0, 1.0)))
-    table.add_row("hypervolume", figure(volumes[-1] if volumes else None), sparkline(volumes))
+    table.add_row("hypervolume", rounded(volumes[-1] if volumes else None), sparkline(volumes))
     table.add_row("on the front", str(len(live_state.front)), "")
     for status, count in live_state.causes.items():
         table.add_row(escape(str(status)), str(count), "")
     for objective in live_state.header.objectives:
         history = [each.best[objective.name] for each in generations if objective.name in each.best]
         latest = best(live_state.header.objectives, live_state.front).get(objective.name)
-        table.add_row(shown(f"best {heading(objective)}"), figure(latest), sparkline(history))
+        table.add_row(markup(f"best {heading(objective)}"), rounded(latest), sparkline(history))
     return table
 
 
-def _knees(live_state: LiveState) -> Table:
+def _knees(live_state: LiveState) -> FittedTable:
     found = knees(live_state.header.objectives, live_state.front)
     title = f"Knees of the front, {len(found[:MOST_KNEES])} of {len(found)}"
     return designs_table(title, live_state.header.objectives, found[:MOST_KNEES])

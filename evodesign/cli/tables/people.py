@@ -6,10 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-
-from evodesign.cli.output import shown
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import markup
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Case
 
 if TYPE_CHECKING:
@@ -30,7 +28,7 @@ CAPTION = (
 )
 
 
-def people_table(asked: Sequence[Asked], *, titled: bool) -> Table:
+def people_table(asked: Sequence[Asked], *, titled: bool) -> FittedTable:
     """A row for each case; of several people or loads, each person's hardest ones."""
     several = any(case.label for case, _ in asked)
     rows = [(case.name, ergonomics) for case, ergonomics in (hardest_cases(asked) if several else asked)]
@@ -61,16 +59,15 @@ def _index(asked: Asked) -> float:
     return math.inf if index is None else index
 
 
-def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) -> Table:
+def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) -> FittedTable:
     """A row for each case."""
     measured = numbers("effort", "ahead [m]", "up [m]", "holds [kg]", "limit [kg]", "index")
-    table = titled(title, [*names("case", "hardest joint"), *measured])
-    table.caption, table.caption_justify = CAPTION, "left"
+    table = titled(title, [*names("case", "hardest joint"), *measured], caption=CAPTION)
     for case, asked in cases:
         strain, task = asked.strain, asked.task
         table.add_row(
-            shown(case),
-            "-" if strain is None else shown(f"{strain.joint}, {strain.movement}"),
+            markup(case),
+            "-" if strain is None else markup(f"{strain.joint}, {strain.movement}"),
             "-" if strain is None else f"{strain.share:.1%}",
             f"{task.horizontal:.2f}",
             f"{task.vertical:.2f}",

@@ -8,8 +8,8 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.cli.output import figure, shown, visible
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import markup, printable, rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.model_json import model_json
@@ -22,7 +22,7 @@ CAPTION = (
 )
 
 
-def model_tables(problem: DesignProblem) -> tuple[Table, ...]:
+def model_tables(problem: DesignProblem) -> tuple[FittedTable | Table, ...]:
     """What was understood, for a person: agents, task, the robot's links, and the parameters."""
     shown = model_json(problem)
     return (
@@ -34,7 +34,7 @@ def model_tables(problem: DesignProblem) -> tuple[Table, ...]:
     )
 
 
-def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
+def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> FittedTable:
     """Robot and people; of several people, also who each is and how tall."""
     several = any("who" in agent for agent in agents)
     who = names("agent", *(("person",) if several else ()), "model")
@@ -43,25 +43,25 @@ def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> Table:
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
         table.add_row(
             agent["name"],
-            *([shown(agent.get("who", ""))] if several else []),
+            *([markup(agent.get("who", ""))] if several else []),
             escape(_model(agent)),
             *map(str, counts),
-            figure(agent["mass_kg"]),
+            rounded(agent["mass_kg"]),
         )
     return table
 
 
 def _model(agent: dict[str, Any]) -> str:
     """The model's name, or what a generated person is, where that tells it from others."""
-    return f"{agent['sex']}, {figure(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
+    return f"{agent['sex']}, {rounded(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
 
 
 def _task_table(shown: dict[str, Any]) -> Table:
     table = Table(show_header=False)
     for load in shown["payloads"] if "payloads" in shown else [shown["payload"]]:
-        mass, size = f"{load['mass_kg']:g} kg", f"{' x '.join(map(figure, load['size_m']))} m"
+        mass, size = f"{load['mass_kg']:g} kg", f"{' x '.join(map(rounded, load['size_m']))} m"
         name = load.get("payload_name", mass)
-        told = mass if name == mass else f"{visible(name)}: {mass}"
+        told = mass if name == mass else f"{printable(name)}: {mass}"
         table.add_row("load", escape(f"{told}, {size}"))
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
     for disturbance in shown.get("disturbances", ()):
@@ -82,30 +82,30 @@ def _disturbance_text(disturbance: dict[str, Any]) -> str:
     return f"{disturbance['name']}: {', '.join(parts) or 'nothing changes'}"
 
 
-def _links_table(links: Iterable[dict[str, Any]]) -> Table:
+def _links_table(links: Iterable[dict[str, Any]]) -> FittedTable:
     """Every link that has mass; the frames without are named below."""
     frames = [link["link"] for link in links if link["kind"] == "frame"]
-    caption = f"{CAPTION}\nwithout mass: {', '.join(frames)}" if frames else CAPTION
-    table = titled("links of the robot", names("link", "shape", "grows along", "density", "mass [kg]"))
-    table.caption, table.caption_justify = escape(caption), "left"
+    caption = f"{CAPTION}\nwithout mass: {printable(', '.join(frames))}" if frames else CAPTION
+    columns = names("link", "shape", "grows along", "density", "mass [kg]")
+    table = titled("links of the robot", columns, caption=caption)
     for link in links:
         if link["kind"] != "frame":
             _add_link(table, link)
     return table
 
 
-def _add_link(table: Table, link: dict[str, Any]) -> None:
+def _add_link(table: FittedTable, link: dict[str, Any]) -> None:
     """A link's rows, one for each solid."""
-    figures = (figure(link["density_kg_per_m3"]), figure(link["mass_kg"]))
+    figures = (rounded(link["density_kg_per_m3"]), rounded(link["mass_kg"]))
     for number, shape in enumerate(link["solids"] or [link["kind"]]):
         name, density, mass = (link["link"], *figures) if number == 0 else ("", "", "")
         table.add_row(escape(name), shape, escape(_growth(link, number)), density, mass)
 
 
-def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
+def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
     table = titled("parameters", names("parameter", "from", "to", "unit", "links"))
     for parameter in parameters:
-        bounds = (figure(parameter["lower"]), figure(parameter["upper"]), parameter["unit"])
+        bounds = (rounded(parameter["lower"]), rounded(parameter["upper"]), parameter["unit"])
         links = ", ".join(link["link"] for link in parameter["links"])
         if "materials" in parameter:
             links = f"{links}; of {', '.join(parameter['materials'])}"
@@ -113,12 +113,12 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> Table:
     return table
 
 
-def _materials_table(materials: Iterable[dict[str, Any]]) -> Table:
+def _materials_table(materials: Iterable[dict[str, Any]]) -> FittedTable:
     columns = [*names("material"), *numbers("density [kg/m^3]"), *names("source")]
     table = titled("materials", columns)
     for material in materials:
         name, source = escape(on_one_line(material["name"])), escape(on_one_line(material["source"]))
-        table.add_row(name, figure(material["density_kg_per_m3"]), source)
+        table.add_row(name, rounded(material["density_kg_per_m3"]), source)
     return table
 
 

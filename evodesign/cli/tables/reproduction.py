@@ -6,34 +6,33 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from rich.markup import escape
-from rich.table import Table
 
 from evodesign.analysis.failures import causes
 from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
-from evodesign.cli.output import figure
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.report.reproduction import Reproduction
 
 __all__ = ["claims_table", "reproduction_lines", "torque_table"]
 
 
-def torque_table(done: Reproduction) -> Table:
+def torque_table(done: Reproduction) -> FittedTable:
     """Table II of the paper with ours beside it, row under row."""
     heights = list(PAPER_OPTIMISED)
     columns = [*names("model", "agent", "setting"), *numbers(*(f"{height:g} m" for height in heights))]
-    table = titled("Table II: torque norm [N m] by height of the load", columns)
+    table = titled("Table II: torque norm [N m] by height of the load", columns, keys=3)
     for model, rows in done.by_setting.items():
         for agent in ("human", "robot"):
             for number, (setting, torque_norms) in enumerate(rows.items()):
                 values = [
-                    figure(getattr(torque_norms[h], agent)) if h in torque_norms else "-" for h in heights
+                    rounded(getattr(torque_norms[h], agent)) if h in torque_norms else "-" for h in heights
                 ]
                 first = (model, agent) if number == 0 else ("", "")
                 table.add_row(*first, setting, *values, end_section=number == len(rows) - 1)
     return table
 
 
-def claims_table(claims: Iterable[Claim]) -> Table:
+def claims_table(claims: Iterable[Claim]) -> FittedTable:
     """Every claim with its verdict."""
     table = titled("Claims", names("claim", "by", "paper", "here", "verdict"))
     for claim in claims:
@@ -49,9 +48,9 @@ def reproduction_lines(done: Reproduction, directory: Path, seconds: float) -> l
         *(f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in done.claims),
         f"published setting: starts {causes(published.statuses)}; largest difference of a torque from the "
         f"paper's formula {published.difference:.1e} N m",
-        f"the original robot holds loads up to {figure(done.highest)} m",
+        f"the original robot holds loads up to {rounded(done.highest)} m",
         *(
-            f"{one.robot.name}: least cost {figure(one.cost)}; {len(one.run.evaluations)} evaluations, "
+            f"{one.robot.name}: least cost {rounded(one.cost)}; {len(one.run.evaluations)} evaluations, "
             f"{causes(one.statuses)}; the run lies in {one.run.directory}"
             for one in done.found
         ),

@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from rich.markup import escape
-from rich.table import Table
 
-from evodesign.cli.output import figure
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -19,7 +18,7 @@ from evodesign.records import Case
 __all__ = ["starts_json", "starts_tables"]
 
 
-def starts_tables(problem: DesignProblem, known: Precomputed) -> tuple[Table, Table]:
+def starts_tables(problem: DesignProblem, known: Precomputed) -> tuple[FittedTable, FittedTable]:
     """Coverage of each portfolio of starts, and errors of each value function of the person."""
     return _starts_table(problem, known), _people_table(problem, known)
 
@@ -34,23 +33,23 @@ def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[st
         yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
 
 
-def _starts_table(problem: DesignProblem, known: Precomputed) -> Table:
+def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
     columns = [*names("problem"), *numbers("starts", "designs tried", "within 1 %", "worst miss")]
     table = titled("start portfolios, and designs that they were not made from", columns)
     for name, found, unit in _portfolios(problem, known):
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
-        miss = f"{figure(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
+        miss = f"{rounded(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
         table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
     return table
 
 
-def _people_table(problem: DesignProblem, known: Precomputed) -> Table:
+def _people_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
     several = len(problem.scenes) > 1
     columns = [*names(*["person and load"][:several]), *numbers("height", "known", "largest error")]
-    table = titled("the person's part V(X), X the internal force", columns)
+    table = titled("the person's part V(X), X the internal force", columns, keys=1 + several)
     for case, error in _errors(problem, known):
-        shown = "-" if error is None else f"{figure(error)} N^2 m^2"
+        shown = "-" if error is None else f"{rounded(error)} N^2 m^2"
         row = (str(case.task), "no: solved jointly" if error is None else "yes", shown)
         table.add_row(*([escape(case.label)] if several else []), *row)
     return table

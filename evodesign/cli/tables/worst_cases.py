@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from rich.table import Table
-
-from evodesign.cli.output import figure, shown
-from evodesign.cli.tables.table import names, numbers, titled
+from evodesign.cli.output import markup, rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.subset import ranked_joints
 
@@ -21,22 +19,22 @@ ValuesOf = Callable[[Sequence[AgentDetail]], dict[str, Sequence[float | None]]]
 """From an agent's postures to the values of each row of a table."""
 
 
-def worst_torques(cases: Sequence[CaseDetail]) -> Table:
+def worst_torques(cases: Sequence[CaseDetail]) -> FittedTable:
     """The joints of largest torque: mean size of their torques, the largest one, and in which case."""
     return _worst("joint", ("mean size", "worst"), cases, largest_torques)
 
 
-def worst_forces(cases: Sequence[CaseDetail]) -> Table:
+def worst_forces(cases: Sequence[CaseDetail]) -> FittedTable:
     """Sizes of the forces on hands and feet: the mean, the largest, and in which case."""
     return _worst("contact", ("mean", "largest"), cases, contact_forces)
 
 
-def torques_by_height(cases: Sequence[CaseDetail]) -> Table:
+def torques_by_height(cases: Sequence[CaseDetail]) -> FittedTable:
     """The joints that have the largest torques, with their torques [N m] at each height."""
     return _by_height("joint", cases, largest_torques)
 
 
-def forces_by_height(cases: Sequence[CaseDetail]) -> Table:
+def forces_by_height(cases: Sequence[CaseDetail]) -> FittedTable:
     """Sizes of the forces on hands and feet [N] at each height."""
     return _by_height("contact", cases, contact_forces)
 
@@ -70,20 +68,23 @@ def _rows(
             yield agent, name, values, name == [*found][-1]
 
 
-def _by_height(named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> Table:
+def _by_height(named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> FittedTable:
     columns = [*names("agent", named), *numbers(*(str(detail.case.task) for detail in cases))]
-    table = titled("", columns)
+    table = titled("", columns, keys=2)
     for agent, name, values, last in _rows(cases, values_of):
-        table.add_row(agent, shown(name), *map(figure, values), end_section=last)
+        table.add_row(agent, markup(name), *map(rounded, values), end_section=last)
     return table
 
 
-def _worst(named: str, measured: tuple[str, str], cases: Sequence[CaseDetail], values_of: ValuesOf) -> Table:
-    table = titled("", [*names("agent", named), *numbers(*measured), *names("in the case")])
+def _worst(
+    named: str, measured: tuple[str, str], cases: Sequence[CaseDetail], values_of: ValuesOf
+) -> FittedTable:
+    columns = [*names("agent", named), *numbers(*measured), *names("in the case")]
+    table = titled("", columns, keys=2)
     for agent, name, values, last in _rows(cases, values_of):
         known = [(value, detail) for value, detail in zip(values, cases, strict=True) if value is not None]
         worst, where = max(known, key=lambda found: abs(found[0]))
         mean = sum(abs(value) for value, _ in known) / len(known)
-        case = shown(where.case.name)
-        table.add_row(agent, shown(name), figure(mean), figure(worst), case, end_section=last)
+        case = markup(where.case.name)
+        table.add_row(agent, markup(name), rounded(mean), rounded(worst), case, end_section=last)
     return table

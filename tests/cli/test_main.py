@@ -1,0 +1,64 @@
+"""What every command line has: a version, help in short, completion for the shell, errors in one sentence."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import evodesign
+from evodesign.cli.main import COMMANDS, app, main
+
+COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
+
+
+def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:
+    app(["--version"], standalone_mode=False)
+    assert capsys.readouterr().out == f"evodesign {evodesign.__version__}\n"
+
+
+def test_alone_it_shows_its_help() -> None:
+    done = subprocess.run(COMMAND, capture_output=True, text=True, check=False)
+    shown = done.stdout + done.stderr
+    assert "Usage: evodesign [OPTIONS] COMMAND" in shown
+    assert [name for name in COMMANDS if f"\n  {name} " not in shown] == []
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_readme_names_every_command(command: str, repository: Path) -> None:
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    (commands,) = re.findall(r"## Using it\n\n```\n(.*?)```", text, re.DOTALL)
+    assert re.search(rf"\b{command}\b", commands)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_commands_are_completed(shell: str) -> None:
+    words = {
+        "bash": {"COMP_WORDS": "evodesign re", "COMP_CWORD": "1"},
+        "zsh": {"_TYPER_COMPLETE_ARGS": "evodesign re"},
+        "fish": {"_TYPER_COMPLETE_ARGS": "evodesign re", "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
+    }
+    environment = {**os.environ, "_EVODESIGN_COMPLETE": f"complete_{shell}", **words[shell]}
+    done = subprocess.run(COMMAND, capture_output=True, text=True, check=False, env=environment)
+    assert [name for name in COMMANDS if name.startswith("re") and name not in done.stdout] == []
+    assert "search" not in done.stdout.split()
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_an_error_is_one_sentence_which_a_terminal_shows_in_whole_words(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = "no-such-directory/" * 4
+    monkeypatch.setattr(sys, "argv", ["evodesign", "front", path])
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    monkeypatch.setenv("COLUMNS", "60")
+    with pytest.raises(SystemExit) as stop:
+        main()
+    shown = capsys.readouterr().err
+    assert stop.value.code == 2
+    assert shown.split()[:2] == ["error:", f"{path.rstrip('/')}:"]
+    assert shown.count("\n") == (3 if terminal else 1)
