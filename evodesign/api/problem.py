@@ -75,7 +75,7 @@ class Problem:
     def __init__(self, source: ProblemSource, jobs: int = 1) -> None:
         self.source = source
         self._jobs = jobs
-        problem = self.built
+        self._built = problem = build_problem(source)
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
@@ -104,10 +104,10 @@ class Problem:
         """
         return cls(source_of(tables, folder), jobs)
 
-    @cached_property
+    @property
     def built(self) -> DesignProblem:
         """Everything that the file says, with all names resolved."""
-        return build_problem(self.source)
+        return self._built
 
     @property
     def tasks(self) -> tuple[Task, ...]:

@@ -129,8 +129,9 @@ def resume(
         ResumeMismatch: the log holds a genome that the search does not ask for.
         Interrupted: as in `search`.
     Example:
-        >>> len(evodesign.resume("runs/new", evaluations=6, pool="serial"))
-        6
+        >>> short = evodesign.search("problem.toml", "runs/short", evaluations=2, population=2, pool="serial")
+        >>> len(evodesign.resume(short, evaluations=4, pool="serial"))
+        4
     """
     _at_least(1, evaluations=evaluations, jobs=jobs)
     _at_least(0, hours=hours, stagnation_generations=stagnation_generations)
