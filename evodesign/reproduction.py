@@ -176,6 +176,9 @@ def reproduction(experiment: Experiment, without: DesignProblem) -> Reproduction
     for one in runs:
         torque_norms = (original.torque_norms, one.robot.torque_norms)
         name = one.robot.name
+        if not one.run.evaluations:
+            experiment.display.note(f"{name}: had no time for a design, so no claim is held against it")
+            continue
         claims += [
             reach_claim(name, *torque_norms),
             reduction_claim(name, *torque_norms, least, len(every)),
