@@ -140,7 +140,7 @@ class Problem:
             >>> longer.feasible, longer.objectives["robot_torque"]
             (True, 2.25...)
         """
-        values = self._values(design)
+        values = self.values(design)
         found = self._evaluator.assess_values(values)
         return Design(None, found.assessment, found.cases, partial(self._log, values, found))
 
@@ -156,7 +156,8 @@ class Problem:
         directory = Path(name_in_path(self.name))
         return RunLog(directory, header, (evaluation,), (), (), (detail,), complete=True, notes=())
 
-    def _values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
+    def values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
+        """One value per parameter of a design; arguments and errors are those of `evaluate`."""
         names = [parameter.name for parameter in self.parameters]
         if isinstance(design, Mapping):
             for name in design:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 
@@ -35,7 +35,15 @@ from evodesign.problem.source import decode_toml
 from evodesign.records import Assessed, Genome, ProblemSource, RunHeader, Status
 from evodesign.searches.base import JOINT_STARTS
 
-__all__ = ["Remembering", "cached_precomputed", "evaluation_factory", "evaluator_of", "problem_digest"]
+__all__ = [
+    "Remembering",
+    "ValuesFactory",
+    "cached_precomputed",
+    "evaluation_factory",
+    "evaluator_of",
+    "problem_digest",
+    "values_factory",
+]
 
 
 Evaluations = AssessmentFactory | BaselineFactory
@@ -60,6 +68,43 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
     if compiled:
         _compile(factory, progress)
     return factory
+
+
+@dataclass(frozen=True, slots=True)
+class ValuesFactory:
+    """Builds the evaluation of designs given as one number per parameter, in whichever process it is called.
+
+    Args:
+        factory: of the same problem's evaluation of genomes.
+    """
+
+    factory: AssessmentFactory
+
+    @property
+    def limits(self) -> Limits:
+        """Those of the factory inside."""
+        return self.factory.limits
+
+    def __call__(self) -> Callable[[Sequence[float]], Assessed]:
+        """Build the inner problems and return the function from values to results."""
+        return Evaluator(self.factory.problem, self.factory.known).assess_values
+
+
+def values_factory(
+    problem: DesignProblem, pool: Pool, progress: PrecomputeProgress = SILENT
+) -> ValuesFactory:
+    """The evaluation of a problem's designs as workers build it, from values instead of genomes.
+
+    Args:
+        problem: whose designs they are.
+        pool: where what no cache holds is worked out.
+        progress: is shown what is worked out.
+    """
+    known = cached_precomputed(problem, pool, progress)
+    factory = AssessmentFactory(digest(problem.source), problem, known)
+    if problem.options.compiled:
+        _compile(factory, progress)
+    return ValuesFactory(factory)
 
 
 def evaluator_of(problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
