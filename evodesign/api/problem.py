@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from evodesign.api.design import Design
 from evodesign.design.space import ALLOCATIONS, ParameterKind
@@ -23,6 +23,9 @@ from evodesign.records import Assessed, Detail, Evaluation, Objective, Parameter
 from evodesign.runlog.directory import name_in_path
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog
+
+if TYPE_CHECKING:
+    from evodesign.api.optuna_study import OptunaObjective
 
 __all__ = ["Problem", "open_problem", "problems"]
 
@@ -143,6 +146,19 @@ class Problem:
         values = self.values(design)
         found = self._evaluator.assess_values(values)
         return Design(None, found.assessment, found.cases, partial(self._log, values, found))
+
+    def optuna_objective(self) -> OptunaObjective:
+        """The problem as an objective for `study.optimize` of Optuna.
+
+        Raises:
+            InputError: Optuna is not installed.
+        Example:
+            >>> problem.optuna_objective().directions
+            ['minimize', 'minimize', 'maximize']
+        """
+        from evodesign.api.optuna_study import OptunaObjective  # takes its time to load
+
+        return OptunaObjective(self)
 
     def _log(self, values: tuple[float, ...], found: Assessed) -> RunLog:
         """A run of one design, in memory."""

@@ -88,8 +88,9 @@ class ToyProblem:
             Objective(f"value_{i}", sense, "1") for i, sense in enumerate(senses[:objectives])
         )
 
-    def evaluate(self, row: Sequence[float]) -> Design:
+    def evaluate(self, design: Mapping[str, float] | Sequence[float]) -> Design:
         """Nearly half infeasible by a known distance, a seventh by an unknown one."""
+        row = design.values() if isinstance(design, Mapping) else design
         a, b, c, d = (value - 0.5 for value in row)
         values = (40.0 + 10.0 * a**2 + 20.0 * d, 7.0 + (1.0 - a) ** 2 + b * c, 1.0 + a)
         violation, unknown = max(0.0, 0.6 - a), b > 1.3
