@@ -29,6 +29,7 @@ from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.file import ProblemFile, SolverTable
+from evodesign.problem.objectives import from_outside
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
@@ -179,6 +180,8 @@ Task = Callable[[Genome], Assessed]
 class Remembering:
     """Builds an evaluation that looks first whether it knows the design.
 
+    With objectives from outside of the package nothing is kept: no digest has their code.
+
     Args:
         factory: of the evaluation; its task is built when a design is not known.
     """
@@ -192,6 +195,8 @@ class Remembering:
 
     def __call__(self) -> Task:
         """The function from genome to what it is worth."""
+        if any(from_outside(objective.name) for objective in self.factory.problem.objectives):
+            return self.factory()
         shelf = f"evaluations/{problem_digest(self.factory.source)}"
         return functools.partial(_remembered, functools.cache(self.factory), shelf)
 
