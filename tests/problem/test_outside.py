@@ -102,7 +102,7 @@ def test_evaluations_with_code_from_outside_are_not_kept(
 
 @pytest.mark.parametrize("asynchronous", [False, True])
 def test_searches_from_outside(asynchronous: bool) -> None:
-    from evodesign.search.registry import make_asynchronous_search, make_search
+    from evodesign.searches.registry import make_asynchronous_search, make_search
 
     make: Any = make_asynchronous_search if asynchronous else make_search
     settings = SearchSettings(algorithm="of_mine:Middle", dimension=2, objectives=1, population=4, seed=1)
