@@ -2,7 +2,7 @@
 
 A term enters every program, the independent check and the derivatives of the process that registers it. The
 processes of a search would not know it: to search with it, put the term into a file of a checkout, in
-`evodesign/posture/terms/`, with a line in `registry.py` there (README, "Adding a term").
+`evodesign/posture/terms/`, with a line in `registry.py` there (CONTRIBUTING.md).
 
     python examples/own_term.py
 """
