@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from evodesign.api.design import Design
 from evodesign.design.space import ALLOCATIONS, ParameterKind
@@ -23,6 +23,9 @@ from evodesign.records import Assessed, Detail, Evaluation, Objective, Parameter
 from evodesign.runlog.directory import name_in_path
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog
+
+if TYPE_CHECKING:
+    from evodesign.api.optuna_study import OptunaObjective
 
 __all__ = ["Problem", "open_problem", "problems"]
 
@@ -140,9 +143,22 @@ class Problem:
             >>> longer.feasible, longer.objectives["robot_torque"]
             (True, 2.25...)
         """
-        values = self._values(design)
+        values = self.values(design)
         found = self._evaluator.assess_values(values)
         return Design(None, found.assessment, found.cases, partial(self._log, values, found))
+
+    def optuna_objective(self) -> OptunaObjective:
+        """The problem as an objective for `study.optimize` of Optuna.
+
+        Raises:
+            InputError: Optuna is not installed.
+        Example:
+            >>> problem.optuna_objective().directions
+            ['minimize', 'minimize', 'maximize']
+        """
+        from evodesign.api.optuna_study import OptunaObjective  # takes its time to load
+
+        return OptunaObjective(self)
 
     def _log(self, values: tuple[float, ...], found: Assessed) -> RunLog:
         """A run of one design, in memory."""
@@ -156,7 +172,8 @@ class Problem:
         directory = Path(name_in_path(self.name))
         return RunLog(directory, header, (evaluation,), (), (), (detail,), complete=True, notes=())
 
-    def _values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
+    def values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
+        """One value per parameter of a design; arguments and errors are those of `evaluate`."""
         names = [parameter.name for parameter in self.parameters]
         if isinstance(design, Mapping):
             for name in design:

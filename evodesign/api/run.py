@@ -9,7 +9,10 @@ import os
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, conditions, quantities
@@ -18,7 +21,14 @@ from evodesign.errors import InputError
 from evodesign.records import CaseDetail, Evaluation, Objective, Parameter
 from evodesign.runlog.run import RunLog, read_run
 
+if TYPE_CHECKING:
+    from optuna import Study
+    from optuna.storages import BaseStorage
+
 __all__ = ["Run", "open_run"]
+
+Column = NDArray[Any]
+"""A value per row: whole numbers, numbers, truth values, or texts."""
 
 
 def open_run(path: str | os.PathLike[str]) -> Run:
@@ -168,61 +178,84 @@ class Run:
             ) from error
         return Path(path)
 
-    def table(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
+    def table(self, designs: Sequence[Design] | None = None) -> dict[str, Column]:
         """Designs as columns: `pandas.DataFrame(run.table())`.
 
         Args:
             designs: of this run; left out, all evaluations.
         Returns:
             Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
-            the reach [m], torque norms by height and by case [N m], parameters; None where a value does not
-            exist.
+            the reach [m], torque norms by height and by case [N m], parameters; not a number where a value
+            does not exist.
+        Raises:
+            InputError: a design that is none of this run.
         Example:
             >>> table = run.table(run.front)
-            >>> table["number"], table["feasible"]
+            >>> table["number"].tolist(), table["feasible"].tolist()
             ([4, 2, 1], [True, True, True])
         """
-        wanted = None if designs is None else [design.number for design in designs]
-        by_number = {evaluation.number: evaluation for evaluation in self.log.evaluations}
-        rows = [
-            by_number[number] for number in (by_number if wanted is None else wanted) if number is not None
-        ]
-        columns: dict[str, list[Any]] = {
-            "number": [row.number for row in rows],
-            "generation": [row.generation for row in rows],
-            "feasible": [row.feasible for row in rows],
-            "status": [str(row.assessment.status) for row in rows],
-            "violation": [row.assessment.violation for row in rows],
-            "seconds": [row.seconds for row in rows],
+        rows = self._evaluations(designs)
+        columns = {
+            "number": _whole([row.number for row in rows]),
+            "generation": _whole([row.generation for row in rows]),
+            "feasible": np.array([row.feasible for row in rows], dtype=bool),
+            "status": _text([str(row.assessment.status) for row in rows]),
+            "violation": _real([row.assessment.violation for row in rows]),
+            "seconds": _real([row.seconds for row in rows]),
         }
-        return columns | {name: [value(row) for row in rows] for name, value in self._quantities.items()}
+        return columns | {
+            name: _real([value(row) for row in rows]) for name, value in self._quantities.items()
+        }
 
-    def cases(self, designs: Sequence[Design] | None = None) -> dict[str, list[Any]]:
+    def cases(self, designs: Sequence[Design] | None = None) -> dict[str, Column]:
         """Every case of designs as columns, a row per design, person, load and task.
 
         Args:
             designs: of this run; left out, all evaluations.
         Returns:
             Columns by name: number, human, payload (empty where the problem has one), height [m], status,
-            reason, robot_torque and human_torque [N m], residual; None where a value does not exist.
+            reason, robot_torque and human_torque [N m], residual; not a number where a value does not exist.
+        Raises:
+            InputError: a design that is none of this run.
         Example:
             >>> cases = run.cases([design])
-            >>> [*zip(cases["human"], cases["height"])]
+            >>> [*zip(cases["human"].tolist(), cases["height"].tolist())]
             [('short', 0.8), ('short', 1.0), ('tall', 0.8), ('tall', 1.0)]
         """
-        chosen = self.designs if designs is None else designs
-        rows = [(design.number, outcome) for design in chosen for outcome in design.cases]
+        rows = [(row.number, found) for row in self._evaluations(designs) for found in row.assessment.cases]
         return {
-            "number": [number for number, _ in rows],
-            "human": [outcome.case.person for _, outcome in rows],
-            "payload": [outcome.case.payload for _, outcome in rows],
-            "height": [outcome.case.task.height_m for _, outcome in rows],
-            "status": [str(outcome.status) for _, outcome in rows],
-            "reason": [outcome.reason for _, outcome in rows],
-            "robot_torque": [outcome.robot_torque_norm for _, outcome in rows],
-            "human_torque": [outcome.human_torque_norm for _, outcome in rows],
-            "residual": [outcome.residual for _, outcome in rows],
+            "number": _whole([number for number, _ in rows]),
+            "human": _text([outcome.case.person for _, outcome in rows]),
+            "payload": _text([outcome.case.payload for _, outcome in rows]),
+            "height": _real([outcome.case.task.height_m for _, outcome in rows]),
+            "status": _text([str(outcome.status) for _, outcome in rows]),
+            "reason": _text([outcome.reason for _, outcome in rows]),
+            "robot_torque": _real([outcome.robot_torque_norm for _, outcome in rows]),
+            "human_torque": _real([outcome.human_torque_norm for _, outcome in rows]),
+            "residual": _real([outcome.residual for _, outcome in rows]),
         }
+
+    def to_optuna(
+        self, storage: str | os.PathLike[str] | BaseStorage | None = None, study_name: str | None = None
+    ) -> Study:
+        """All evaluations as trials of a new study of Optuna, for its plots, dashboard and samplers.
+
+        A design with all objectives is a complete trial, and the others have failed, with the reason in
+        `user_attrs`. The study's `best_trials` are the front, and designs equal to those in every objective.
+
+        Args:
+            storage: of Optuna, its URL, or the path of an SQLite file; left out, the memory.
+            study_name: left out, names of the problem and of the run's directory.
+        Raises:
+            InputError: Optuna is not installed, the storage cannot be used, or it has a study of this name.
+        Example:
+            >>> study = run.to_optuna()
+            >>> len(study.trials) == len(run)
+            True
+        """
+        from evodesign.api.optuna_study import study_of  # takes its time to load
+
+        return study_of(self.log, storage, study_name)
 
     def postures(self, number: int) -> tuple[CaseDetail, ...]:
         """How robot and person of a design stand in each case that was solved, with torques and wrenches.
@@ -247,6 +280,19 @@ class Run:
 
         return Problem(self.log.header.problem).evaluate(design.parameters).postures
 
+    def _evaluations(self, designs: Sequence[Design] | None) -> Sequence[Evaluation]:
+        """The evaluations of designs, or all."""
+        if designs is None:
+            return self.log.evaluations
+        by_number = {evaluation.number: evaluation for evaluation in self.log.evaluations}
+        for design in designs:
+            if design.number not in by_number:
+                found = (
+                    "one that was evaluated outside of it" if design.number is None else f"{design.number}"
+                )
+                raise InputError("designs", "", f"designs of {self.log.directory}", found)
+        return [by_number[design.number] for design in designs if design.number is not None]
+
     @property
     def _quantities(self) -> dict[str, Quantity]:
         first = self.log.evaluations[0] if self.log.evaluations else None
@@ -255,6 +301,20 @@ class Run:
     def _design(self, evaluation: Evaluation) -> Design:
         postures = self._details.get(evaluation.number, ())
         return Design(evaluation.number, evaluation.assessment, postures, partial(_same, self.log))
+
+
+def _whole(values: Sequence[int]) -> Column:
+    return np.array(values, dtype=np.int64)
+
+
+def _real(values: Sequence[float | None]) -> Column:
+    """Numbers; those that do not exist are not a number, also where none exists."""
+    return np.array(values, dtype=np.float64)
+
+
+def _text(values: Sequence[str]) -> Column:
+    """Texts; pandas would not see that an empty column of objects is one."""
+    return np.array(values, dtype=np.object_ if values else np.str_)
 
 
 def _same(log: RunLog) -> RunLog:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 
@@ -29,13 +29,22 @@ from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.file import ProblemFile, SolverTable
+from evodesign.problem.objectives import from_outside
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
 from evodesign.records import Assessed, Genome, ProblemSource, RunHeader, Status
 from evodesign.searches.base import JOINT_STARTS
 
-__all__ = ["Remembering", "cached_precomputed", "evaluation_factory", "evaluator_of", "problem_digest"]
+__all__ = [
+    "Remembering",
+    "ValuesFactory",
+    "cached_precomputed",
+    "evaluation_factory",
+    "evaluator_of",
+    "problem_digest",
+    "values_factory",
+]
 
 
 Evaluations = AssessmentFactory | BaselineFactory
@@ -60,6 +69,43 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
     if compiled:
         _compile(factory, progress)
     return factory
+
+
+@dataclass(frozen=True, slots=True)
+class ValuesFactory:
+    """Builds the evaluation of designs given as one number per parameter, in whichever process it is called.
+
+    Args:
+        factory: of the same problem's evaluation of genomes.
+    """
+
+    factory: AssessmentFactory
+
+    @property
+    def limits(self) -> Limits:
+        """Those of the factory inside."""
+        return self.factory.limits
+
+    def __call__(self) -> Callable[[Sequence[float]], Assessed]:
+        """Build the inner problems and return the function from values to results."""
+        return Evaluator(self.factory.problem, self.factory.known).assess_values
+
+
+def values_factory(
+    problem: DesignProblem, pool: Pool, progress: PrecomputeProgress = SILENT
+) -> ValuesFactory:
+    """The evaluation of a problem's designs as workers build it, from values instead of genomes.
+
+    Args:
+        problem: whose designs they are.
+        pool: where what no cache holds is worked out.
+        progress: is shown what is worked out.
+    """
+    known = cached_precomputed(problem, pool, progress)
+    factory = AssessmentFactory(digest(problem.source), problem, known)
+    if problem.options.compiled:
+        _compile(factory, progress)
+    return ValuesFactory(factory)
 
 
 def evaluator_of(problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
@@ -134,6 +180,8 @@ Task = Callable[[Genome], Assessed]
 class Remembering:
     """Builds an evaluation that looks first whether it knows the design.
 
+    With objectives from outside of the package nothing is kept: no digest has their code.
+
     Args:
         factory: of the evaluation; its task is built when a design is not known.
     """
@@ -147,6 +195,8 @@ class Remembering:
 
     def __call__(self) -> Task:
         """The function from genome to what it is worth."""
+        if any(from_outside(objective.name) for objective in self.factory.problem.objectives):
+            return self.factory()
         shelf = f"evaluations/{problem_digest(self.factory.source)}"
         return functools.partial(_remembered, functools.cache(self.factory), shelf)
 

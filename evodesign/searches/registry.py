@@ -1,7 +1,7 @@
 """The searches by name; a new one is a file and a line here, and enters the conformance tests by itself.
 
 A line says in which module the class stands: a library is loaded when its search is asked for (pycma alone
-takes a second).
+takes a second). A search outside of the package needs no line: its name is its place, such as `module:Class`.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def make_search(settings: SearchSettings) -> Search:
     _check(settings, SEARCHES)
     if settings.past:
         return Restarted(settings, make_search)
-    made: Search = _class(SEARCHES[settings.algorithm])(settings)
+    made: Search = _class(settings.algorithm, SEARCHES)(settings)
     return made
 
 
@@ -52,17 +52,27 @@ def make_asynchronous_search(settings: SearchSettings) -> AsynchronousSearch:
         InputError: as in `make_search`.
     """
     _check(settings, ASYNCHRONOUS_SEARCHES)
-    made: AsynchronousSearch = _class(ASYNCHRONOUS_SEARCHES[settings.algorithm])(settings)
+    made: AsynchronousSearch = _class(settings.algorithm, ASYNCHRONOUS_SEARCHES)(settings)
     return made
 
 
-def _class(place: str) -> Any:
-    """The class at a place such as `package.module:Class`."""
-    return pkgutil.resolve_name(place)
+def _class(algorithm: str, searches: Mapping[str, str]) -> Any:
+    """The class of an algorithm: that of a line, or at a place such as `package.module:Class`.
+
+    Raises:
+        InputError: there is nothing at the place.
+    """
+    try:
+        return pkgutil.resolve_name(searches.get(algorithm, algorithm))
+    except (ImportError, AttributeError, ValueError) as error:
+        if algorithm in searches:
+            raise
+        wanted = "MODULE:CLASS of something that Python can import"
+        raise InputError("search", "algorithm", wanted, f"'{algorithm}' ({error})") from error
 
 
 def _check(settings: SearchSettings, searches: Collection[str]) -> None:
-    if settings.algorithm not in searches:
+    if settings.algorithm not in searches and ":" not in settings.algorithm:
         hint = nearest_name(settings.algorithm, searches)
         wanted = f"one of {', '.join(searches)}"
         raise InputError("search", "algorithm", wanted, f"'{settings.algorithm}'{hint}")

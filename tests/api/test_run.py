@@ -12,8 +12,10 @@ import pytest
 import evodesign
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front
+from evodesign.api.design import Design
 from evodesign.api.run import Run
 from evodesign.errors import InputError, RunError
+from evodesign.records import Evaluation, Status
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
 
@@ -49,7 +51,7 @@ def test_table_is_a_data_frame_of_the_log(run: Run) -> None:
 
 def test_table_of_some_designs_keeps_their_order(run: Run) -> None:
     designs = run.choose(different=True, limit=3)
-    assert run.table(designs)["number"] == [design.number for design in designs]
+    assert run.table(designs)["number"].tolist() == [design.number for design in designs]
 
 
 def test_front_and_choices_are_those_of_the_command_line(run: Run) -> None:
@@ -98,3 +100,74 @@ def test_empty_run_has_an_empty_table(tmp_path: Path) -> None:
     empty = evodesign.open_run(tmp_path)
     assert empty.front == ()
     assert pd.DataFrame(empty.table()).empty
+
+
+KINDS = {"number": "int64", "generation": "int64", "feasible": "bool", "status": "str", "height": "float64"}
+TEXTS = {"human", "payload", "status", "reason"}
+
+
+def dtypes_are_right(frame: pd.DataFrame) -> None:
+    for name, dtype in frame.dtypes.items():
+        if name in TEXTS:
+            assert pd.api.types.is_string_dtype(dtype), name
+        else:
+            assert str(dtype) == KINDS.get(str(name), "float64"), name
+
+
+def written(directory: Path, evaluations: list[Evaluation]) -> Run:
+    with RunWriter(directory, HEADER) as writer:
+        for evaluation in evaluations:
+            writer.evaluation(evaluation)
+    return evodesign.open_run(directory)
+
+
+def lost(evaluation: Evaluation) -> Evaluation:
+    """The same evaluation, had its worker been lost."""
+    failed = msgspec.structs.replace(
+        evaluation.assessment,
+        objectives={},
+        violation=None,
+        status=Status.WORKER_LOST,
+        reason="the worker was lost",
+        reach=None,
+        cases=(),
+    )
+    return msgspec.structs.replace(evaluation, assessment=failed)
+
+
+@pytest.mark.parametrize("kind", ["of all kinds", "all infeasible", "one that failed", "empty", "damaged"])
+def test_frames_have_numbers_where_numbers_belong(tmp_path: Path, kind: str) -> None:
+    """Also where none exists: a column of nothing is one of numbers, not of objects."""
+    evaluations = {
+        "of all kinds": [*RUN[:20], lost(RUN[20])],
+        "all infeasible": [each for each in RUN if not each.feasible],
+        "one that failed": [lost(RUN[0])],
+        "empty": [],
+        "damaged": RUN,
+    }[kind]
+    run = written(tmp_path / "run", evaluations)
+    if kind == "damaged":
+        (segment,) = (tmp_path / "run").glob("*.mcap")
+        segment.write_bytes(segment.read_bytes()[: segment.stat().st_size // 3])
+        run = evodesign.open_run(tmp_path / "run")
+        assert run.notes
+        assert 0 < len(run) < len(RUN)
+    else:
+        assert len(run) == len(evaluations)
+    for columns in (run.table(), run.cases(), run.table(()), run.cases(())):
+        dtypes_are_right(pd.DataFrame(columns))
+    table = pd.DataFrame(run.table())
+    missing = [math.nan if each.violation is None else each.violation for each in run.designs]
+    assert table["violation"].equals(pd.Series(missing, dtype="float64"))
+    assert table["robot_torque"].notna().tolist() == [
+        "robot_torque" in each.objectives for each in run.designs
+    ]
+
+
+def test_designs_of_another_run_are_refused(run: Run, tmp_path: Path) -> None:
+    short = written(tmp_path / "short", RUN[:3])
+    for ask in (short.table, short.cases):
+        with pytest.raises(InputError, match=r"wanted designs of .*short, found 29"):
+            ask(run.designs[29:])
+        with pytest.raises(InputError, match="found one that was evaluated outside of it"):
+            ask([Design(None, RUN[0].assessment)])

@@ -1,0 +1,31 @@
+"""An objective of your own, in a file of your own: the larger force on a foot of the robot. About a minute.
+
+Its name in the problem is MODULE:NAME. Every process imports the module, this file, by that name; so it works
+with any number of jobs, and a run can be resumed where the module can be imported.
+
+    python examples/own_objective.py [EVALUATIONS]
+"""
+
+import sys
+import tomllib
+
+import evodesign
+from evodesign.problem.objectives import CaseQuantity
+
+
+def larger_foot_force(scene, postures):
+    """The robot's larger foot force [N] in one posture: the mean over the heights is the objective."""
+    return max(float(wrench[2]) for wrench in postures["robot"].foot_wrenches.values())
+
+
+foot_force = CaseQuantity("N", larger_foot_force)
+
+if __name__ == "__main__":
+    evaluations = int(sys.argv[1]) if len(sys.argv) > 1 else 12
+    tables = tomllib.loads(evodesign.open_problem("icub-lifting").source.text)
+    tables["name"] = "light-footed"
+    tables["objectives"] = {"minimise": ["own_objective:foot_force", "robot_torque"]}
+    problem = evodesign.Problem.from_dict(tables)
+    run = evodesign.search(problem, "runs/light", evaluations=evaluations, population=6, jobs=2)
+    for design in run.front:
+        print(design.number, {name: round(value, 1) for name, value in design.objectives.items()})
