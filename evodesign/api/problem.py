@@ -16,7 +16,7 @@ from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
-from evodesign.records import Objective, Parameter, ProblemSource
+from evodesign.records import Constraint, Objective, Parameter, ProblemSource
 
 __all__ = ["Problem", "open_problem"]
 
@@ -49,6 +49,7 @@ class Problem:
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
+        self.constraints: tuple[Constraint, ...] = problem.constraints
         self.unscaled: Mapping[str, float] = problem.space.named(
             problem.space.unscaled(problem.scene.robot.tree)
         )
@@ -70,7 +71,7 @@ class Problem:
                 unscaled robot's where there are materials.
         """
         found = self._evaluator.assess_values(self._values(design))
-        return Design(None, found.assessment, found.cases)
+        return Design(None, found.assessment, found.cases, self.constraints)
 
     def _values(self, design: Mapping[str, float] | Sequence[float]) -> tuple[float, ...]:
         names = [parameter.name for parameter in self.parameters]

@@ -14,7 +14,7 @@ from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, conditions, quantities
 from evodesign.api.design import Design
 from evodesign.errors import InputError
-from evodesign.records import CaseDetail, Evaluation, Objective, Parameter
+from evodesign.records import CaseDetail, Constraint, Evaluation, Objective, Parameter
 from evodesign.runlog.run import RunLog, read_run
 
 __all__ = ["Run", "open_run"]
@@ -63,6 +63,11 @@ class Run:
     def objectives(self) -> tuple[Objective, ...]:
         """The objectives, with senses and units."""
         return self.run.header.objectives
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The constraints, with bounds and units."""
+        return self.run.header.constrained
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -131,9 +136,9 @@ class Run:
         Args:
             designs: of this run; left out, all evaluations.
         Returns:
-            Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
-            the reach [m], torque norms by height and by case [N m], parameters; None where a value does not
-            exist.
+            Columns by name: number, generation, feasible, status, violation, seconds, objectives, constrained
+            quantities, ends of the reach [m], torque norms by height and by case [N m], parameters; None
+            where a value does not exist.
         """
         wanted = None if designs is None else [design.number for design in designs]
         by_number = {evaluation.number: evaluation for evaluation in self.run.evaluations}
@@ -196,4 +201,4 @@ class Run:
 
     def _design(self, evaluation: Evaluation) -> Design:
         postures = self._details.get(evaluation.number, ())
-        return Design(evaluation.number, evaluation.assessment, postures)
+        return Design(evaluation.number, evaluation.assessment, postures, self.constraints)

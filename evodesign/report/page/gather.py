@@ -58,7 +58,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         generations=run.generations,
         failures=tuple(
             CauseContent(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
-            for each in causes_of_infeasibility(run.evaluations)
+            for each in causes_of_infeasibility(run.evaluations, run.header.constrained)
         ),
         bodies=None if problem is None else bodies(problem),
         designs=_designs(run, problem, shown, opened, marked, on_front),
