@@ -443,3 +443,9 @@ class RunHeader(Record, frozen=True):
     def constrained(self) -> tuple[Constraint, ...]:
         """The problem's constraints, in the file's order."""
         return () if self.constraints is msgspec.UNSET else self.constraints
+
+    @property
+    def constrained_alone(self) -> tuple[Constraint, ...]:
+        """The constraints of quantities that are no objectives."""
+        names = {objective.name for objective in self.objectives}
+        return tuple(constraint for constraint in self.constrained if constraint.name not in names)

@@ -12,12 +12,14 @@ from rich.text import Text
 
 from evodesign.cli.output import figure, heading
 from evodesign.cli.tables.cases import cases_table, summary_table
+from evodesign.cli.tables.constraints import constraints_table, violation_heading
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, Parameter, materials_of
 from evodesign.report.opened_design import OpenedDesign
+from evodesign.violations import reason_of_infeasibility
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
@@ -38,7 +40,10 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
     assessment = opened.evaluation.assessment
     several = any(outcome.case.label for outcome in assessment.cases)
     reach = f"reach: {_reach(assessment)}"
-    sections: dict[str, Table] = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
+    sections: dict[str, Table] = {"objectives": _objectives(opened)}
+    if constraints := opened.run.header.constrained:
+        sections["constraints"] = constraints_table(constraints, "", ("value", assessment))
+    sections["parameters"] = _parameters(opened)
     if several:
         sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
         sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
@@ -72,7 +77,8 @@ def _title(opened: OpenedDesign) -> Text:
     title.append(f"{on_one_line(opened.run.header.problem_name)}: design {evaluation.number}", style="bold")
     title.append(f"\ngeneration {evaluation.generation}, {outcome}")
     if not evaluation.feasible:
-        title.append(f": {on_one_line(evaluation.assessment.reason)}")
+        why = reason_of_infeasibility(opened.run.header.constrained, evaluation.assessment)
+        title.append(f": {on_one_line(why)}")
     return title
 
 
@@ -87,7 +93,8 @@ def _objectives(opened: OpenedDesign) -> Table:
         table.add_row(
             escape(on_one_line(heading(objective))), figure(own), figure(best(values, default=None))
         )
-    table.add_row(escape("violation [m]"), figure(assessment.violation), "")
+    label = violation_heading(opened.run.header.constrained)
+    table.add_row(escape(label), figure(assessment.violation), "")
     return table
 
 

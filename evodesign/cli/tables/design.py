@@ -9,6 +9,7 @@ from rich.table import Table
 
 from evodesign.cli.output import figure, heading
 from evodesign.cli.tables.cases import cases_table, summary_table
+from evodesign.cli.tables.constraints import constraints_table, violation_heading
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
@@ -43,17 +44,20 @@ def design_tables(
 def _assessment_tables(
     problem: DesignProblem, name: str, result: DesignResult, assessment: Assessment
 ) -> tuple[Table, ...]:
-    """Its objectives, its postures case by case, and a summary where there are many cases."""
+    """Its objectives, constraints and postures case by case, with a summary where there are many cases."""
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
         value = assessment.objectives.get(objective.name)
         summary.add_row(escape(heading(objective)), figure(value))
-    summary.add_row(escape("violation [m]"), figure(assessment.violation))
+    summary.add_row(escape(violation_heading(problem.constraints)), figure(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{figure(result.reach.lowest)} to {figure(result.reach.highest)}")
+    constraints = problem.constraints
+    bounds = [constraints_table(constraints, "constraints", ("value", assessment))] if constraints else []
     if not any(outcome.case.label for outcome in assessment.cases):
-        return summary, cases_table(assessment, "the load at each height")
+        return summary, *bounds, cases_table(assessment, "the load at each height")
     return (
         summary,
+        *bounds,
         summary_table(assessment, "torque norms |tau| over the cases [N m]"),
         cases_table(assessment, "the load in each case, torques in N m"),
     )
@@ -70,12 +74,15 @@ def _people_table(result: DesignResult) -> Table:
 
 
 def _sensitivity_table(problem: DesignProblem, sensitivities: Mapping[str, ObjectiveSensitivity]) -> Table:
-    """The parameters that move each objective most, for equal shares of their ranges."""
+    """The parameters that move each objective or constraint most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
-    columns = names("objective", "strongest parameters")
+    columns = names("objective" if not problem.constraints else "quantity", "strongest parameters")
     table = titled("what 1 % more of a parameter's range changes", columns)
-    for objective in problem.objectives:
-        found = sensitivities.get(objective.name)
+    shown_names = {objective.name: heading(objective) for objective in problem.objectives}
+    for constraint in problem.constraints:
+        shown_names.setdefault(constraint.name, f"{constraint.name} [{constraint.unit}]")
+    for quantity, title in shown_names.items():
+        found = sensitivities.get(quantity)
         if found is None:
             continue
         if found.gradient is None:
@@ -84,5 +91,5 @@ def _sensitivity_table(problem: DesignProblem, sensitivities: Mapping[str, Objec
             moves = {name: value * ranges[name] * 0.01 for name, value in found.gradient.items()}
             strongest = sorted(moves, key=lambda name: -abs(moves[name]))[:STRONGEST]
             shown = ", ".join(f"{name} {moves[name]:+.2g}" for name in strongest if moves[name])
-        table.add_row(escape(heading(objective)), escape(shown or "nothing moves it"))
+        table.add_row(escape(title), escape(shown or "nothing moves it"))
     return table

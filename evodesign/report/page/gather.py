@@ -49,6 +49,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     return Content(
         facts=_facts(run, len(best)),
         objectives=run.header.objectives,
+        constraints=run.header.constrained,
         parameters=run.header.parameters,
         people=tuple(dict.fromkeys(case.person for case in cases)) or ("",),
         payloads=tuple(dict.fromkeys(case.payload for case in cases)) or ("",),

@@ -48,7 +48,7 @@ def test_every_number_of_an_evaluation_is_the_logs(real_run: RunLog, content: Co
         assessment = evaluation.assessment
         assert {name: column[row] for name, column in points.objectives.items()} == assessment.objectives
         assert {name: column[row] for name, column in points.parameters.items()} == assessment.design
-        assert points.violation_m[row] == assessment.violation
+        assert points.violation[row] == assessment.violation
         assert assessment.reach is not None
         assert (points.lowest_m[row], points.highest_m[row]) == (
             assessment.reach.lowest_m,
