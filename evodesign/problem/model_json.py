@@ -34,7 +34,7 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
         "heights_m": [task.height_m for task in problem.tasks],
         **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
-        **({"constraints": msgspec.to_builtins(problem.constraints)} if problem.constraints else {}),
+        **({"constraints": [*map(msgspec.to_builtins, problem.constraints)]} if problem.constraints else {}),
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
         **_materials(problem),
