@@ -65,7 +65,7 @@ const cardHead = (row) => {
         class: "plain",
         text:
           capital(points.reason[row]) +
-          (points.violation_m[row] === null ? "" : ` (violation ${figure(points.violation[row])}${constraints.length ? "" : " m"})`),
+          (points.violation[row] === null ? "" : ` (violation ${figure(points.violation[row])}${constraints.length ? "" : " m"})`),
       }),
     );
   return head;
