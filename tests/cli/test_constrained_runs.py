@@ -10,18 +10,22 @@ from typing import Any
 
 import msgspec
 import pytest
+from rich.console import Console
 
 from evodesign.analysis.audit import audit
 from evodesign.analysis.front import front
+from evodesign.api.problem import Problem
 from evodesign.api.run import Run
 from evodesign.cli.front import front as front_command
 from evodesign.cli.show import show
+from evodesign.cli.tables.design import design_tables
 from evodesign.evolve import Silent, replay, resume, start
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, RunHeader
 from evodesign.report.export.design import ExportedDesign, design_json
@@ -219,6 +223,31 @@ def test_python_has_values_and_violations(run: RunLog) -> None:
         "reach_height": max(0.0, LOWEST - reach),
     }
     assert design.violation == pytest.approx((mass - HEAVIEST) / HEAVIEST + max(0.0, LOWEST - reach) / LOWEST)
+
+
+def test_a_problem_in_python_evaluates_its_constraints(light: DesignProblem, known: Precomputed) -> None:
+    assert known.values, "worked out before, so that the problem finds it in the cache"
+    opened = Problem(light.source)
+    assert opened.constraints == light.constraints
+    design = opened.evaluate({f"density.{part}": 2000.0 for part in ("thigh", "shank")})
+    assert not design.feasible
+    assert design.violations["mass"] == design.constraints["mass"] - HEAVIEST
+    assert design.violations["mass"] > 0.0
+
+
+def test_evaluate_tells_constraints_in_json_and_tables(lights: Evaluator) -> None:
+    problem = lights.problem
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    result = lights.solve(values)
+    assessment = lights.assessment(values, result)
+    told = evaluation_json(problem, values, result, assessment, {})
+    mass, reach = (assessment.constrained[name] for name in ("mass", "reach_height"))
+    assert [(each["value"], each["violation"]) for each in told["constraints"]] == [(mass, 0.0), (reach, 0.0)]
+    shown = io.StringIO()
+    for table in design_tables(problem, "unscaled", result, assessment, {}):
+        Console(file=shown, width=120).print(table)
+    assert f"│ {mass:.4g} │" in shown.getvalue()
+    assert "at least 1.35 m" in shown.getvalue()
 
 
 def test_a_header_reads_its_constraints_back(run: RunLog) -> None:
