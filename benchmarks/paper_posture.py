@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
 from evodesign.mechanics.scene import SIDES, Agent, Scene
-from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import AgentModel, Checker
@@ -121,7 +121,7 @@ class _Part:
 
     variables: tuple[Variable, ...]
     matrices: Any
-    constraints: tuple[Constraint, ...]
+    constraints: tuple[ConstraintBlock, ...]
     rows: Any
     regularisation: Any
 
@@ -183,7 +183,7 @@ def _program(
     return Program(
         name="paper",
         variables=(*parts[0].variables, *parts[1].variables),
-        constraints=(*constraints, Constraint("load.push", push, -limit, limit)),
+        constraints=(*constraints, ConstraintBlock("load.push", push, -limit, limit)),
         cost=effort / TORQUE_UNIT**2 + sum(part.regularisation(part.posture) for part in parts),
         parameters=parameters,
     )

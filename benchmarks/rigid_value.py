@@ -23,7 +23,7 @@ from numpy.polynomial import chebyshev
 from benchmarks.inner_problem import problem_at
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import Grasp, Scene
-from evodesign.nlp.program import Constraint, Program
+from evodesign.nlp.program import ConstraintBlock, Program
 from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.symmetry import Form, symmetric_forms
@@ -48,7 +48,7 @@ def program(form: Form, scene: Scene, height: float) -> Program:
     rows = ca.vertcat(wrench[0] - given[0], wrench[2] + given[1], wrench[4] - given[2]) / 10.0
     cost = body.effort({person: 1.0}) + total(body.regularisation)
     own = tuple(v for v in assembly.variables if v.key.party == person)
-    held = Constraint("given", rows, 0.0, 0.0)
+    held = ConstraintBlock("given", rows, 0.0, 0.0)
     return Program("human", own, (*assembly.constraints, held), cost, {"given": given})
 
 

@@ -23,6 +23,7 @@ __all__ = [
     "Case",
     "CaseDetail",
     "CaseOutcome",
+    "Constraint",
     "Detail",
     "Evaluation",
     "Front",
@@ -124,6 +125,15 @@ class Objective(Record, frozen=True):
     unit: str
 
 
+class Constraint(Record, frozen=True):
+    """Bounds of a quantity, in its unit; at least one of them is there."""
+
+    name: str
+    unit: str
+    lower: float | None
+    upper: float | None
+
+
 class Parameter(Record, frozen=True, omit_defaults=True):
     """One design parameter: a length multiplier or an allocation (unit "1"), or a density (unit "kg/m^3").
 
@@ -210,9 +220,11 @@ class CaseOutcome(Record, frozen=True, omit_defaults=True):
 class Assessment(Record, frozen=True):
     """The results of a design: a property of problem and genome alone.
 
-    `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist.
-    `violation` is the sum of constraint violations [m], zero for a feasible design, None when a failure
-    left it unknown.
+    `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist, as
+    does `constraints`, which is left out where there are none. `violation` is zero for a feasible design,
+    None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
+    required heights are missed, plus for each constraint its excess relative to its bound
+    (`evodesign.violations`).
     """
 
     design: dict[str, float]
@@ -222,6 +234,12 @@ class Assessment(Record, frozen=True):
     reason: str
     reach: ReachOutcome | None = None
     cases: tuple[CaseOutcome, ...] = ()
+    constraints: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def constrained(self) -> dict[str, float]:
+        """Values of constrained quantities by name, without those that do not exist."""
+        return {} if self.constraints is msgspec.UNSET else self.constraints
 
 
 class AgentDetail(Record, frozen=True):
@@ -404,7 +422,7 @@ class RunHeader(Record, frozen=True):
     """First message of every segment of a run's log.
 
     `budget` counts evaluations of the run, `hours` wall time of each session, and `stagnation_generations`
-    generations in which the hypervolume may stand still.
+    generations in which the hypervolume may stand still. `constraints` is left out where there are none.
     """
 
     format_version: int
@@ -419,3 +437,15 @@ class RunHeader(Record, frozen=True):
     started: str
     hours: float | None = None
     stagnation_generations: int | None = None
+    constraints: tuple[Constraint, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def constrained(self) -> tuple[Constraint, ...]:
+        """The problem's constraints, in the file's order."""
+        return () if self.constraints is msgspec.UNSET else self.constraints
+
+    @property
+    def constrained_alone(self) -> tuple[Constraint, ...]:
+        """The constraints of quantities that are no objectives."""
+        names = {objective.name for objective in self.objectives}
+        return tuple(constraint for constraint in self.constrained if constraint.name not in names)

@@ -9,6 +9,7 @@ from itertools import groupby
 from evodesign.analysis.run_state import RunState
 from evodesign.records import Evaluation, Generation, RunHeader, design_of
 from evodesign.runlog.run import RunLog
+from evodesign.violations import missed_height, total_violation
 
 __all__ = ["audit", "losses"]
 
@@ -39,8 +40,15 @@ def _fault(header: RunHeader, evaluation: Evaluation) -> str:
     strange = set(assessment.objectives) - {objective.name for objective in header.objectives}
     if strange:
         return f"it has unknown objectives: {', '.join(sorted(strange))}"
+    constraints = header.constrained
+    unknown = set(assessment.constrained) - {constraint.name for constraint in constraints}
+    if unknown:
+        return f"it has values of unknown constraints: {', '.join(sorted(unknown))}"
     if assessment.violation is not None and assessment.violation < 0.0:
         return f"its violation is negative: {assessment.violation:g}"
+    missed = missed_height(assessment.reach, assessment.cases)
+    if constraints and assessment.violation != total_violation(constraints, assessment.constrained, missed):
+        return "its violation is not that of its values"
     return ""
 
 

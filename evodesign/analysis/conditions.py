@@ -4,7 +4,7 @@ A condition is NAME OPERATOR NUMBER with an operator among < <= > >=; several ar
 that does not exist (the torque of a height that was not reached) meets none. The names, also those of axes
 and tables, are:
 
-    robot_torque                an objective of the run, natural value
+    robot_torque                an objective of the run or a constrained quantity, natural value
     length.thigh                a parameter of the design
     lowest_reach, highest_reach ends of the interval of load heights that the robot can hold [m]
     robot_torque@1.2            |tau|_2 of an agent at a required height [N m]; human_torque@1.2 likewise
@@ -55,7 +55,7 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
     """All quantities of a run, by name.
 
     Args:
-        header: of the run; its objectives and parameters have names.
+        header: of the run; its objectives, constraints and parameters have names.
         example: any evaluation of the run, for its cases; None for a run that has none yet.
     """
     cases = () if example is None else tuple(outcome.case for outcome in example.assessment.cases)
@@ -69,6 +69,8 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
             found[f"{name}@{place}"] = partial(_of_case, norm, case)
     for parameter in header.parameters:
         found[parameter.name] = partial(_parameter, parameter.name)
+    for constraint in header.constrained:
+        found[constraint.name] = partial(_constrained, constraint.name)
     for objective in header.objectives:
         found[objective.name] = partial(_objective, objective.name)
     return found
@@ -91,6 +93,10 @@ def quantity(known: Mapping[str, Quantity], name: str, source: str) -> Quantity:
 
 def _objective(name: str, evaluation: Evaluation) -> float | None:
     return evaluation.assessment.objectives.get(name)
+
+
+def _constrained(name: str, evaluation: Evaluation) -> float | None:
+    return evaluation.assessment.constrained.get(name)
 
 
 def _parameter(name: str, evaluation: Evaluation) -> float | None:

@@ -1,17 +1,19 @@
 """How evaluations of a run failed, and why designs of it are not feasible, counted by cause.
 
 A design that is merely infeasible has not failed. The cause of infeasibility is the log's own status with the
-tasks that ended so: "infeasible at 1.2 m", and with whom, where others could do them with their load. A
-design counts once, whatever the number of cases that it misses.
+tasks that ended so: "infeasible at 1.2 m", and with whom, where others could do them with their load. Of a
+design that ended well it is the bounds that it exceeds: "mass above 65 kg". A design counts once, whatever
+the number of cases that it misses.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from evodesign.records import Assessment, Evaluation, Status
+from evodesign.records import Assessment, Constraint, Evaluation, Status
+from evodesign.violations import exceeded_bounds, reason_of_infeasibility
 
 __all__ = ["Cause", "causes", "causes_of_infeasibility", "failed", "failures"]
 
@@ -39,7 +41,7 @@ class Cause:
         cause: status and tasks, in words.
         count: designs.
         example: number of the first of them.
-        reason: the log's sentence on that one.
+        reason: a sentence on that one.
     """
 
     cause: str
@@ -48,23 +50,32 @@ class Cause:
     reason: str
 
 
-def causes_of_infeasibility(evaluations: Iterable[Evaluation]) -> tuple[Cause, ...]:
+def causes_of_infeasibility(
+    evaluations: Iterable[Evaluation], constraints: Sequence[Constraint] = ()
+) -> tuple[Cause, ...]:
     """Causes of the designs that are not feasible, the most frequent first; of equal ones the earliest."""
     by_cause: dict[str, list[Evaluation]] = {}
     for evaluation in evaluations:
         if not evaluation.feasible:
-            by_cause.setdefault(_cause(evaluation.assessment), []).append(evaluation)
+            by_cause.setdefault(_cause(constraints, evaluation.assessment), []).append(evaluation)
     found = [
-        Cause(cause, len(same), same[0].number, same[0].assessment.reason) for cause, same in by_cause.items()
+        Cause(
+            cause,
+            len(same),
+            same[0].number,
+            reason_of_infeasibility(constraints, same[0].assessment),
+        )
+        for cause, same in by_cause.items()
     ]
     return tuple(sorted(found, key=lambda cause: (-cause.count, cause.example)))
 
 
-def _cause(assessment: Assessment) -> str:
-    """A design's status, with the tasks that ended in it if some ended well."""
+def _cause(constraints: Sequence[Constraint], assessment: Assessment) -> str:
+    """The bounds that a design exceeds, or its status with the tasks that ended in it if some ended well."""
     ended = [outcome.case for outcome in assessment.cases if outcome.status is assessment.status]
     if assessment.status is Status.SOLVED or not ended:
-        return str(assessment.status)
+        beyond = exceeded_bounds(constraints, assessment) if assessment.status is Status.SOLVED else ()
+        return " and ".join(beyond) or str(assessment.status)
     if len(ended) == len(assessment.cases) > 1:
         return f"{assessment.status} at every height"
     tasks = dict.fromkeys(case.task for case in ended)

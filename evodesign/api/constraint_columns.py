@@ -6,21 +6,27 @@ import math
 from collections.abc import Sequence
 
 from evodesign.analysis.front import minimised
-from evodesign.records import Assessment, Objective
+from evodesign.records import Assessment, Constraint, Objective
+from evodesign.violations import HEIGHT, missed_height, violation_terms
 
-__all__ = ["CONSTRAINTS", "constraint_values"]
-
-CONSTRAINTS = ("violation",)
-"""Names of the columns: the distance to feasibility [m]."""
+__all__ = ["constraint_names", "constraint_values"]
 
 
-def constraint_values(objectives: Sequence[Objective], assessment: Assessment) -> tuple[float, ...]:
-    """A number per name in `CONSTRAINTS`: zero where it holds, infinite where a failure left it unknown.
+def constraint_names(constraints: Sequence[Constraint]) -> tuple[str, ...]:
+    """Names of the columns: `height`, then the problem's constraints."""
+    return (HEIGHT, *(constraint.name for constraint in constraints))
 
-    A design that lacks an objective although nothing is violated counts as one of unknown violation: no
-    optimiser could compare it.
+
+def constraint_values(
+    objectives: Sequence[Objective], constraints: Sequence[Constraint], assessment: Assessment
+) -> tuple[float, ...]:
+    """A number per name: missed metres of height, relative excesses of bounds, which add up to the violation.
+
+    Zero where a constraint holds, infinite where a failure left it unknown. A design that lacks an objective
+    although nothing is violated counts as one of unknown violation: no optimiser could compare it.
     """
-    violation = math.inf if assessment.violation is None else assessment.violation
-    if violation == 0.0 and minimised(objectives, assessment) is None:
-        violation = math.inf
-    return (violation,)
+    missed = missed_height(assessment.reach, assessment.cases) if constraints else assessment.violation
+    if assessment.violation == 0.0 and minimised(objectives, assessment) is None:
+        missed = None
+    terms = violation_terms(constraints, assessment.constrained, missed)
+    return tuple(math.inf if term is None else term for term in terms.values())

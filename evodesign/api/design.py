@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from evodesign.errors import InputError
-from evodesign.records import Assessment, CaseDetail, CaseOutcome, ReachOutcome, Status
+from evodesign.records import Assessment, CaseDetail, CaseOutcome, Constraint, ReachOutcome, Status
 from evodesign.runlog.run import RunLog
+from evodesign.violations import violations
 
 __all__ = ["Design"]
 
@@ -23,6 +24,7 @@ class Design:
         assessment: the whole record.
         postures: of every case that was solved, of robot and person, with torques and wrenches; empty if
             they were not kept.
+        bounds: the problem's constraints.
         log: gives the log that holds it, for `export`.
     Example:
         >>> design = run.design(4)
@@ -33,6 +35,7 @@ class Design:
     number: int | None
     assessment: Assessment
     postures: tuple[CaseDetail, ...] = ()
+    bounds: tuple[Constraint, ...] = ()
     log: Callable[[], RunLog] | None = field(default=None, repr=False, compare=False)
 
     @property
@@ -52,8 +55,21 @@ class Design:
 
     @property
     def violation(self) -> float | None:
-        """Sum of the constraint violations [m]; None when a failure left it unknown."""
+        """Missed metres of height plus relative excesses of bounds; None when a failure left it unknown."""
         return self.assessment.violation
+
+    @property
+    def constraints(self) -> Mapping[str, float]:
+        """Values of constrained quantities by name; those that do not exist are missing."""
+        return self.assessment.constrained
+
+    @property
+    def violations(self) -> Mapping[str, float | None]:
+        """By how much each constraint is violated, by name and in its unit; `height` [m] is one of them.
+
+        Zero where one holds, None where its value does not exist.
+        """
+        return violations(self.bounds, self.assessment)
 
     @property
     def status(self) -> Status:

@@ -13,9 +13,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from evodesign.analysis.front import minimised
-from evodesign.api.constraint_columns import CONSTRAINTS, constraint_values
+from evodesign.api.constraint_columns import constraint_names, constraint_values
 from evodesign.errors import InputError
-from evodesign.records import Assessment, Evaluation, Objective, Parameter, Sense
+from evodesign.records import Assessment, Evaluation, Objective, Parameter, RunHeader, Sense
 from evodesign.runlog.run import RunLog
 
 try:
@@ -64,15 +64,14 @@ def study_of(
         wanted = "a storage of Optuna, its URL, or the path of an SQLite file"
         reason = str(error).partition("\n")[0]
         raise InputError("storage", "", wanted, f"'{storage}' ({reason})") from error
-    study.add_trials([_trial(header.parameters, header.objectives, each) for each in log.evaluations])
+    study.add_trials([_trial(header, each) for each in log.evaluations])
     return study
 
 
-def _trial(
-    parameters: Sequence[Parameter], objectives: Sequence[Objective], evaluation: Evaluation
-) -> optuna.trial.FrozenTrial:
-    assessment = evaluation.assessment
+def _trial(header: RunHeader, evaluation: Evaluation) -> optuna.trial.FrozenTrial:
+    parameters, objectives, assessment = header.parameters, header.objectives, evaluation.assessment
     values = _values(objectives, assessment)
+    constraints = constraint_values(objectives, header.constrained, assessment)
     return optuna.trial.create_trial(
         state=optuna.trial.TrialState.FAIL if values is None else optuna.trial.TrialState.COMPLETE,
         values=values,
@@ -86,7 +85,7 @@ def _trial(
             "generation": evaluation.generation,
             **_attributes(assessment),
         },
-        system_attrs={"constraints": list(constraint_values(objectives, assessment))},
+        system_attrs={"constraints": list(constraints)},
     )
 
 
@@ -141,12 +140,14 @@ class OptunaObjective:
         objectives = self._problem.objectives
         design = {each.name: _suggested(trial, each) for each in self._problem.parameters}
         assessment = self._problem.evaluate(design).assessment
-        constraints = constraint_values(objectives, assessment)
+        constraints = constraint_values(objectives, self._problem.constraints, assessment)
         for name, value in _attributes(assessment).items():
             trial.set_user_attr(name, value)
         trial.set_user_attr("constraints", constraints)
         if hasattr(trial, "set_constraint"):
-            for name, constraint in zip(CONSTRAINTS, constraints, strict=True):
+            for name, constraint in zip(
+                constraint_names(self._problem.constraints), constraints, strict=True
+            ):
                 trial.set_constraint(name, constraint)
         values = _values(objectives, assessment)
         if values is None:

@@ -19,7 +19,16 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.shipped import shipped_problems
 from evodesign.problem.source import read_source, source_of
-from evodesign.records import Assessed, Detail, Evaluation, Objective, Parameter, ProblemSource, Task
+from evodesign.records import (
+    Assessed,
+    Constraint,
+    Detail,
+    Evaluation,
+    Objective,
+    Parameter,
+    ProblemSource,
+    Task,
+)
 from evodesign.runlog.directory import name_in_path
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog
@@ -82,6 +91,7 @@ class Problem:
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
+        self.constraints: tuple[Constraint, ...] = problem.constraints
         self.unscaled: Mapping[str, float] = problem.space.named(
             problem.space.unscaled(problem.scene.robot.tree)
         )
@@ -145,7 +155,9 @@ class Problem:
         """
         values = self.values(design)
         found = self._evaluator.assess_values(values)
-        return Design(None, found.assessment, found.cases, partial(self._log, values, found))
+        return Design(
+            None, found.assessment, found.cases, self.constraints, partial(self._log, values, found)
+        )
 
     def optuna_objective(self) -> OptunaObjective:
         """The problem as an objective for `study.optimize` of Optuna.

@@ -24,7 +24,7 @@ from pymoo.config import Config
 from pymoo.core.problem import Problem as BaseProblem
 
 from evodesign.analysis.front import minimised, to_minimise
-from evodesign.api.constraint_columns import CONSTRAINTS, constraint_values
+from evodesign.api.constraint_columns import constraint_names, constraint_values
 from evodesign.api.problem import Problem, open_problem
 from evodesign.errors import EvodesignError, InputError
 from evodesign.pool.base import Finished, Pool
@@ -125,7 +125,7 @@ class PymooProblem(BaseProblem):  # type: ignore[misc]
         super().__init__(
             n_var=len(problem.parameters),
             n_obj=len(problem.objectives),
-            n_ieq_constr=len(CONSTRAINTS),
+            n_ieq_constr=len(constraint_names(problem.constraints)),
             xl=np.array([parameter.lower for parameter in problem.parameters]),
             xu=np.array([parameter.upper for parameter in problem.parameters]),
             requires_kwargs=True,  # the algorithm that asks
@@ -186,7 +186,9 @@ class PymooProblem(BaseProblem):  # type: ignore[misc]
         objectives = self.problem.objectives
         assessments = self._assessments([self._nearest(row) for row in x.tolist()])
         constraints = [
-            (math.inf,) * len(CONSTRAINTS) if each is None else constraint_values(objectives, each)
+            (math.inf,) * self.n_ieq_constr
+            if each is None
+            else constraint_values(objectives, self.problem.constraints, each)
             for each in assessments
         ]
         nothing = (math.nan,) * self.n_obj

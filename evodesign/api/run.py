@@ -18,7 +18,7 @@ from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, conditions, quantities
 from evodesign.api.design import Design
 from evodesign.errors import InputError
-from evodesign.records import CaseDetail, Evaluation, Objective, Parameter
+from evodesign.records import CaseDetail, Constraint, Evaluation, Objective, Parameter
 from evodesign.runlog.run import RunLog, read_run
 
 if TYPE_CHECKING:
@@ -83,6 +83,11 @@ class Run:
     def objectives(self) -> tuple[Objective, ...]:
         """The objectives, with senses and units."""
         return self.log.header.objectives
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The constraints, with bounds and units."""
+        return self.log.header.constrained
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -184,9 +189,9 @@ class Run:
         Args:
             designs: of this run; left out, all evaluations.
         Returns:
-            Columns by name: number, generation, feasible, status, violation [m], seconds, objectives, ends of
-            the reach [m], torque norms by height and by case [N m], parameters; not a number where a value
-            does not exist.
+            Columns by name: number, generation, feasible, status, violation, seconds, objectives, constrained
+            quantities, ends of the reach [m], torque norms by height and by case [N m], parameters; not a
+            number where a value does not exist.
         Raises:
             InputError: a design that is none of this run.
         Example:
@@ -300,7 +305,9 @@ class Run:
 
     def _design(self, evaluation: Evaluation) -> Design:
         postures = self._details.get(evaluation.number, ())
-        return Design(evaluation.number, evaluation.assessment, postures, partial(_same, self.log))
+        return Design(
+            evaluation.number, evaluation.assessment, postures, self.constraints, partial(_same, self.log)
+        )
 
 
 def _whole(values: Sequence[int]) -> Column:

@@ -16,7 +16,7 @@ from evodesign.api.run import Run, open_run
 from evodesign.api.sessions import Budgets, Deadline, Workers, begin, new_directory, proceed
 from evodesign.errors import InputError, Interrupted
 from evodesign.problem.progress import SILENT, PrecomputeProgress
-from evodesign.records import Evaluation, Generation, RunHeader
+from evodesign.records import Constraint, Evaluation, Generation, RunHeader
 from evodesign.runlog.run import RunLog
 from evodesign.runlog.session_log import Observer
 from evodesign.session import Display
@@ -172,13 +172,15 @@ class _Calls(Observer):
     def __init__(self, callback: Callback, shown: Observer) -> None:
         self._callback = callback
         self._shown = shown
+        self._bounds: tuple[Constraint, ...] = ()
 
     def started(self, header: RunHeader, evaluations_done: int) -> None:
+        self._bounds = header.constrained
         self._shown.started(header, evaluations_done)
 
     def evaluated(self, evaluation: Evaluation, done: int, budget: int) -> None:
         self._shown.evaluated(evaluation, done, budget)
-        self._callback(Design(evaluation.number, evaluation.assessment))
+        self._callback(Design(evaluation.number, evaluation.assessment, bounds=self._bounds))
 
     def generation_done(self, generation: Generation) -> None:
         self._shown.generation_done(generation)

@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-__all__ = ["Constraint", "Program", "Start", "Variable"]
+__all__ = ["ConstraintBlock", "Program", "Start", "Variable"]
 
 Array = Any
 Expression = Any
@@ -62,7 +62,7 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True)
-class Constraint:
+class ConstraintBlock:
     """A named block of constraints lower <= expression <= upper; labels as for a variable."""
 
     name: str
@@ -78,7 +78,7 @@ class Program:
 
     name: str
     variables: tuple[Variable, ...]
-    constraints: tuple[Constraint, ...]
+    constraints: tuple[ConstraintBlock, ...]
     cost: Expression
     parameters: Mapping[str, Expression]
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import Constraint, Expression, Variable
+from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
@@ -159,7 +159,7 @@ class Assembly:
     """
 
     variables: tuple[Variable, ...]
-    constraints: tuple[Constraint, ...]
+    constraints: tuple[ConstraintBlock, ...]
     instants: tuple[tuple[LoadCase, ...], ...]
 
     @property
@@ -208,7 +208,7 @@ class _Assembler:
         self._case, self._enforced = case, enforced
         self._symmetric = any(party.form.mirror is not None for party in self._embodied)
         self._variables: list[Variable] = []
-        self._constraints: list[Constraint] = []
+        self._constraints: list[ConstraintBlock] = []
 
     def assembly(self) -> Assembly:
         instants = tuple(self._instant(number) for number in range(len(self._case.load_heights)))
@@ -290,7 +290,7 @@ class _Assembler:
     def _add(self, rows: Iterable[Row], prefix: str, *, again: bool) -> None:
         """Constraints of rows that are enforced, and not said before."""
         self._constraints += [
-            Constraint(f"{prefix}{row.name}", row.expression, row.lower, row.upper, row.labels)
+            ConstraintBlock(f"{prefix}{row.name}", row.expression, row.lower, row.upper, row.labels)
             for row in rows
             if self._enforced.covers(row.group) and not (again and row.posture_only)
         ]

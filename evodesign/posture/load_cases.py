@@ -23,7 +23,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.disturbance import OverCases
-from evodesign.nlp.program import Constraint, Expression, Program, Start, Variable
+from evodesign.nlp.program import ConstraintBlock, Expression, Program, Start, Variable
 
 __all__ = ["aggregated", "with_worst"]
 
@@ -47,7 +47,7 @@ def aggregated(program: Program, effort: OverCases, costs: Sequence[Expression])
     if effort is OverCases.MEAN:
         return replace(program, cost=program.cost + mean)
     worst = Variable.column(WORST, [0.0], [np.inf], [0.0], 1.0)
-    below = Constraint(WORST, ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
+    below = ConstraintBlock(WORST, ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
     return replace(
         program,
         variables=(*program.variables, worst),

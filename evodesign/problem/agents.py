@@ -27,10 +27,12 @@ from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import MassRule, read_urdf
 
 __all__ = [
+    "PEAK_TORQUE",
     "everyone",
     "human_agents",
     "refuse_unknown",
     "refuse_unlimited",
+    "refuse_unlimited_peak",
     "refuse_unrated",
     "robot_agent",
     "torque_limits",
@@ -216,11 +218,11 @@ def _members(key: str, table: HumanTable, source: ProblemSource) -> list[tuple[s
 
 
 def refuse_unrated(key: str, name: str, source: ProblemSource, people: Sequence[Agent]) -> None:
-    """Refuse an objective that needs strengths where a person has none.
+    """Refuse a quantity that needs strengths where a person has none.
 
     Args:
-        key: of the objective.
-        name: of the objective.
+        key: where the problem file names it.
+        name: of the quantity.
         source: the problem, for messages.
         people: all that the problem has.
     Raises:
@@ -236,7 +238,7 @@ def refuse_unrated(key: str, name: str, source: ProblemSource, people: Sequence[
 LIMITS_KEY = "robot.torque_limits_n_m"
 
 PEAK_TORQUE = "peak_torque"
-"""How the names of objectives end that need a limit of every joint."""
+"""How the names of quantities end that need a limit of every joint."""
 
 
 def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> Mapping[str, float]:
@@ -267,21 +269,35 @@ def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> M
 
 
 def refuse_unlimited(tables: ProblemFile, source: ProblemSource, robot: Agent) -> None:
-    """Refuse to take torques relative to their limits where a joint of the robot has none.
+    """Refuse objectives that take torques relative to their limits where a joint of the robot has none.
 
     Raises:
         InputError: naming objective and joint.
     """
-    unlimited = [joint for joint in robot.joints if joint not in robot.torque_limits]
     asked = tables.objectives
     for sense, names in ((Sense.MINIMISE, asked.minimise), (Sense.MAXIMISE, asked.maximise)):
         for position, name in enumerate(names):
-            if unlimited and name.endswith(PEAK_TORQUE):
-                wanted = (
-                    f"a torque limit of every joint of the robot for '{name}', in its URDF or in {LIMITS_KEY}"
-                )
-                key = f"objectives.{sense}[{position}]"
-                raise InputError(source.path, key, wanted, f"none of '{unlimited[0]}'")
+            if name.endswith(PEAK_TORQUE):
+                refuse_unlimited_peak(f"objectives.{sense}[{position}]", name, source, robot)
+
+
+def refuse_unlimited_peak(key: str, name: str, source: ProblemSource, robot: Agent) -> None:
+    """Refuse a quantity that takes torques relative to their limits where a joint of the robot has none.
+
+    Args:
+        key: where the problem file names it.
+        name: of the quantity.
+        source: the problem, for messages.
+        robot: whose joints count.
+    Raises:
+        InputError: naming quantity and joint.
+    """
+    for joint in robot.joints:
+        if joint not in robot.torque_limits:
+            wanted = (
+                f"a torque limit of every joint of the robot for '{name}', in its URDF or in {LIMITS_KEY}"
+            )
+            raise InputError(source.path, key, wanted, f"none of '{joint}'")
 
 
 def _asked_limit(joint: str, given: Mapping[str, float], source: ProblemSource) -> float | None:

@@ -29,6 +29,7 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.constraints import refuse_constraints
 from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
 from evodesign.problem.objectives import DesignResult, objective_values
@@ -53,9 +54,10 @@ def refuse_unsuited(problem: DesignProblem) -> None:
     """Refuse a problem that the joint problem cannot tell.
 
     Raises:
-        InputError: several people or loads, disturbances, weights that a design would choose for itself, or a
-            density of materials.
+        InputError: constraints, several people or loads, disturbances, weights that a design would choose for
+            itself, or a density of materials.
     """
+    refuse_constraints(problem.constraints, problem.source)
     refuse_choices(problem.space, problem.source)
     if EFFORT_RATIO in problem.space.allocation_names:
         wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"

@@ -24,6 +24,7 @@ from evodesign.problem.agents import (
     refuse_unrated,
     robot_agent,
 )
+from evodesign.problem.constraints import constraints_of, refuse_constraints
 from evodesign.problem.design_space import (
     check_allocations,
     density_parameters,
@@ -37,7 +38,17 @@ from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
-from evodesign.records import Case, Genome, Hold, Objective, ProblemSource, SearchSettings, Sense, Task
+from evodesign.records import (
+    Case,
+    Constraint,
+    Genome,
+    Hold,
+    Objective,
+    ProblemSource,
+    SearchSettings,
+    Sense,
+    Task,
+)
 from evodesign.searches.base import JOINT_STARTS
 from evodesign.tree.model import Tree
 
@@ -58,6 +69,7 @@ class DesignProblem:
         tasks: what everyone does with every load.
         weights: of the agents' efforts in the posture problem.
         objectives: in the file's order, minimised ones first.
+        constraints: bounds of quantities, in the file's order.
         options: of the inner solver.
         limits: of one evaluation.
         symmetry: which postures are looked for.
@@ -75,6 +87,7 @@ class DesignProblem:
     tasks: tuple[Task, ...]
     weights: EffortWeights
     objectives: tuple[Objective, ...]
+    constraints: tuple[Constraint, ...]
     options: IpoptOptions
     limits: Limits
     symmetry: Symmetry
@@ -91,9 +104,10 @@ class DesignProblem:
 
     @property
     def person_reaches(self) -> bool:
-        """Whether the people's own reach counts: it is an objective, or there are several of them."""
+        """Whether the people's own reach counts: it is asked for, or there are several of them."""
         several = len({scene.human.label for scene in self.scenes}) > 1
-        return several or any(objective.name == SHARED_REACH for objective in self.objectives)
+        names = {each.name for each in self.objectives} | {each.name for each in self.constraints}
+        return several or SHARED_REACH in names
 
     @property
     def middle(self) -> Scene:
@@ -119,11 +133,12 @@ class DesignProblem:
         """Settings of a search over this problem: those given, and the file's for the others.
 
         Raises:
-            InputError: starts of the joint problem, and a density of materials.
+            InputError: starts of the joint problem, and a density of materials or a constraint.
         """
         table = self.search
         algorithm = table.algorithm if algorithm is None else algorithm
         if algorithm == JOINT_STARTS:
+            refuse_constraints(self.constraints, self.source)
             refuse_choices(self.space, self.source)
         return SearchSettings(
             algorithm=algorithm,
@@ -169,6 +184,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         tasks=_tasks(tables, source),
         weights=weights,
         objectives=_objectives(tables, source, scenes),
+        constraints=constraints_of(tables, source, robot, people),
         options=IpoptOptions(
             iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
         ),

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
+
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.solver import SolverCache
 from evodesign.pool.base import Limits
@@ -35,6 +37,7 @@ from evodesign.records import (
     Status,
     worst_status,
 )
+from evodesign.violations import missed_height, total_violation
 
 __all__ = ["AssessmentFactory", "Evaluator", "case_outcome", "detail_of", "reach_of"]
 
@@ -117,14 +120,18 @@ class Evaluator:
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
         failed = [solution for solution in result.cases if not solution.solved]
+        constraints, reach = self.problem.constraints, reach_of(result.reach)
+        constrained = objective_values(constraints, result)
+        cases = tuple(map(case_outcome, result.cases))
         return Assessment(
             design=dict(self.problem.space.named(values)),
             objectives=objective_values(self.problem.objectives, result),
-            violation=_violation(result),
+            violation=total_violation(constraints, constrained, missed_height(reach, cases)),
             status=worst_status([result.reach.status, *(solution.status for solution in result.cases)]),
             reason=failed[0].reason if failed else "solved",
-            reach=reach_of(result.reach),
-            cases=tuple(map(case_outcome, result.cases)),
+            reach=reach,
+            cases=cases,
+            constraints=constrained or msgspec.UNSET,
         )
 
     def _in_case(
@@ -143,17 +150,6 @@ class Evaluator:
             return CaseSolution(case, Status.INFEASIBLE, reason)
         neighbour = self._neighbour(before, case)
         return self._postures[case.pair].solve(values, case.task, checker, neighbour)
-
-
-def _violation(result: DesignResult) -> float | None:
-    """Sum over tasks of the distance to the reachable interval [m]; None when a failure hides it."""
-    total = 0.0
-    for solution in result.cases:
-        distance = result.reach.beyond(solution.case.task.heights)
-        if distance is None or (distance == 0.0 and not solution.solved):
-            return None
-        total += distance if solution.case.pair == result.scenes[0].pair else 0.0  # the same for everyone
-    return total
 
 
 def reach_of(reach: Reach) -> ReachOutcome:

@@ -17,7 +17,11 @@ of the same posture under each. Residuals of such a case carry its name.
 
 `materials` names the material of each density that is one's; a problem without materials has no such key.
 
-`sensitivities` holds, for each objective that exists, how it moves with the design:
+`constraints` has an entry for each of the problem's `[constraints]`, with its `lower` and `upper` bound, its
+`value` and by how much that violates it, all in its unit; a problem without constraints has no such key.
+`violation` is zero for a feasible design and otherwise as in `evodesign.violations`.
+
+`sensitivities` holds, for each objective and constrained quantity that exists, how it moves with the design:
 
     {objective: {"gradient": {parameter: value} or null, "notes": [sentences]}}
 
@@ -42,6 +46,7 @@ from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment, hold_names, materials_of
+from evodesign.violations import constraints_json
 
 __all__ = ["evaluation_json"]
 
@@ -65,6 +70,7 @@ def evaluation_json(
         "objectives": assessment.objectives,
         "units": {objective.name: objective.unit for objective in problem.objectives},
         "violation": assessment.violation,
+        **({"constraints": constraints_json(problem.constraints, assessment)} if problem.constraints else {}),
         "reach": {
             "lowest_m": result.reach.lowest,
             "highest_m": result.reach.highest,

@@ -225,6 +225,13 @@ class ObjectivesTable(Table, frozen=True):
     maximise: tuple[Name, ...] = ()
 
 
+class BoundsTable(Table, frozen=True):
+    """An entry of `[constraints]`: a lower bound, an upper one, or both, in the unit that its key carries."""
+
+    lower: float | None = None
+    upper: float | None = None
+
+
 class SearchTable(Table, frozen=True):
     """`[search]`: how the design space is searched; `start` names a file of designs to begin with."""
 
@@ -260,6 +267,7 @@ class ProblemFile(Table, frozen=True):
     task: TaskTable
     design: DesignTable
     objectives: ObjectivesTable
+    constraints: dict[str, BoundsTable] = msgspec.field(default_factory=dict)
     material: tuple[MaterialTable, ...] = ()
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+import msgspec
+
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.mechanics.disturbance import Disturbance
@@ -32,6 +34,7 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
         "heights_m": [task.height_m for task in problem.tasks],
         **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
+        **({"constraints": [*map(msgspec.to_builtins, problem.constraints)]} if problem.constraints else {}),
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
         **_materials(problem),

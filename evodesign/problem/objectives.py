@@ -31,7 +31,7 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
-from evodesign.records import Case, Objective
+from evodesign.records import Case, Constraint, Objective
 from evodesign.tree.model import Tree
 
 __all__ = [
@@ -283,9 +283,9 @@ def imported(name: str) -> object:
         raise InputError("objectives", "", wanted, f"'{name}' ({error})") from error
 
 
-def objective_values(objectives: Sequence[Objective], result: DesignResult) -> dict[str, float]:
-    """Natural values of a problem's objectives, by name, without those that do not exist."""
-    found = {objective.name: objective_value(objective.name, result) for objective in objectives}
+def objective_values(quantities: Sequence[Objective | Constraint], result: DesignResult) -> dict[str, float]:
+    """Natural values of objectives or constrained quantities, by name, without those that do not exist."""
+    found = {quantity.name: objective_value(quantity.name, result) for quantity in quantities}
     return {name: value for name, value in found.items() if value is not None}
 
 

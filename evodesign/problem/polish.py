@@ -2,9 +2,10 @@
 
 What is minimised is a weighted sum of objectives, each relative to its value at the design that is polished,
 maximised ones with the opposite sign. Every design on the way is evaluated as a search would evaluate it, and
-counts only if it holds the load at every required height: how far the required heights lie within reach are
-the margins of the descent. Without weights all objectives count alike and none may get worse; then each is a
-margin too. Between materials there is nothing to descend on, so a density that is one's stays as it is.
+counts only if it holds the load at every required height and meets every constraint: how far the required
+heights lie within reach, and constrained quantities within their bounds, are the margins of the descent.
+Without weights all objectives count alike and none may get worse; then each is a margin too. Between
+materials there is nothing to descend on, so a density that is one's stays as it is.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult
-from evodesign.problem.sensitivities import Sensitivities
-from evodesign.records import Assessment, Genome, Sense
+from evodesign.problem.sensitivities import ObjectiveSensitivity, Sensitivities
+from evodesign.records import Assessment, Constraint, Genome, Sense
 from evodesign.searches.descent import Iterate, Slopes, descend
+from evodesign.violations import reason_of_infeasibility
 
 __all__ = ["Aim", "Polished", "Step", "aim_of", "polish"]
 
@@ -102,7 +104,7 @@ def polish(
         evaluations: how many designs may be evaluated.
         watch: is told of every evaluation after the first.
     Raises:
-        InputError: the design does not hold the load at every required height.
+        InputError: the design does not hold the load at every required height, or violates a constraint.
     """
     slope = _Slope(evaluator, genome, aim)
     found = descend(
@@ -149,8 +151,11 @@ class _Slope:
         self.first = self.last = self._evaluate(position).assessment
         start = self._point(position, self.last)
         if start is None:
-            found = f"a design whose violation is {self.first.violation} ({self.first.reason})"
-            raise InputError("DESIGN", "", "a design that holds the load at every required height", found)
+            why = reason_of_infeasibility(problem.constraints, self.first)
+            wanted = "a design that holds the load at every required height"
+            wanted += " and meets every constraint" if problem.constraints else ""
+            found = f"a design whose violation is {self.first.violation} ({why})"
+            raise InputError("DESIGN", "", wanted, found)
         self.start = start
 
     def look(self, position: Array) -> Iterate | None:
@@ -165,18 +170,28 @@ class _Slope:
         moves = derivative.sensitivities()
         relative: dict[str, Array] = {}
         for name in self._aim.weights:
-            gradient = moves[name].gradient
+            gradient = self._per_range(moves[name])
             if gradient is None:
                 return None
-            scale = self._signs[name] * self._ranges / self._scale(name)
-            relative[name] = np.array(list(gradient.values())) * scale
+            relative[name] = self._signs[name] * gradient / self._scale(name)
         value = sum(
             (weight * relative[name] for name, weight in self._aim.weights.items()),
             start=np.zeros(len(self._ranges)),
         )
         ends = [_turned(derivative.highest, self._ranges), -_turned(derivative.lowest, self._ranges)]
+        bounds = [
+            sign * (np.zeros(len(self._ranges)) if gradient is None else gradient)
+            for constraint in self._problem.constraints
+            for gradient in (self._per_range(moves[constraint.name]),)
+            for sign, _ in _bounds(constraint)
+        ]
         kept = [-slope for slope in relative.values()] if self._aim.none_worse else []
-        return Slopes(value, np.array([*ends, *kept]))
+        return Slopes(value, np.array([*ends, *bounds, *kept]))
+
+    def _per_range(self, sensitivity: ObjectiveSensitivity) -> Array | None:
+        """A quantity's derivative per range of each parameter; None where it does not exist."""
+        gradient = sensitivity.gradient
+        return None if gradient is None else np.array(list(gradient.values())) * self._ranges
 
     def _evaluate(self, position: Array) -> _Evaluated:
         values = self._problem.space.values(tuple(position.tolist()))
@@ -186,10 +201,15 @@ class _Slope:
         return found
 
     def _point(self, position: Array, found: Assessment) -> Iterate | None:
-        """A design as a point, unless it misses a height or gets worse where nothing may."""
+        """A design as a point, unless it is not feasible or gets worse where nothing may."""
         margins = _within_reach(found, [height for task in self._problem.tasks for height in task.heights])
         if margins is None or not set(self._aim.weights) <= set(found.objectives):
             return None
+        margins += [
+            sign * (found.constrained[constraint.name] - bound)
+            for constraint in self._problem.constraints
+            for sign, bound in _bounds(constraint)
+        ]
         worse = {
             name: self._signs[name]
             * (found.objectives[name] - self.first.objectives[name])
@@ -209,13 +229,19 @@ class _Slope:
 
 
 def _within_reach(found: Assessment, heights: Sequence[float]) -> list[float] | None:
-    """How far within reach [m] the required heights lie, at the upper and the lower end; None if beyond."""
+    """How far within reach [m] the required heights lie, at both ends; None if it is not feasible."""
     if found.violation != 0.0 or found.reach is None:
         return None
     highest, lowest = found.reach.highest_m, found.reach.lowest_m
     if highest is None or lowest is None:
         return None
     return [highest - max(heights), min(heights) - lowest]
+
+
+def _bounds(constraint: Constraint) -> list[tuple[float, float]]:
+    """The bounds that there are, each with the sign that makes room to it positive."""
+    both = ((1.0, constraint.lower), (-1.0, constraint.upper))
+    return [(sign, bound) for sign, bound in both if bound is not None]
 
 
 def _turned(derivative: ReachDerivative | NotDifferentiable, ranges: Array) -> Array:

@@ -86,8 +86,9 @@ class DesignDerivative:
         return replace(self.result, tree=tree, reach=reach, cases=cases)
 
     def sensitivities(self) -> dict[str, ObjectiveSensitivity]:
-        """How each of the problem's objectives moves that exists for the design."""
-        names = [objective.name for objective in self.problem.objectives]
+        """How each objective and constrained quantity of the problem moves that exists for the design."""
+        problem = self.problem
+        names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
         existing = [name for name in names if objective_value(name, self.result) is not None]
         around = [self._around(position) for position in range(len(self.values))]
         return {name: self._sensitivity(name, around) for name in existing}

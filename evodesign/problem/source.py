@@ -5,6 +5,7 @@ Errors name file, key, what was wanted and what was found, so that a user can ac
 
 from __future__ import annotations
 
+import copy
 import math
 import os
 import re
@@ -166,7 +167,7 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
     try:
         return msgspec.convert(raw, table)
     except msgspec.ValidationError as error:
-        raise _explained(error, raw, source) from error
+        raise _explained(error, raw, source, table) from error
 
 
 def _refuse_depth(raw: Any, source: str) -> None:
@@ -188,8 +189,14 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
         for position, item in enumerate(raw):
             _refuse_unknown_keys(item, kind, source, f"{prefix}[{position}]")
         return
+    if not isinstance(raw, dict):
+        return
+    if getattr(kind, "__origin__", None) is dict:
+        for key, value in raw.items():
+            _refuse_unknown_keys(value, get_args(kind)[1], source, f"{prefix}.{key}")
+        return
     struct = _struct_in(kind)
-    if struct is None or not isinstance(raw, dict):
+    if struct is None:
         return
     fields = {field.encode_name: field for field in msgspec.structs.fields(struct)}
     for key, value in raw.items():
@@ -205,8 +212,6 @@ def _struct_in(kind: Any) -> type[msgspec.Struct] | None:
     """The table type inside an annotation such as `X | None` or `tuple[X, ...]`."""
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         return kind
-    if getattr(kind, "__origin__", None) is dict:
-        return None
     return next((found for part in get_args(kind) if (found := _struct_in(part))), None)
 
 
@@ -221,12 +226,12 @@ def _leaves(raw: Any, path: str) -> Iterator[tuple[str, Any]]:
         yield path, raw
 
 
-def _explained(error: msgspec.ValidationError, raw: Any, source: str) -> InputError:
+def _explained(error: msgspec.ValidationError, raw: Any, source: str, table: type[T]) -> InputError:
     """The library's message, taken apart into key, wanted and found."""
     text = str(error)
     match = re.fullmatch(r"(.*?)(?: - at `(?:key in )?\$\.?(.*)`)?", text, re.DOTALL)
     message, key = (match.group(1), match.group(2) or "") if match else (text, "")
-    key = key.replace("[...]", "")  # a value under some key of a free table
+    key = _with_free_key(key, raw, table)
     missing = re.fullmatch(r"Object missing required field `(.*)`", message)
     if missing:
         where = f"{key}.{missing.group(1)}" if key else missing.group(1)
@@ -236,6 +241,27 @@ def _explained(error: msgspec.ValidationError, raw: Any, source: str) -> InputEr
         "str of length", "text of length"
     )
     return InputError(source, key, wanted, _shown(_at(raw, key)))
+
+
+FREE = "[...]"
+"""What the library says in place of a key that a user chose."""
+
+
+def _with_free_key(key: str, raw: Any, table: type[T]) -> str:
+    """The place of an error with the key of a free table: the one that is wrong by itself."""
+    before, free, after = key.partition(FREE)
+    for name in _at(raw, before) if free else ():
+        alone = copy.deepcopy(raw)
+        place = _at(alone, before)
+        kept = {name: place[name]}
+        place.clear()
+        place.update(kept)
+        try:
+            msgspec.convert(alone, table)
+        except msgspec.ValidationError as error:
+            if FREE in str(error):
+                return f"{before}.{name}{after}"
+    return key.replace(FREE, "")
 
 
 def _at(raw: Any, key: str) -> Any:

@@ -18,7 +18,15 @@ from typing import Protocol
 import msgspec
 
 from evodesign.errors import RunError
-from evodesign.records import FORMAT_VERSION, Objective, Parameter, ProblemSource, RunHeader, SearchSettings
+from evodesign.records import (
+    FORMAT_VERSION,
+    Constraint,
+    Objective,
+    Parameter,
+    ProblemSource,
+    RunHeader,
+    SearchSettings,
+)
 
 __all__ = [
     "DECISIVE",
@@ -56,6 +64,9 @@ class _Problem(Protocol):
     @property
     def objectives(self) -> tuple[Objective, ...]: ...
 
+    @property
+    def constraints(self) -> tuple[Constraint, ...]: ...
+
 
 def header_of(problem: _Problem, settings: SearchSettings, budget: int) -> RunHeader:
     """The header of a new run."""
@@ -70,6 +81,7 @@ def header_of(problem: _Problem, settings: SearchSettings, budget: int) -> RunHe
         versions=versions(),
         git=_git_state(),
         started=_now(),
+        constraints=problem.constraints or msgspec.UNSET,
     )
 
 
@@ -123,7 +135,7 @@ def differences(first: RunHeader, second: RunHeader) -> list[str]:
     ]
     found += [
         f"its {name.replace('_', ' ')} differ"
-        for name in ("problem_name", "parameters", "objectives")
+        for name in ("problem_name", "parameters", "objectives", "constraints")
         if not found and getattr(first, name) != getattr(second, name)
     ]
     return found

@@ -25,7 +25,7 @@ from evodesign.nlp.codegen import (
     library,
 )
 from evodesign.nlp.disk_cache import Cache, open_cache
-from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
@@ -82,7 +82,7 @@ def program(radius: float) -> Program:
     a, b = x.value[0], x.value[1] + turn
     cost = (1.0 - a) ** 2 + weight * (b - a**2) ** 2
     return Program(
-        "valley", (x,), (Constraint("disc", ca.norm_2(x.value), 0.1, radius),), cost, {"weight": weight}
+        "valley", (x,), (ConstraintBlock("disc", ca.norm_2(x.value), 0.1, radius),), cost, {"weight": weight}
     )
 
 

@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import IpoptOptions, Solver
 from evodesign.records import Status
 
@@ -18,7 +18,7 @@ def rosenbrock(scale: float, bound: float) -> Program:
     return Program(
         "rosenbrock",
         (x,),
-        (Constraint("disc", ca.sumsqr(x.value), -np.inf, bound),),
+        (ConstraintBlock("disc", ca.sumsqr(x.value), -np.inf, bound),),
         (1.0 - a) ** 2 + weight * (b - a**2) ** 2,
         {"weight": weight},
     )

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import IpoptOptions, Solver
 from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spread_designs, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -35,7 +35,7 @@ def landscape(limit: float = 3.0, least: float = -3.0) -> Landscape:
         (1.0 + ca.cos(2.0 * np.pi * (well - design) / 6.0)) * ca.exp(-40.0 * (x - well) ** 2)
         for well in WELLS
     )
-    bound = Constraint("bound", x, least, 9.0)
+    bound = ConstraintBlock("bound", x, least, 9.0)
     program = Program("wells", (joints,), (bound,), cost, {"design": design})
     solver = Solver(program, IpoptOptions())
     return Landscape(solver, {}, FIXED, 0.01, 1e-6)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.optimality import NotDifferentiable
-from evodesign.nlp.program import Constraint, Program, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
 from evodesign.nlp.solver import IpoptOptions, Solver
 
@@ -18,7 +18,7 @@ def nearest_point() -> Program:
     """The point of the half-plane x + y <= 2 with x >= 0 that is nearest to (p, q)."""
     point = replace(Variable.column("point", [0.0, -9.0], [9.0, 9.0], [0.5, 0.5], 2.0), labels=("x", "y"))
     wanted = ca.SX.sym("wanted", 2)
-    plane = Constraint("plane", point.value[0] + point.value[1], -np.inf, 2.0)
+    plane = ConstraintBlock("plane", point.value[0] + point.value[1], -np.inf, 2.0)
     return Program("nearest", (point,), (plane,), ca.sumsqr(point.value - wanted) / 2.0, {"wanted": wanted})
 
 
@@ -76,7 +76,7 @@ def test_margins_say_where_the_limits_change() -> None:
 def test_what_has_no_cost_has_no_slope() -> None:
     pair = Variable.column("pair", [-9.0, -9.0], [9.0, 9.0], [0.1, 0.2], 1.0)
     wanted = ca.SX.sym("wanted")
-    both = Constraint("both", pair.value[0] - 1.0, 0.0, 0.0)
+    both = ConstraintBlock("both", pair.value[0] - 1.0, 0.0, 0.0)
     found = optimum(
         Program("flat", (pair,), (both,), (pair.value[0] - wanted) ** 2, {"wanted": wanted}), [0.5]
     )
@@ -88,7 +88,7 @@ def test_what_has_no_cost_has_no_slope() -> None:
 def test_limit_that_is_written_twice_has_no_unique_multipliers() -> None:
     x = Variable.column("x", [-9.0], [9.0], [0.0], 1.0)
     wanted = ca.SX.sym("wanted")
-    twice = [Constraint(name, x.value, -np.inf, 1.0) for name in ("once", "again")]
+    twice = [ConstraintBlock(name, x.value, -np.inf, 1.0) for name in ("once", "again")]
     found = optimum(Program("twice", (x,), tuple(twice), (x.value - wanted) ** 2, {"wanted": wanted}), [3.0])
     assert isinstance(found, NotDifferentiable)
     assert "twice" in found.reason

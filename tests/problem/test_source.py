@@ -19,7 +19,7 @@ from evodesign.problem.source import decode_toml
         ("nam = 'a'", "nam", "one of the keys name, design", "'nam'; did you mean 'name'?"),
         ("name = 'a'", "design", "this key", "nothing"),
         ("name = 'a'\ndesign = []", "design", "array of length >= 1", "[]"),
-        ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = -1}", "design[0].length", "> 0", "'arm': -1"),
+        ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = -1}", "design[0].length.arm", "> 0", "-1"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = inf}", "design[0].length.arm", "finite", "inf"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlenght = {}", "design[0].lenght", "keys name", "'length'?"),
         (

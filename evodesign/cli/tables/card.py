@@ -11,12 +11,14 @@ from rich.text import Text
 
 from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.cases import cases_table, summary_table
+from evodesign.cli.tables.constraints import constraints_table, violation_heading
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, Parameter, materials_of
 from evodesign.report.opened_design import OpenedDesign
+from evodesign.violations import reason_of_infeasibility
 
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
@@ -38,7 +40,10 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
     several = any(outcome.case.label for outcome in assessment.cases)
     reach = f"reach: {_reach(assessment)}"
     made_of = materials_of(opened.run.header.parameters, assessment.design)
-    sections = {"objectives": _objectives(opened), "parameters": _parameters(opened)}
+    sections = {"objectives": _objectives(opened)}
+    if constraints := opened.run.header.constrained:
+        sections["constraints"] = constraints_table(constraints, "", ("value", assessment))
+    sections["parameters"] = _parameters(opened)
     if made_of:
         sections["materials"] = _materials(made_of)
     if several:
@@ -74,7 +79,8 @@ def _title(opened: OpenedDesign) -> Text:
     title.append(f"{on_one_line(opened.run.header.problem_name)}: design {evaluation.number}", style="bold")
     title.append(f"\ngeneration {evaluation.generation}, {outcome}")
     if not evaluation.feasible:
-        title.append(f": {on_one_line(evaluation.assessment.reason)}")
+        why = reason_of_infeasibility(opened.run.header.constrained, evaluation.assessment)
+        title.append(f": {on_one_line(why)}")
     return title
 
 
@@ -89,7 +95,8 @@ def _objectives(opened: OpenedDesign) -> FittedTable:
         table.add_row(
             escape(on_one_line(heading(objective))), rounded(own), rounded(best(values, default=None))
         )
-    table.add_row(escape("violation [m]"), rounded(assessment.violation), "")
+    label = violation_heading(opened.run.header.constrained)
+    table.add_row(escape(label), rounded(assessment.violation), "")
     return table
 
 

@@ -8,6 +8,7 @@ from rich.markup import escape
 
 from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.cases import cases_table, summary_table
+from evodesign.cli.tables.constraints import constraints_table, violation_heading
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
@@ -42,17 +43,20 @@ def design_tables(
 def _assessment_tables(
     problem: DesignProblem, name: str, result: DesignResult, assessment: Assessment
 ) -> tuple[FittedTable, ...]:
-    """Its objectives, its postures case by case, and a summary where there are many cases."""
+    """Its objectives, constraints and postures case by case, with a summary where there are many cases."""
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
         value = assessment.objectives.get(objective.name)
         summary.add_row(escape(heading(objective)), rounded(value))
-    summary.add_row(escape("violation [m]"), rounded(assessment.violation))
+    summary.add_row(escape(violation_heading(problem.constraints)), rounded(assessment.violation))
     summary.add_row(escape("reach [m]"), f"{rounded(result.reach.lowest)} to {rounded(result.reach.highest)}")
+    constraints = problem.constraints
+    bounds = [constraints_table(constraints, "constraints", ("value", assessment))] if constraints else []
     if not any(outcome.case.label for outcome in assessment.cases):
-        return summary, cases_table(assessment, "the load at each height")
+        return summary, *bounds, cases_table(assessment, "the load at each height")
     return (
         summary,
+        *bounds,
         summary_table(assessment, "torque norms |tau| over the cases [N m]"),
         cases_table(assessment, "the load in each case, torques in N m"),
     )
@@ -71,12 +75,15 @@ def _people_table(result: DesignResult) -> FittedTable:
 def _sensitivity_table(
     problem: DesignProblem, sensitivities: Mapping[str, ObjectiveSensitivity]
 ) -> FittedTable:
-    """The parameters that move each objective most, for equal shares of their ranges."""
+    """The parameters that move each objective or constraint most, for equal shares of their ranges."""
     ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
-    columns = names("objective", "strongest parameters")
+    columns = names("objective" if not problem.constraints else "quantity", "strongest parameters")
     table = titled("what 1 % more of a parameter's range changes", columns)
-    for objective in problem.objectives:
-        found = sensitivities.get(objective.name)
+    shown_names = {objective.name: heading(objective) for objective in problem.objectives}
+    for constraint in problem.constraints:
+        shown_names.setdefault(constraint.name, f"{constraint.name} [{constraint.unit}]")
+    for quantity, title in shown_names.items():
+        found = sensitivities.get(quantity)
         if found is None:
             continue
         if found.gradient is None:
@@ -85,5 +92,5 @@ def _sensitivity_table(
             moves = {name: value * ranges[name] * 0.01 for name, value in found.gradient.items()}
             strongest = sorted(moves, key=lambda name: -abs(moves[name]))[:STRONGEST]
             shown = ", ".join(f"{name} {moves[name]:+.2g}" for name in strongest if moves[name])
-        table.add_row(escape(heading(objective)), escape(shown or "nothing moves it"))
+        table.add_row(escape(title), escape(shown or "nothing moves it"))
     return table

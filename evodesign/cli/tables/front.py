@@ -14,6 +14,7 @@ from evodesign.cli.output import printable
 from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Evaluation, materials_of
 from evodesign.runlog.run import RunLog
+from evodesign.violations import HEIGHT, constraint_sentences, constraints_json, violations
 
 __all__ = ["front_csv", "front_json", "front_lines", "front_table", "least_violated"]
 
@@ -41,6 +42,7 @@ def front_json(run: RunLog, choice: Choice, chosen: Chosen) -> dict[str, Any]:
                 "objectives": evaluation.assessment.objectives,
                 "parameters": evaluation.assessment.design,
                 **_materials(run, evaluation),
+                **_constraints(run, evaluation),
             }
             for evaluation in chosen.designs
         ],
@@ -53,15 +55,25 @@ def _materials(run: RunLog, evaluation: Evaluation) -> dict[str, Any]:
     return {"materials": found} if found else {}
 
 
+def _constraints(run: RunLog, evaluation: Evaluation) -> dict[str, Any]:
+    """Constraints with value and violation, under a key that only problems with constraints have."""
+    constraints = run.header.constrained
+    return {"constraints": constraints_json(constraints, evaluation.assessment)} if constraints else {}
+
+
 def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
-    """Designs as comma-separated values: number, objectives, parameters (in full), materials."""
+    """Designs as comma-separated values: number, objectives, constraints, parameters (in full), materials."""
     objectives = [objective.name for objective in run.header.objectives]
+    constraints = [constraint.name for constraint in run.header.constrained_alone]
     parameters = [parameter.name for parameter in run.header.parameters]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     made_of = [parameter for parameter in run.header.parameters if parameter.materials]
     writer.writerow(
-        ["design", *objectives, *parameters, *(f"{parameter.name}.material" for parameter in made_of)]
+        [
+            *("design", *objectives, *constraints, *parameters),
+            *(f"{parameter.name}.material" for parameter in made_of),
+        ]
     )
     for evaluation in designs:
         assessment = evaluation.assessment
@@ -69,6 +81,7 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
             [
                 evaluation.number,
                 *(assessment.objectives[name] for name in objectives),
+                *(assessment.constrained.get(name) for name in constraints),
                 *(assessment.design[name] for name in parameters),
                 *(parameter.material_of(assessment.design[parameter.name]) for parameter in made_of),
             ]
@@ -79,7 +92,7 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
 def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> FittedTable:
     """Designs with their objectives, in the given order."""
     title = f"{TITLES[choice.order]} {printable(run.header.problem_name)}"
-    return designs_table(title, run.header.objectives, designs)
+    return designs_table(title, run.header, designs)
 
 
 def front_lines(run: RunLog, choice: Choice, chosen: Chosen, rows: int) -> list[str]:
@@ -107,10 +120,11 @@ def _remarks(run: RunLog, choice: Choice, chosen: Chosen, shown: int) -> list[st
     nearest = least_violated(run.evaluations)
     if nearest is None:
         return ["no design was evaluated to an end"] if run.evaluations else ["nothing was evaluated yet"]
-    return [
-        f"no design is feasible; design {nearest.number} comes nearest: it lacks "
-        f"{nearest.assessment.violation:.4g} m ({nearest.assessment.reason})"
-    ]
+    constraints, assessment = run.header.constrained, nearest.assessment
+    missed = violations(constraints, assessment)[HEIGHT]
+    lacks = [f"it lacks {missed:.4g} m ({assessment.reason})"] if missed else []
+    why = "; ".join([*lacks, *constraint_sentences(constraints, assessment)])
+    return [f"no design is feasible; design {nearest.number} comes nearest: {why}"]
 
 
 def _such(choice: Choice) -> str:

@@ -109,6 +109,8 @@ def _numbers(live_state: LiveState) -> Table:
     table.add_row("on the front", str(len(live_state.front)), "")
     for status, count in live_state.causes.items():
         table.add_row(escape(str(status)), str(count), "")
+    for bounds, count in live_state.exceeded.items():
+        table.add_row(markup(bounds), str(count), "")
     for objective in live_state.header.objectives:
         history = [each.best[objective.name] for each in generations if objective.name in each.best]
         latest = best(live_state.header.objectives, live_state.front).get(objective.name)
@@ -119,4 +121,4 @@ def _numbers(live_state: LiveState) -> Table:
 def _knees(live_state: LiveState) -> FittedTable:
     found = knees(live_state.header.objectives, live_state.front)
     title = f"Knees of the front, {len(found[:MOST_KNEES])} of {len(found)}"
-    return designs_table(title, live_state.header.objectives, found[:MOST_KNEES])
+    return designs_table(title, live_state.header, found[:MOST_KNEES])

@@ -8,16 +8,19 @@ from typing import Any
 from rich.markup import escape
 
 from evodesign.cli.output import heading, rounded
+from evodesign.cli.tables.constraints import constraints_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.polish import Aim, Polished
+from evodesign.records import Assessment
 from evodesign.runlog.run import RunLog
+from evodesign.violations import constraints_json
 
 __all__ = ["polish_json", "polish_tables"]
 
 
-def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[FittedTable, FittedTable]:
-    """Objectives and changed parameters before and after."""
+def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[FittedTable, ...]:
+    """Objectives, constraints and changed parameters before and after."""
     columns = [*names("objective"), *numbers("before", "after", "change")]
     objectives = titled(f"{problem.name}: design {number}", columns)
     for objective in problem.objectives:
@@ -29,7 +32,9 @@ def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[
         after = done.after.design[name]
         if after != before:
             parameters.add_row(escape(name), rounded(before), rounded(after))
-    return objectives, parameters
+    held = (("before", done.before), ("after", done.after))
+    bounds = [constraints_table(problem.constraints, "constraints", *held)] if problem.constraints else []
+    return objectives, *bounds, parameters
 
 
 def polish_json(run: RunLog, number: int, aim: Aim, done: Polished, file: Path) -> dict[str, Any]:
@@ -41,7 +46,15 @@ def polish_json(run: RunLog, number: int, aim: Aim, done: Polished, file: Path) 
         "none_worse": aim.none_worse,
         "evaluations": done.evaluations,
         "reason": done.reason,
-        "before": {"objectives": done.before.objectives, "parameters": done.before.design},
-        "after": {"objectives": done.after.objectives, "parameters": done.after.design},
+        **{name: _results(run, of) for name, of in (("before", done.before), ("after", done.after))},
         "file": str(file),
+    }
+
+
+def _results(run: RunLog, assessment: Assessment) -> dict[str, Any]:
+    constraints = run.header.constrained
+    return {
+        "objectives": assessment.objectives,
+        "parameters": assessment.design,
+        **({"constraints": constraints_json(constraints, assessment)} if constraints else {}),
     }

@@ -13,6 +13,8 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.model_json import model_json
+from evodesign.records import Constraint
+from evodesign.violations import bounds_text
 
 __all__ = ["model_tables"]
 
@@ -27,7 +29,7 @@ def model_tables(problem: DesignProblem) -> tuple[FittedTable | Table, ...]:
     shown = model_json(problem)
     return (
         _agents_table(problem.name, shown["agents"]),
-        _task_table(shown),
+        _task_table(shown, problem.constraints),
         _links_table(shown["links"]),
         _parameters_table(shown["parameters"]),
         *([_materials_table(shown["materials"])] if "materials" in shown else []),
@@ -56,7 +58,7 @@ def _model(agent: dict[str, Any]) -> str:
     return f"{agent['sex']}, {rounded(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
 
 
-def _task_table(shown: dict[str, Any]) -> Table:
+def _task_table(shown: dict[str, Any], constraints: Sequence[Constraint]) -> Table:
     table = Table(show_header=False)
     for load in shown["payloads"] if "payloads" in shown else [shown["payload"]]:
         mass, size = f"{load['mass_kg']:g} kg", f"{' x '.join(map(rounded, load['size_m']))} m"
@@ -67,6 +69,9 @@ def _task_table(shown: dict[str, Any]) -> Table:
     for disturbance in shown.get("disturbances", ()):
         table.add_row("disturbance", escape(_disturbance_text(disturbance)))
     table.add_row("objectives", ", ".join(shown["objectives"]))
+    if constraints:
+        bounds = (f"{constraint.name} {bounds_text(constraint)}" for constraint in constraints)
+        table.add_row("constraints", escape(", ".join(bounds)))
     return table
 
 

@@ -16,7 +16,8 @@ from rich.table import Table
 from rich.text import Text
 
 from evodesign.cli.output import heading, printable, rounded
-from evodesign.records import Evaluation, Objective
+from evodesign.records import Evaluation, RunHeader
+from evodesign.violations import bounds_text
 
 __all__ = ["FittedTable", "TableColumn", "designs_table", "names", "numbers", "titled"]
 
@@ -161,10 +162,16 @@ def numbers(*headers: str) -> list[TableColumn]:
     return [TableColumn(printable(header), of_numbers=True) for header in headers]
 
 
-def designs_table(title: str, objectives: Sequence[Objective], designs: Iterable[Evaluation]) -> FittedTable:
-    """Designs with their objectives, in the given order."""
-    table = titled(title, numbers("design", *map(heading, objectives)))
+def designs_table(title: str, header: RunHeader, designs: Iterable[Evaluation]) -> FittedTable:
+    """Designs with their objectives and the other constrained quantities, in the given order."""
+    objectives, others = header.objectives, header.constrained_alone
+    headings = [f"{each.name} [{each.unit}], {bounds_text(each)}" for each in others]
+    table = titled(title, numbers("design", *map(heading, objectives), *headings))
     for each in designs:
-        values = each.assessment.objectives
-        table.add_row(str(each.number), *(rounded(values[objective.name]) for objective in objectives))
+        values, constrained = each.assessment.objectives, each.assessment.constrained
+        table.add_row(
+            str(each.number),
+            *(rounded(values[objective.name]) for objective in objectives),
+            *(rounded(constrained.get(constraint.name)) for constraint in others),
+        )
     return table

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
-from evodesign.nlp.program import Array, Constraint, Program
+from evodesign.nlp.program import Array, ConstraintBlock, Program
 from evodesign.nlp.solver import IpoptOptions, RawSolution, SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import program_key
@@ -173,7 +173,7 @@ def human_program(form: Form, scene: Scene, weight: float) -> Program:
     return Program(
         name="human",
         variables=assembly.variables,
-        constraints=(*assembly.constraints, Constraint("load.given_internal_force", given, 0.0, 0.0)),
+        constraints=(*assembly.constraints, ConstraintBlock("load.given_internal_force", given, 0.0, 0.0)),
         cost=total([load_case.effort({HUMAN: weight}), *load_case.regularisation]),
         parameters={"height": height, "mass": mass, "internal_force": internal},
     )

@@ -19,6 +19,7 @@ from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import CaseDetail, CaseOutcome, Evaluation, RunHeader, hold_names, materials_of
 from evodesign.report.scene_models import SceneModels, SceneSet
 from evodesign.tree.model import JointKind, Tree
+from evodesign.violations import constraints_json
 
 __all__ = ["ExportedDesign", "design_json", "postures_csv", "wrenches_csv"]
 
@@ -70,7 +71,7 @@ def design_json(
     """A design as a JSON object, as the log has it; its shape is a promise."""
     assessment = evaluation.assessment
     outcome: dict[str, Any] = msgspec.to_builtins(assessment)
-    materials = materials_of(header.parameters, assessment.design)
+    materials, constraints = materials_of(header.parameters, assessment.design), header.constrained
     return {
         "problem": header.problem_name,
         "id": evaluation.number,
@@ -83,6 +84,7 @@ def design_json(
         "parameters": outcome["design"],
         **({"materials": materials} if materials else {}),
         "violation": outcome["violation"],
+        **({"constraints": constraints_json(constraints, assessment)} if constraints else {}),
         "reach": outcome["reach"],
         "heights": [_hold(each) for each in assessment.cases],
         "postures": [_hold(each) for each in cases],

@@ -18,7 +18,7 @@ from evodesign.errors import InputError, ModelError, on_one_line
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.progress import SILENT, PrecomputeProgress
-from evodesign.records import Objective, materials_of
+from evodesign.records import Constraint, Objective, materials_of
 from evodesign.report.export.design import ExportedDesign, design_json, postures_csv, wrenches_csv
 from evodesign.report.opened_design import open_design
 from evodesign.report.replay.layout import layout_text
@@ -27,6 +27,7 @@ from evodesign.report.replay.recording import SECONDS_PER_CASE, several, time_sc
 from evodesign.runlog.run import RunLog
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.urdf_write import urdf_text
+from evodesign.violations import bounds_text, reason_of_infeasibility
 
 __all__ = ["FILES", "Exported", "export_design", "export_logged", "readme_text", "refuse_full"]
 
@@ -79,6 +80,7 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
     """
     evaluation = design.evaluation
     objectives = (_objective(each, evaluation.assessment.objectives) for each in design.header.objectives)
+    bounds = (_constraint(each, evaluation.assessment.constrained) for each in design.header.constrained)
     materials = materials_of(design.header.parameters, evaluation.assessment.design)
     made_of = (f"- {_code(name)}: {_code(material)}" for name, material in materials.items())
     missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
@@ -86,7 +88,7 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
     parts = [
         f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
         f"From the run {_code(design.run)}, generation {evaluation.generation}; {_outcome(design)}.",
-        "\n".join((*objectives, *made_of)),
+        "\n".join((*objectives, *bounds, *made_of)),
         "## Files",
         "\n".join((*(f"- `{name}`: {_indented(texts[name])}" for name in files), *missing)),
         *_cases(design),
@@ -141,13 +143,20 @@ def _outcome(design: ExportedDesign) -> str:
     evaluation = design.evaluation
     if evaluation.feasible:
         return "it is feasible"
-    return f"it is not feasible: {_code(evaluation.assessment.reason)}"
+    why = reason_of_infeasibility(design.header.constrained, evaluation.assessment)
+    return f"it is not feasible: {_code(why)}"
 
 
 def _objective(objective: Objective, values: Mapping[str, float]) -> str:
     value = values.get(objective.name)
     shown = "none" if value is None else f"{value!r} {objective.unit}"
     return f"- {_code(objective.name)} ({objective.sense}): {shown}"
+
+
+def _constraint(constraint: Constraint, values: Mapping[str, float]) -> str:
+    value = values.get(constraint.name)
+    shown = "none" if value is None else f"{value!r} {constraint.unit}"
+    return f"- {_code(constraint.name)} ({bounds_text(constraint)}): {shown}"
 
 
 def _indented(text: str) -> str:

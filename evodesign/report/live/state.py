@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from evodesign.analysis.hypervolume import best
 from evodesign.errors import RunError
 from evodesign.records import Evaluation, Generation, RunHeader, Status
 from evodesign.runlog.follow import Follower
+from evodesign.violations import exceeded_bounds
 
 __all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "FollowedRun", "LiveRun", "LiveState", "state_of", "word"]
 
@@ -52,6 +53,7 @@ class LiveState:
         done: evaluations so far.
         feasible: how many of them are.
         causes: how many ended in each status that is not solved.
+        exceeded: how many exceed each bound of `[constraints]`, in words.
         generations: all so far, in order.
         front: of all evaluations so far, in order of number.
         others: a sample of the feasible ones that are not on the front.
@@ -63,6 +65,7 @@ class LiveState:
     done: int
     feasible: int
     causes: dict[Status, int]
+    exceeded: dict[str, int]
     generations: tuple[Generation, ...]
     front: tuple[Evaluation, ...]
     others: tuple[Evaluation, ...]
@@ -83,6 +86,7 @@ class LiveRun:
         self._numbers: set[int] = set()
         self._feasible = 0
         self._causes: dict[Status, int] = {}
+        self._exceeded: dict[str, int] = {}
         self._generations: dict[int, Generation] = {}
         self._front: tuple[Evaluation, ...] = ()
         self._others: list[Evaluation] = []
@@ -103,6 +107,8 @@ class LiveRun:
                 born.append(record)
         if self._header is not None and born:
             self._sort(self._header, born)
+            for bounds in self._bounds_beyond(self._header, born):
+                self._exceeded[bounds] = self._exceeded.get(bounds, 0) + 1
 
     @property
     def state(self) -> LiveState | None:
@@ -116,6 +122,7 @@ class LiveRun:
             done=len(self._numbers),
             feasible=self._feasible,
             causes=dict(self._causes),
+            exceeded=dict(self._exceeded),
             generations=tuple(self._generations[number] for number in sorted(self._generations)),
             front=self._front,
             others=tuple(self._others),
@@ -130,6 +137,11 @@ class LiveRun:
         if status is not Status.SOLVED:
             self._causes[status] = self._causes.get(status, 0) + 1
         self._times = [*self._times[-PACE_OVER:], written]
+
+    @staticmethod
+    def _bounds_beyond(header: RunHeader, born: Sequence[Evaluation]) -> Iterator[str]:
+        for evaluation in born:
+            yield from exceeded_bounds(header.constrained, evaluation.assessment)
 
     def _sort(self, header: RunHeader, born: Sequence[Evaluation]) -> None:
         """Put new evaluations on the front or into the sample of the others."""
@@ -172,6 +184,7 @@ def state_of(live_state: LiveState, *, ended: bool, now: float) -> dict[str, Any
         "budget": header.budget,
         "feasible": live_state.feasible,
         "failures": {str(status): count for status, count in live_state.causes.items()},
+        **({"exceeded": live_state.exceeded} if header.constrained else {}),
         "per_second": live_state.pace,
         "seconds_left": live_state.seconds_left,
         "silent_seconds": None if live_state.latest is None else max(0.0, now - live_state.latest),

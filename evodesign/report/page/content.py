@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from evodesign.records import CaseDetail, CaseOutcome, Generation, Objective, Parameter
+from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter
 
 __all__ = [
     "Bodies",
@@ -49,13 +49,17 @@ class Facts(Part, frozen=True):
 
 
 class Points(Part, frozen=True):
-    """Evaluations in columns, by number; `kind` is `front`, `feasible` or `infeasible`."""
+    """Evaluations in columns, by number; `kind` is `front`, `feasible` or `infeasible`.
+
+    `violation` is as in `evodesign.violations`, in metres where the problem has no constraints.
+    """
 
     number: list[int]
     kind: list[str]
     objectives: dict[str, list[float | None]]
+    constraints: dict[str, list[float | None]]
     parameters: dict[str, list[float]]
-    violation_m: list[float | None]
+    violation: list[float | None]
     lowest_m: list[float | None]
     highest_m: list[float | None]
     reason: list[str]
@@ -172,6 +176,7 @@ class Content(Part, frozen=True):
 
     facts: Facts
     objectives: tuple[Objective, ...]
+    constraints: tuple[Constraint, ...]
     parameters: tuple[Parameter, ...]
     people: tuple[str, ...]
     payloads: tuple[str, ...]

@@ -49,6 +49,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     return Content(
         facts=_facts(run, len(best)),
         objectives=run.header.objectives,
+        constraints=run.header.constrained,
         parameters=run.header.parameters,
         people=tuple(dict.fromkeys(case.person for case in cases)) or ("",),
         payloads=tuple(dict.fromkeys(case.payload for case in cases)) or ("",),
@@ -58,7 +59,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         generations=run.generations,
         failures=tuple(
             CauseContent(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
-            for each in causes_of_infeasibility(run.evaluations)
+            for each in causes_of_infeasibility(run.evaluations, run.header.constrained)
         ),
         bodies=None if problem is None else bodies(problem),
         designs=_designs(run, problem, shown, opened, marked, on_front),

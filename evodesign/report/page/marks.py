@@ -15,6 +15,7 @@ from evodesign.problem.build import DesignProblem
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
 from evodesign.report.page.content import Mark, Points
 from evodesign.report.subset import subsample
+from evodesign.violations import reason_of_infeasibility
 
 __all__ = ["MOST_POINTS", "asked", "chosen", "chosen_points", "nearest_to_feasible", "points", "unscaled"]
 
@@ -119,13 +120,20 @@ def points(header: RunHeader, shown: Sequence[Evaluation], front: Collection[int
             objective.name: [each.objectives.get(objective.name) for each in worth]
             for objective in header.objectives
         },
+        constraints={
+            constraint.name: [each.constrained.get(constraint.name) for each in worth]
+            for constraint in header.constrained
+        },
         parameters={
             parameter.name: [each.design[parameter.name] for each in worth] for parameter in header.parameters
         },
-        violation_m=[each.violation for each in worth],
+        violation=[each.violation for each in worth],
         lowest_m=[None if each.reach is None else each.reach.lowest_m for each in worth],
         highest_m=[None if each.reach is None else each.reach.highest_m for each in worth],
-        reason=["" if evaluation.feasible else evaluation.assessment.reason for evaluation in shown],
+        reason=[
+            "" if each.feasible else reason_of_infeasibility(header.constrained, each.assessment)
+            for each in shown
+        ],
     )
 
 

@@ -16,7 +16,7 @@ from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html
-from evodesign.report.page.content import Content
+from evodesign.report.page.content import Content, Points
 from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
 from evodesign.runlog.run import RunLog, read_run
@@ -48,7 +48,7 @@ def test_every_number_of_an_evaluation_is_the_logs(real_run: RunLog, content: Co
         assessment = evaluation.assessment
         assert {name: column[row] for name, column in points.objectives.items()} == assessment.objectives
         assert {name: column[row] for name, column in points.parameters.items()} == assessment.design
-        assert points.violation_m[row] == assessment.violation
+        assert points.violation[row] == assessment.violation
         assert assessment.reach is not None
         assert (points.lowest_m[row], points.highest_m[row]) == (
             assessment.reach.lowest_m,
@@ -195,3 +195,9 @@ def test_every_file_of_the_template_is_in_the_page(content: Content) -> None:
     for file in TEMPLATE.iterdir():
         text = file.read_text(encoding="utf-8")
         assert file.name == "page.html" or text in page, f"{file.name} is left out"
+
+
+def test_scripts_read_no_column_that_the_page_lacks() -> None:
+    scripts = [file.read_text(encoding="utf-8") for file in TEMPLATE.iterdir() if file.name.endswith(".js")]
+    read = {name for script in scripts for name in re.findall(r"\bpoints\.(\w+)", script)}
+    assert {"violation", "reason", "constraints"} <= read <= {*Points.__struct_fields__, "map"}

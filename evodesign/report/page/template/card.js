@@ -11,22 +11,27 @@ const worth = (row) =>
   element(
     "dl",
     { class: "worth" },
-    ...axes
-      .slice(0, objectives.length)
-      .map((axis) =>
+    ...resultAxes.map((axis) => {
+      const [value, constraint] = [axis.column[row], constraintOn(axis.name)];
+      return element(
+        "div",
+        {},
+        element("dt", { text: `${capital(words(axis.name))} ${arrowOf[axis.sense]}`.trim() }),
         element(
-          "div",
-          {},
-          element("dt", { text: `${capital(words(axis.name))} ${axis.sense === "minimise" ? "↓" : "↑"}` }),
-          element(
-            "dd",
-            { "data-objective": axis.name },
-            exact(axis.column[row]),
-            element("small", { text: axis.column[row] === null ? " no value" : ` ${unitText(axis.unit)}` }),
-            element("span", { class: "against", text: against(axis, row) }),
-          ),
+          "dd",
+          { [isObjective(axis.name) ? "data-objective" : "data-constraint"]: axis.name },
+          exact(value),
+          element("small", { text: value === null ? " no value" : ` ${unitText(axis.unit)}` }),
+          element("span", { class: "against", text: against(axis, row) }),
+          constraint
+            ? element("span", {
+                class: isBeyond(constraint, value) ? "against beyond" : "against",
+                text: boundsText(constraint),
+              })
+            : "",
         ),
-      ),
+      );
+    }),
   );
 
 const cardHead = (row) => {
@@ -60,7 +65,7 @@ const cardHead = (row) => {
         class: "plain",
         text:
           capital(points.reason[row]) +
-          (points.violation_m[row] === null ? "" : ` (violation ${figure(points.violation_m[row])} m)`),
+          (points.violation[row] === null ? "" : ` (violation ${figure(points.violation[row])}${constraints.length ? "" : " m"})`),
       }),
     );
   return head;

@@ -10,7 +10,7 @@ const spread = (axis) => {
 };
 
 const evaluationAxis = { name: "evaluation", unit: "number", sense: "", column: points.number };
-const frontAxes = objectives.length > 1 ? axes.slice(0, objectives.length) : [evaluationAxis, axes[0]];
+const frontAxes = objectives.length > 1 ? resultAxes : [evaluationAxis, axes[0]];
 
 // Beyond this number SVG is slow; all traces then change to WebGL together, so that they keep their order.
 const manyPoints = frontRows.length + dominatedRows.length > 2500 && hasWebgl;
@@ -18,7 +18,7 @@ const manyPoints = frontRows.length + dominatedRows.length > 2500 && hasWebgl;
 const hover = (row) => {
   const lines = [`<b>Design ${points.number[row]}</b>`];
   for (const mark of marksOf(points.number[row])) lines.push(plain(mark.label));
-  for (const axis of axes.slice(0, objectives.length)) {
+  for (const axis of resultAxes) {
     lines.push(`${plain(words(axis.name))} ${exact(axis.column[row])} ${plain(unitText(axis.unit))}`);
   }
   return lines.join("<br>");

@@ -26,7 +26,7 @@ const startHead = () => {
   document.title = `${facts.problem}: evodesign report`;
   byId("title").textContent = facts.problem;
   byId("lead").textContent =
-    `${countable(objectives.length, "objective")} over ${countable(parameters.length, "parameter")}, searched by ${facts.algorithm} with a population of ${facts.population}, seed ${facts.seed}.`;
+    `${countable(objectives.length, "objective")}${constraints.length ? ` and ${countable(constraints.length, "constraint")}` : ""} over ${countable(parameters.length, "parameter")}, searched by ${facts.algorithm} with a population of ${facts.population}, seed ${facts.seed}.`;
   const share = facts.evaluations ? percent(facts.feasible / facts.evaluations) : "–";
   const figures = [
     ["Evaluated", `${facts.evaluations}`, " designs", `of a budget of ${facts.budget}`],

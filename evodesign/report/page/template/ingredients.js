@@ -25,7 +25,7 @@ const materialOf = (axis, row) =>
 
 const parameterTable = (row) => {
   const reference = unscaledMark ? rowOf.get(unscaledMark.number) : null;
-  const body = axes.slice(objectives.length).map((axis) => {
+  const body = axes.slice(resultAxes.length).map((axis) => {
     const share = (value) => (value - axis.lower) / (axis.upper - axis.lower);
     return element(
       "tr",
@@ -200,17 +200,15 @@ const sensitivityTable = (objective, gradient) => {
 };
 
 const sensitivities = (design) => {
-  const known = objectives.filter(
-    (objective) => Object.keys(design.gradients[objective.name] ?? {}).length > 0,
-  );
+  const known = resultAxes.filter(({ name }) => Object.keys(design.gradients[name] ?? {}).length > 0);
   if (known.length === 0) return null;
   const place = element("div");
-  const draw = (objective) =>
-    place.replaceChildren(sensitivityTable(objective, design.gradients[objective.name]));
+  const draw = (axis) =>
+    place.replaceChildren(sensitivityTable(axis, design.gradients[axis.name]));
   const segments = element(
     "span",
-    { class: "segments", role: "radiogroup", "aria-label": "Of which objective" },
-    ...known.map((objective, index) =>
+    { class: "segments", role: "radiogroup", "aria-label": "Of which quantity" },
+    ...known.map((axis, index) =>
       element(
         "label",
         {},
@@ -218,9 +216,9 @@ const sensitivities = (design) => {
           type: "radio",
           name: "sensitivity",
           checked: index === 0,
-          onchange: () => draw(objective),
+          onchange: () => draw(axis),
         }),
-        words(objective.name),
+        words(axis.name),
       ),
     ),
   );

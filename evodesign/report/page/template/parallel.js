@@ -13,7 +13,7 @@ const lineRows = () => {
 };
 
 const extent = (axis) => {
-  if (!axis.isObjective) return [axis.lower, axis.upper];
+  if (axis.isParameter) return [axis.lower, axis.upper];
   const values = lineRows()
     .map((row) => axis.column[row])
     .filter((value) => value !== null);
@@ -25,7 +25,7 @@ const extent = (axis) => {
 
 let extents = axes.map(extent);
 
-const topOf = (index) => index * ROW + (index >= objectives.length ? GAP : 0) + ROW / 2;
+const topOf = (index) => index * ROW + (index >= resultAxes.length ? GAP : 0) + ROW / 2;
 
 const shareOf = (index, value) => (value - extents[index][0]) / (extents[index][1] - extents[index][0]);
 const valueAt = (index, share) => extents[index][0] + share * (extents[index][1] - extents[index][0]);
@@ -85,13 +85,14 @@ const drawLinesSoon = () => {
 };
 
 const axisName = (axis) => {
-  if (axis.isObjective) {
-    const arrow = axis.sense === "minimise" ? "↓" : "↑";
+  if (!axis.isParameter) {
+    const constraint = constraintOn(axis.name);
+    const aims = [axis.sense && `to ${axis.sense}`, constraint && boundsText(constraint)].filter(Boolean);
     return element(
       "span",
-      { class: "name", title: `${axis.name} [${axis.unit}], to ${axis.sense}` },
+      { class: "name", title: `${axis.name} [${axis.unit}], ${aims.join(", ")}` },
       element("b", { text: `${capital(words(axis.name))} ` }),
-      element("small", { text: arrow }),
+      element("small", { text: arrowOf[axis.sense] || boundsText(constraint) }),
     );
   }
   const [kind, ...group] = axis.name.split(".");
@@ -120,7 +121,7 @@ const axisRow = (axis, index) => {
   const range = element("span", { class: "range" });
   const row = element(
     "div",
-    { class: `axis${index === objectives.length ? " gap" : ""}`, "data-axis": axis.name },
+    { class: `axis${index === resultAxes.length ? " gap" : ""}`, "data-axis": axis.name },
     axisName(axis),
     track,
     range,
@@ -139,7 +140,7 @@ const axisRow = (axis, index) => {
     const [low, high] = brushed ?? extents[index];
     range.textContent = Number.isNaN(low)
       ? "no value"
-      : `${figure(low)} to ${withUnit(high, axis.unit)}${axis.unit === "1" && !axis.isObjective ? " ×" : ""}`;
+      : `${figure(low)} to ${withUnit(high, axis.unit)}${axis.unit === "1" && axis.isParameter ? " ×" : ""}`;
   };
   const set = (low, high) => {
     const whole = low <= 0 && high >= 1;

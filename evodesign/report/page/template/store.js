@@ -8,7 +8,7 @@ const unpacked = async (text) => {
 };
 
 const content = await unpacked(byId("content").textContent);
-const { objectives, parameters, points } = content;
+const { objectives, constraints, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
 const rows = points.number.map((_, row) => row);
@@ -22,11 +22,31 @@ const marksOf = (number) => content.marks.filter((mark) => mark.number === numbe
 const unscaledMark = content.marks.find((mark) => mark.kind === "unscaled");
 const symbolOf = { unscaled: "★", best: "◆", knee: "■", asked: "▲", near: "●" };
 
-// An axis of the parallel coordinates: one objective or parameter with its column.
-const axes = [
-  ...objectives.map((one) => ({ ...one, column: points.objectives[one.name], isObjective: true })),
-  ...parameters.map((one) => ({ ...one, column: points.parameters[one.name], isObjective: false })),
+// The constraint on a quantity, if it has one, and whether a value is beyond its bounds.
+const constraintOn = (name) => constraints.find((one) => one.name === name);
+const isBeyond = ({ lower, upper }, value) =>
+  value !== null && ((lower !== null && value < lower) || (upper !== null && value > upper));
+const boundsText = ({ lower, upper, unit }) => {
+  if (lower === null) return `at most ${withUnit(upper, unit)}`;
+  return upper === null ? `at least ${withUnit(lower, unit)}` : `${figure(lower)} to ${withUnit(upper, unit)}`;
+};
+
+// An axis of the parallel coordinates: an objective, another constrained quantity or a parameter with its column.
+const isObjective = (name) => objectives.some((one) => one.name === name);
+const resultAxes = [
+  ...objectives.map((one) => ({ ...one, column: points.objectives[one.name], isParameter: false })),
+  ...constraints
+    .filter((one) => !isObjective(one.name))
+    .map(({ name, unit }) => ({
+      ...{ name, unit, sense: "" },
+      ...{ column: points.constraints[name], isParameter: false },
+    })),
 ];
+const axes = [
+  ...resultAxes,
+  ...parameters.map((one) => ({ ...one, column: points.parameters[one.name], isParameter: true })),
+];
+const arrowOf = { minimise: "↓", maximise: "↑", "": "" };
 
 // Heights with the same number of decimals.
 const decimals = Math.max(

@@ -29,10 +29,11 @@ const drawTable = () => {
       element("button", { type: "button", text: text + arrow, onclick: sort(axis) }),
     );
   };
-  const columns = axes.slice(0, objectives.length);
+  const columns = resultAxes;
   const cells = (row) =>
     columns.map((axis) => element("td", { class: "number", text: exact(axis.column[row]) }));
-  const extra = hasFront ? [] : [element("th", { scope: "col", class: "number", text: "Violation [m]" })];
+  const violation = constraints.length ? "Violation" : "Violation [m]";
+  const extra = hasFront ? [] : [element("th", { scope: "col", class: "number", text: violation })];
   const body = shown.map((row) => {
     const number = points.number[row];
     return element(
@@ -49,7 +50,7 @@ const drawTable = () => {
         }),
       ),
       ...cells(row),
-      ...(hasFront ? [] : [element("td", { class: "number", text: figure(points.violation_m[row]) })]),
+      ...(hasFront ? [] : [element("td", { class: "number", text: figure(points.violation[row]) })]),
       element("td", {
         text: marksOf(number)
           .map((mark) => mark.label)

@@ -1,0 +1,98 @@
+"""`[constraints]` of a problem file: bounds of quantities that could be objectives.
+
+A key is the quantity's name with the suffix of its unit: `mass_kg`, `reach_height_m`,
+`q90_robot_torque_n_m`. A quantity of unit 1, and one whose unit has no suffix, is its own key: `peak_torque`,
+`paper_cost`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from evodesign.errors import InputError, nearest_name
+from evodesign.mechanics.scene import Agent
+from evodesign.problem.agents import PEAK_TORQUE, refuse_unlimited_peak, refuse_unrated
+from evodesign.problem.file import BoundsTable, ProblemFile
+from evodesign.problem.objectives import (
+    HUMAN_EFFORT,
+    QUANTITIES,
+    ObjectiveKind,
+    objective_kind,
+    objective_kinds,
+)
+from evodesign.records import Constraint, ProblemSource
+
+__all__ = ["constraint_key", "constraints_of", "refuse_constraints"]
+
+SUFFIXES: Mapping[str, str] = {"N m": "_n_m", "kg": "_kg", "m": "_m"}
+"""How a key ends, by the unit of its quantity."""
+
+
+def constraint_key(name: str) -> str:
+    """The key in `[constraints]` of a quantity.
+
+    Raises:
+        KeyError: there is no such quantity.
+    """
+    kind = objective_kind(name)
+    if kind is None:
+        raise KeyError(name)
+    return name + SUFFIXES.get(kind.unit, "")
+
+
+def constraints_of(
+    tables: ProblemFile, source: ProblemSource, robot: Agent, people: Sequence[Agent]
+) -> tuple[Constraint, ...]:
+    """The constraints of a problem file, in its order.
+
+    Raises:
+        InputError: a key that is no quantity with its unit, no bound, bounds that leave nothing between them,
+            or a quantity that needs strengths or torque limits which are not known.
+    """
+    found = []
+    for key, table in tables.constraints.items():
+        place = f"constraints.{key}"
+        name, kind = _quantity(key, source)
+        _check_bounds(table, place, source)
+        if name.endswith(HUMAN_EFFORT):
+            refuse_unrated(place, name, source, people)
+        if name.endswith(PEAK_TORQUE):
+            refuse_unlimited_peak(place, name, source, robot)
+        found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))
+    return tuple(found)
+
+
+def _quantity(key: str, source: ProblemSource) -> tuple[str, ObjectiveKind]:
+    """The quantity of a key."""
+    for suffix in (*SUFFIXES.values(), ""):
+        name = key.removesuffix(suffix)
+        kind = objective_kind(name)
+        if kind is not None and constraint_key(name) == key:
+            return name, kind
+    keys = [constraint_key(name) for name in objective_kinds()]
+    quantile = re.match(r"q[1-9]\d?_", key)
+    quantiles = [constraint_key(f"{quantile[0]}{name}") for name in QUANTITIES] if quantile else []
+    wanted = f"one of the keys {', '.join(keys)}"
+    raise InputError(
+        source.path, f"constraints.{key}", wanted, f"'{key}'{nearest_name(key, [*keys, *quantiles])}"
+    )
+
+
+def _check_bounds(table: BoundsTable, place: str, source: ProblemSource) -> None:
+    lower, upper = table.lower, table.upper
+    if lower is None and upper is None:
+        raise InputError(source.path, place, "lower, upper or both", "neither")
+    if lower is not None and upper is not None and lower >= upper:
+        raise InputError(source.path, f"{place}.lower", f"less than upper ({upper:g})", f"{lower:g}")
+
+
+def refuse_constraints(constraints: Sequence[Constraint], source: ProblemSource) -> None:
+    """Refuse constraints for the paper's joint problem, whose program does not hold them.
+
+    Raises:
+        InputError: naming the first one.
+    """
+    if constraints:
+        key = f"constraints.{constraint_key(constraints[0].name)}"
+        raise InputError(source.path, key, "no [constraints] in the joint problem", "a bound")

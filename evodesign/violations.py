@@ -1,0 +1,182 @@
+"""Which constraints a design violates, by how much, and the one number that designs are ranked by.
+
+A design must hold the load at every required height, and keep every constrained quantity within its bounds.
+With d_i the distance [m] of the i-th required height from the interval of heights within reach, and b the
+bound that a quantity q exceeds,
+
+    violation = sum_i d_i + sum_q e_q        e_q = |q - b| / |b|,  or |q - b| in q's unit where b is 0
+
+so a metre of height counts as much as the whole of a bound. The torques of a design that misses a height do
+not exist; such a quantity counts as violated by the whole of its bound, e_q = 1. Where all heights are within
+reach but a posture was not found, or a quantity does not exist for another reason, the violation is unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from evodesign.records import Assessment, CaseOutcome, Constraint, ReachOutcome, Status
+
+__all__ = [
+    "HEIGHT",
+    "bounds_text",
+    "constraint_sentences",
+    "constraints_json",
+    "exceeded_bounds",
+    "excess",
+    "missed_height",
+    "reason_of_infeasibility",
+    "total_violation",
+    "violation_terms",
+    "violations",
+]
+
+HEIGHT = "height"
+"""Name of the constraint that every problem has: that the load is held at all required heights."""
+
+WHOLE_BOUND = 1.0
+"""Relative excess of a quantity that does not exist because a height is missed."""
+
+
+def excess(constraint: Constraint, value: float) -> float:
+    """How far a value lies beyond the bound that it exceeds, in its unit; zero within the bounds."""
+    below = 0.0 if constraint.lower is None else constraint.lower - value
+    above = 0.0 if constraint.upper is None else value - constraint.upper
+    return max(below, above, 0.0)
+
+
+def missed_height(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> float | None:
+    """Sum over tasks of the distance of the worst of their heights from the interval within reach [m].
+
+    None when a failure hides it: the reach is unknown, or a case within reach was not solved.
+    """
+    if reach is None or reach.lowest_m is None or reach.highest_m is None:
+        return None
+    total = 0.0
+    for outcome in cases:
+        distance = max(
+            max(reach.lowest_m - height, height - reach.highest_m, 0.0)
+            for height in outcome.case.task.heights
+        )
+        if distance == 0.0 and outcome.status is not Status.SOLVED:
+            return None
+        total += distance if outcome.case.pair == cases[0].case.pair else 0.0  # the same for everyone
+    return total
+
+
+def total_violation(
+    constraints: Sequence[Constraint], values: Mapping[str, float], missed: float | None
+) -> float | None:
+    """What designs are ranked by: zero for a feasible design, None where it is unknown.
+
+    Args:
+        constraints: of the problem.
+        values: of constrained quantities that exist, by name.
+        missed: see `missed_height` [m].
+    """
+    total = 0.0
+    for term in violation_terms(constraints, values, missed).values():
+        if term is None:
+            return None
+        total += term
+    return total
+
+
+def violation_terms(
+    constraints: Sequence[Constraint], values: Mapping[str, float], missed: float | None
+) -> dict[str, float | None]:
+    """The terms of `total_violation` by name of the constraint, None for those that are unknown."""
+    terms: dict[str, float | None] = {HEIGHT: missed}
+    for constraint in constraints:
+        value = values.get(constraint.name)
+        absent = WHOLE_BOUND if missed else None
+        terms[constraint.name] = absent if value is None else _relative_excess(constraint, value)
+    return terms
+
+
+def _relative_excess(constraint: Constraint, value: float) -> float:
+    bound = constraint.upper
+    if bound is None or (constraint.lower is not None and value < constraint.lower):
+        bound = constraint.lower
+    return excess(constraint, value) / (abs(bound or 0.0) or 1.0)
+
+
+def violations(constraints: Sequence[Constraint], assessment: Assessment) -> dict[str, float | None]:
+    """By how much a design violates each constraint, by name and in its unit; zero where one holds.
+
+    `height` is the missed height [m]. None stands for a value that does not exist.
+    """
+    missed = missed_height(assessment.reach, assessment.cases) if constraints else assessment.violation
+    found: dict[str, float | None] = {HEIGHT: missed}
+    for constraint in constraints:
+        value = assessment.constrained.get(constraint.name)
+        found[constraint.name] = None if value is None else excess(constraint, value)
+    return found
+
+
+def constraint_sentences(constraints: Sequence[Constraint], assessment: Assessment) -> tuple[str, ...]:
+    """A clause for each quantity beyond its bounds, such as `mass is 3.2 kg above 65 kg`."""
+    found = violations(constraints, assessment)
+    return tuple(
+        f"{_words(constraint)} is {_figure(constraint, much)} {_beyond(constraint, assessment)}"
+        for constraint in constraints
+        if (much := found[constraint.name])
+    )
+
+
+def reason_of_infeasibility(constraints: Sequence[Constraint], assessment: Assessment) -> str:
+    """Why a design is not feasible: the reason of its status unless that is SOLVED, and exceeded bounds."""
+    beyond = constraint_sentences(constraints, assessment)
+    failed = () if assessment.status is Status.SOLVED and beyond else (assessment.reason,)
+    return "; ".join((*failed, *beyond))
+
+
+def exceeded_bounds(constraints: Sequence[Constraint], assessment: Assessment) -> tuple[str, ...]:
+    """The bounds beyond which a design lies, such as `mass above 65 kg`."""
+    found = violations(constraints, assessment)
+    return tuple(
+        f"{_words(constraint)} {_beyond(constraint, assessment)}"
+        for constraint in constraints
+        if found[constraint.name]
+    )
+
+
+def bounds_text(constraint: Constraint) -> str:
+    """The bounds in words: `at most 65 kg`, `at least 1.5 m`, `1.5 to 2 m`."""
+    if constraint.lower is None or constraint.upper is None:
+        word = "at most" if constraint.lower is None else "at least"
+        bound = constraint.upper if constraint.lower is None else constraint.lower
+        return f"{word} {_figure(constraint, bound or 0.0)}"
+    return f"{constraint.lower:.4g} to {_figure(constraint, constraint.upper)}"
+
+
+def constraints_json(constraints: Sequence[Constraint], assessment: Assessment) -> list[dict[str, Any]]:
+    """Each constraint with a design's value and violation, as JSON files have it."""
+    found = violations(constraints, assessment)
+    return [
+        {
+            "name": constraint.name,
+            "unit": constraint.unit,
+            "lower": constraint.lower,
+            "upper": constraint.upper,
+            "value": assessment.constrained.get(constraint.name),
+            "violation": found[constraint.name],
+        }
+        for constraint in constraints
+    ]
+
+
+def _words(constraint: Constraint) -> str:
+    return constraint.name.replace("_", " ")
+
+
+def _beyond(constraint: Constraint, assessment: Assessment) -> str:
+    lower, value = constraint.lower, assessment.constrained[constraint.name]
+    if lower is not None and value < lower:
+        return f"below {_figure(constraint, lower)}"
+    return f"above {_figure(constraint, constraint.upper or 0.0)}"
+
+
+def _figure(constraint: Constraint, value: float) -> str:
+    return f"{value:.4g}" if constraint.unit == "1" else f"{value:.4g} {constraint.unit}"
