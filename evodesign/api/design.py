@@ -55,7 +55,7 @@ class Design:
 
     @property
     def violation(self) -> float | None:
-        """Missed metres of height plus relative excesses of bounds; None when a failure left it unknown."""
+        """Missed height [m] plus relative excesses of bounds [1]; None when a failure left it unknown."""
         return self.assessment.violation
 
     @property

@@ -78,6 +78,7 @@ class Problem:
         name: of the problem.
         parameters: each with bounds in its own unit.
         objectives: each with sense and unit.
+        constraints: each with bounds in its quantity's unit.
         unscaled: parameter values by name of the robot as its file has it.
     Example:
         >>> [f"{objective.sense} {objective.name} [{objective.unit}]" for objective in problem.objectives]

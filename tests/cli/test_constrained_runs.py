@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
 from rich.console import Console
 
 from evodesign.analysis.audit import audit
 from evodesign.analysis.front import front
 from evodesign.api.problem import Problem
+from evodesign.api.pymoo_problem import as_pymoo_problem
 from evodesign.api.run import Run
 from evodesign.cli.front import front as front_command
 from evodesign.cli.show import show
@@ -214,7 +216,9 @@ def test_a_live_page_counts_exceeded_bounds(run: RunLog) -> None:
 def test_python_has_values_and_violations(run: RunLog) -> None:
     opened = Run(run)
     assert opened.constraints == run.header.constrained
-    assert opened.table()["mass"] == [each.assessment.constrained["mass"] for each in run.evaluations]
+    assert opened.table()["mass"].tolist() == [
+        each.assessment.constrained["mass"] for each in run.evaluations
+    ]
     design = opened.design(heavy(run).number)
     mass, reach = design.constraints["mass"], design.constraints["reach_height"]
     assert design.violations == {
@@ -233,6 +237,33 @@ def test_a_problem_in_python_evaluates_its_constraints(light: DesignProblem, kno
     assert not design.feasible
     assert design.violations["mass"] == design.constraints["mass"] - HEAVIEST
     assert design.violations["mass"] > 0.0
+
+
+def test_pymoo_and_optuna_get_a_column_for_each_constraint(
+    light: DesignProblem, known: Precomputed, run: RunLog
+) -> None:
+    """They add up to what the search ranks by."""
+    assert known.values, "worked out before, so that the problem finds it in the cache"
+    opened = Problem(light.source)
+    design = heavy(run).assessment
+    out = as_pymoo_problem(opened).evaluate(
+        np.array([[design.design[each.name] for each in opened.parameters]]), return_as_dictionary=True
+    )
+    ((height, mass, reach),) = out["G"].tolist()
+    assert (height, mass) == (0.0, (design.constrained["mass"] - HEAVIEST) / HEAVIEST)
+    assert height + mass + reach == design.violation
+    assert np.isnan(out["F"]).all()
+    study = Run(run).to_optuna()
+    for trial, evaluation in zip(study.trials, run.evaluations, strict=True):
+        columns = trial.system_attrs["constraints"]
+        assert len(columns) == 3
+        assert sum(columns) == evaluation.assessment.violation
+    best = {tuple(trial.values) for trial in study.best_trials}
+    names = [objective.name for objective in run.header.objectives]
+    assert best == {
+        tuple(each.assessment.objectives[name] for name in names)
+        for each in front(run.header.objectives, run.evaluations)
+    }
 
 
 def test_evaluate_tells_constraints_in_json_and_tables(lights: Evaluator) -> None:

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import msgspec
 import pytest
-from evodesign.search.base import JOINT_STARTS
 
 from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, Sex
@@ -23,6 +22,7 @@ from evodesign.problem.polish import Step, aim_of, polish
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Constraint, ProblemSource
 from evodesign.runlog.header import differences, header_of
+from evodesign.searches.base import JOINT_STARTS
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.test_people import FROM_FILE, PERSON, changed
 
