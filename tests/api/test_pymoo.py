@@ -82,6 +82,7 @@ class ToyProblem:
     """A problem of four parameters: designs of all kinds, and nothing to solve."""
 
     def __init__(self, objectives: int) -> None:
+        self.constraints = ()
         self.parameters = tuple(Parameter(f"length.{i}", 0.5, 2.0, "1") for i in range(4))
         senses = (Sense.MINIMISE, Sense.MINIMISE, Sense.MAXIMISE)
         self.objectives = tuple(

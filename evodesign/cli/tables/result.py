@@ -13,6 +13,7 @@ from evodesign.cli.tables.front import front_lines, least_violated
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Evaluation, Objective
 from evodesign.runlog.run import RunLog
+from evodesign.violations import bounds_text
 
 __all__ = ["chosen_designs", "next_commands", "result_lines", "result_table"]
 
@@ -39,15 +40,19 @@ def result_table(run: RunLog, chosen: Chosen) -> FittedTable:
     """The chosen designs, each with its number and its objectives, of which the best are marked."""
     objectives = run.header.objectives
     title = f"Knees of the front of {run.header.problem_name}, and the best in each objective"
-    columns = [*numbers("design"), *names(""), *numbers(*map(heading, objectives))]
+    others = run.header.constrained_alone
+    bounds = [f"{each.name} [{each.unit}], {bounds_text(each)}" for each in others]
+    columns = [*numbers("design"), *names(""), *numbers(*map(heading, objectives), *bounds)]
     table = titled(title, columns, caption="*: the best value of the front")
     by_number = {each.number: each for each in run.evaluations}
     for number, reasons in chosen.items():
-        values = by_number[number].assessment.objectives
+        assessment = by_number[number].assessment
+        values = assessment.objectives
         table.add_row(
             str(number),
             KNEE if KNEE in reasons else "",
             *(f"{'* ' * (each.name in reasons)}{rounded(values[each.name])}" for each in objectives),
+            *(rounded(assessment.constrained.get(each.name)) for each in others),
         )
     return table
 

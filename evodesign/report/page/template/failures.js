@@ -20,7 +20,7 @@ const startFailures = () => {
       element("td", { class: "number", text: `${failure.count}` }),
       element(
         "td",
-        { style: "width:30%" },
+        { style: "width:18%" },
         element("div", {
           class: "bar",
           style: `width:${(100 * failure.count) / most}%`,
@@ -28,7 +28,7 @@ const startFailures = () => {
         }),
       ),
       element("td", { class: "number", text: percent(failure.count / content.facts.evaluations) }),
-      element("td", { text: `Design ${failure.example}: ${failure.reason}` }),
+      element("td", { style: "width:40%", text: `Design ${failure.example}: ${failure.reason}` }),
     ),
   );
   const heads = [
