@@ -55,3 +55,57 @@ def test_the_path_of_a_file_stays_whole_however_long(tmp_path: Path) -> None:
     problem.parent.mkdir(parents=True)
     problem.write_text("x = 1", encoding="utf-8")
     assert_explained(evodesign("check", problem), [f"{problem}: x: "])
+
+
+def robot_with(place: Path, more: str) -> Path:
+    return spoil(place, ROBOT, "</robot>", f"{more}</robot>")
+
+
+def fixed(name: str, parent: str, y: float) -> str:
+    return (
+        f'<link name="{name}"/><joint name="{name}" type="fixed"><origin xyz="0 {y!r} 0"/>'
+        f'<parent link="{parent}"/><child link="{name}"/></joint>'
+    )
+
+
+@pytest.mark.parametrize("spread", [0.001, 0.0])
+def test_a_robot_with_three_thousand_fixed_children_is_read_within_bounds(spread: float, place: Path) -> None:
+    ys = [spread * (1 + n // 2) * (1 if n % 2 else -1) for n in range(3_000)]
+    problem = robot_with(place, "".join(fixed(f"extra{n}", "root_link", y) for n, y in enumerate(ys)))
+    done = evodesign_bounded("check", problem)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ("".join(fixed(f"extra{n}", "root_link", 0.0) for n in range(5_000)), ["links, at most 5000"]),
+        (
+            fixed("extra0", "root_link", 0.0)
+            + "".join(fixed(f"extra{n}", f"extra{n - 1}", 0.0) for n in range(1, 3_000)),
+            ["joint extra200: wanted chains of at most 200 joints"],
+        ),
+        ("<a/>" * 200_000, ["at most 100000 elements"]),
+        ("<a " + "".join(f" b{n}=''" for n in range(20_000)) + "/>", ["elements of at most 100000 letters"]),
+        (fixed("l" * 3_000, "root_link", 0.0), ["a name on one line, of at most 200 letters", "lll...lll"]),
+        ('<link name="loose"/>' * 3_000, ["link loose: wanted a unique name"]),
+        (
+            "".join(fixed(f"extra{n}", f"extra{n + 1}", 0.0) for n in range(3_000))
+            + '<link name="extra3000"/>',
+            ["one root link", "2: root_link, extra3000"],
+        ),
+        (
+            '<link name="much">' + '<visual><geometry><sphere radius="1"/></geometry></visual>' * 30_000,
+            ["XML"],
+        ),
+        (
+            '<link name="much">'
+            + '<visual><geometry><sphere radius="1"/></geometry></visual>' * 30_000
+            + "</link>",
+            ["one root link"],
+        ),
+    ],
+    ids=["links", "chain", "elements", "tag", "name", "twice", "roots", "open", "shapes"],
+)
+def test_a_hostile_robot_is_refused_within_bounds(more: str, words: list[str], place: Path) -> None:
+    assert_explained(evodesign_bounded("check", robot_with(place, more)), ["icub_shapes.urdf", *words])
