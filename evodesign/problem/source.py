@@ -17,6 +17,7 @@ import msgspec
 import tomli_w
 
 from evodesign.errors import InputError, nearest_name, shortened
+from evodesign.files import write_folder
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.shipped import SHIPPED, problem_path
 from evodesign.records import ProblemSource
@@ -96,20 +97,17 @@ def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
     Raises:
         InputError: the folder cannot be made, or is there already.
     """
-    text, files = source.text, {}
+    text, files = source.text, dict[str, str]()
     for name, content in source.files.items():
         inside = Path(*(part for part in Path(name).parts if part not in ("..", Path(name).anchor)))
-        files[folder / inside] = content
+        files[inside.as_posix()] = content
         text = text.replace(f'"{name}"', f'"{inside.as_posix()}"')
-    files = {folder / Path(source.path).name: text, **files}
+    files = {Path(source.path).name: text, **files}
     try:
-        folder.mkdir(parents=True)
-        for path, content in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(content, encoding="utf-8")
+        write_folder(folder, {name: content.encode() for name, content in files.items()}, new=True)
     except OSError as error:
         raise InputError("--to", "", "a new folder", f"'{folder}' ({error.strerror})") from error
-    return tuple(files)
+    return tuple(folder / name for name in files)
 
 
 def read_text(path: Path, source: str, key: str) -> str:
