@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
@@ -13,6 +11,7 @@ from evodesign.analysis.failures import causes, failures
 from evodesign.cli.output import printable
 from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Evaluation, materials_of
+from evodesign.report.csv_text import csv_text
 from evodesign.runlog.run import RunLog
 
 __all__ = ["front_csv", "front_json", "front_lines", "front_table", "least_violated"]
@@ -57,23 +56,18 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
     """Designs as comma-separated values: number, objectives, parameters (in full), materials."""
     objectives = [objective.name for objective in run.header.objectives]
     parameters = [parameter.name for parameter in run.header.parameters]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     made_of = [parameter for parameter in run.header.parameters if parameter.materials]
-    writer.writerow(
-        ["design", *objectives, *parameters, *(f"{parameter.name}.material" for parameter in made_of)]
-    )
-    for evaluation in designs:
-        assessment = evaluation.assessment
-        writer.writerow(
-            [
-                evaluation.number,
-                *(assessment.objectives[name] for name in objectives),
-                *(assessment.design[name] for name in parameters),
-                *(parameter.material_of(assessment.design[parameter.name]) for parameter in made_of),
-            ]
-        )
-    return text.getvalue()
+    columns = ["design", *objectives, *parameters, *(f"{parameter.name}.material" for parameter in made_of)]
+    rows = [
+        [
+            evaluation.number,
+            *(evaluation.assessment.objectives[name] for name in objectives),
+            *(evaluation.assessment.design[name] for name in parameters),
+            *(parameter.material_of(evaluation.assessment.design[parameter.name]) for parameter in made_of),
+        ]
+        for evaluation in designs
+    ]
+    return csv_text([columns, *rows])
 
 
 def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> FittedTable:
