@@ -208,3 +208,12 @@ def test_disks_are_small_in_a_process_that_may_mount_or_not() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "File too large\n"
+
+
+def test_output_that_finds_no_room_is_told_in_a_sentence(tmp_path: Path) -> None:
+    start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    command = [sys.executable, "-m", "evodesign", "front", str(tmp_path / "run"), "--csv"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == "error: the output cannot be written: No space left on device\n"
