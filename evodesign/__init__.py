@@ -11,10 +11,10 @@ What a name needs is loaded when it is used: opening a run loads no solver.
 """
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    __version__: str
     from evodesign.api.design import Design
     from evodesign.api.problem import Problem, open_problem, problems
     from evodesign.api.pymoo_problem import as_pymoo_problem
@@ -34,7 +34,6 @@ HOMES = {
 }
 """Where each public name lives."""
 
-__version__ = version("evodesign")
 __all__ = [
     "Design",
     "Problem",
@@ -50,6 +49,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version  # here, because a command line must heed Ctrl-C before
+
+        return version("evodesign")
     if name not in HOMES:
         raise AttributeError(f"module 'evodesign' has no attribute '{name}'")
     return getattr(import_module(HOMES[name]), name)

@@ -13,6 +13,7 @@ A failed solve is not an error: it is a `records.Status` with a reason.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 
 __all__ = [
@@ -24,7 +25,11 @@ __all__ = [
     "RunError",
     "nearest_name",
     "on_one_line",
+    "shortened",
 ]
+
+LONGEST_WORD, LONGEST_CLAUSE = 80, 600
+"""Letters of a word (paths have one in each folder) and of a clause that a message repeats of a file."""
 
 
 class EvodesignError(Exception):
@@ -32,7 +37,7 @@ class EvodesignError(Exception):
 
 
 class InputError(EvodesignError):
-    """Something that the user wrote is wrong.
+    """Something that the user wrote is wrong; the message repeats no more of it than can be read.
 
     Attributes:
         source: the file or option that holds it.
@@ -46,13 +51,25 @@ class InputError(EvodesignError):
         self.key = key
         self.wanted = wanted
         self.found = found
-        place = f"{source}: {key}" if key else source
-        super().__init__(on_one_line(f"{place}: wanted {wanted}, found {found}"))
+        place = f"{source}: {_readable(key)}" if key else source
+        super().__init__(on_one_line(f"{place}: wanted {_readable(wanted)}, found {_readable(found)}"))
 
 
 def on_one_line(text: str) -> str:
     """The text with line ends and other control characters as their escapes: names in files may hold them."""
     return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+
+
+def shortened(text: str, longest: int = LONGEST_WORD) -> str:
+    """The text with its middle left out where it has more letters than `longest`."""
+    kept = (longest - 3) // 2
+    return text if len(text) <= longest else f"{text[:kept]}...{text[-kept:]}"
+
+
+def _readable(clause: str) -> str:
+    """A clause of a message, with long words and all of it shortened."""
+    words = re.sub(rf"[^\s/]{{{LONGEST_WORD + 1},}}", lambda word: shortened(word[0]), clause)
+    return shortened(words, LONGEST_CLAUSE)
 
 
 class ModelError(InputError):
@@ -73,5 +90,7 @@ class Interrupted(EvodesignError):
 
 def nearest_name(name: str, names: Iterable[str]) -> str:
     """A hint such as `; did you mean 'chest'?`, or an empty string when nothing is near."""
+    if len(name) > LONGEST_WORD:  # looking for a match takes as long as the square of its letters
+        return ""
     match = difflib.get_close_matches(name, list(names), n=1, cutoff=0.5)
     return f"; did you mean '{match[0]}'?" if match else ""

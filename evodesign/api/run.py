@@ -18,6 +18,7 @@ from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, conditions, quantities
 from evodesign.api.design import Design
 from evodesign.errors import InputError
+from evodesign.files import write_whole
 from evodesign.records import CaseDetail, Constraint, Evaluation, Objective, Parameter
 from evodesign.runlog.run import RunLog, read_run
 
@@ -176,7 +177,7 @@ class Run:
 
         page = front_html(self.log.header, self.log.evaluations)
         try:
-            Path(path).write_text(page, encoding="utf-8")
+            write_whole(Path(path), page.encode())
         except OSError as error:
             raise InputError(
                 "path", "", "a file that can be written", f"'{path}' ({error.strerror})"

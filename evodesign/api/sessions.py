@@ -144,6 +144,7 @@ def begin(
         InputError: settings that no search can use, or a pool that there is not.
         RunError: the directory holds a run already, or cannot be written.
         Interrupted: stopped; what had arrived is logged.
+        KeyboardInterrupt: stopped before there was a run.
     """
     for note in notes(problem):
         display.note(note)
@@ -222,12 +223,13 @@ def _factory(header: RunHeader, pool: Pool, workers: Workers, display: Display) 
 
 @contextmanager
 def _resumable(directory: Path, stop: Stop) -> Iterator[None]:
-    """Turn a stop into an error that says how to go on, also one before or after the loop itself."""
+    """Turn a stop into an error that says how to go on, also one after the loop; none if there is no run."""
     try:
         yield
     except KeyboardInterrupt:
-        hint = f"; go on with: evodesign resume {directory}" if segments(directory) else ""
-        raise Interrupted(f"stopped{hint}") from None
+        if not segments(directory):
+            raise
+        raise Interrupted(f"stopped; go on with: evodesign resume {directory}") from None
     except Interrupted as interrupted:
         raise Interrupted(f"{stop.why}: {interrupted}" if stop.why else f"{interrupted}") from None
 

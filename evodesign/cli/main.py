@@ -5,6 +5,8 @@ What a command needs is imported when it is called: showing a front must not wai
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
@@ -33,10 +35,13 @@ from evodesign.cli.starts import starts
 from evodesign.cli.verify import verify
 from evodesign.cli.watch import watch
 from evodesign.errors import EvodesignError, Interrupted
+from evodesign.interrupts import STOPPED
 
 __all__ = ["COMMANDS", "app", "main"]
 
-BAD_INPUT, STOPPED = 2, 3
+BAD_INPUT = 2
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 COMMANDS: dict[str, Callable[..., None]] = {
     "search": search,
@@ -104,13 +109,19 @@ def _app(
 def main() -> None:
     """Run a command; errors that evodesign knows end it with one sentence."""
     try:
-        app(prog_name="evodesign")
+        try:
+            app(prog_name="evodesign")
+        finally:
+            sys.stdout.flush()
     except Interrupted as stop:
         _leave(f"{stop}", STOPPED)
-    except KeyboardInterrupt:  # a search turns it into Interrupted as soon as there is a run
-        _leave("stopped", STOPPED)
     except EvodesignError as error:
         _leave(f"error: {error}", BAD_INPUT)
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left of it goes nowhere
+        _leave(f"error: the output cannot be written: {error.strerror}", BAD_INPUT)
 
 
 def _leave(sentence: str, code: int) -> None:

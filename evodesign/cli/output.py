@@ -15,6 +15,7 @@ from rich.markup import escape
 from rich.text import Text
 
 from evodesign.errors import InputError
+from evodesign.files import write_whole
 from evodesign.records import Objective
 
 __all__ = [
@@ -105,6 +106,6 @@ def write_text(path: Path, text: str, option: str) -> None:
         InputError: it cannot be written.
     """
     try:
-        path.write_text(text, encoding="utf-8")
+        write_whole(path, text.encode())
     except OSError as error:
         raise InputError(option, "", "a file that can be written", f"'{path}' ({error.strerror})") from error

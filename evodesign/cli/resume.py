@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -35,7 +36,7 @@ def resume(
         Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
-        SignalledStop,
+        partial(SignalledStop, run=run),
         accept_versions=accept_versions,
     )
     show_result(done, json=json)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -43,13 +44,14 @@ def search(
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem, symmetry))
+    directory = new_directory(built.name) if run is None else run
     done = begin(
         built,
-        new_directory(built.name) if run is None else run,
+        directory,
         built.settings(algorithm, population, seed, asynchronous),
         Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
-        SignalledStop,
+        partial(SignalledStop, run=directory),
     )
     show_result(done, json=json)

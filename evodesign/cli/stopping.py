@@ -1,7 +1,8 @@
 """How a session is stopped: Ctrl-C, SIGTERM, or the end of its wall time.
 
 The first request lets what is in flight arrive, for half a minute at most; the next one, or the end of that
-time, stops at once. Either way everything that had arrived is on the disk, and the run can be resumed.
+time, stops at once; a third one does not wait until workers have ended. Either way everything that had
+arrived is on the disk, and the run can be resumed.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 
 from evodesign.api.sessions import SECONDS_PER_HOUR
 from evodesign.cli.output import show_notes
+from evodesign.interrupts import INTERRUPTS
 
 __all__ = ["GRACE_SECONDS", "SignalledStop"]
 
@@ -25,14 +28,16 @@ GRACE_SECONDS = 30.0
 class SignalledStop:
     """Whether a session is to stop; asked by the loop, told by signals.
 
-    Before and after `heeded`, a signal is a KeyboardInterrupt.
+    Before and after `heeded`, a signal is an interrupt.
 
     Args:
         hours: wall time of the session from now on; None for no end.
+        run: directory of the run.
         grace_seconds: how long what is in flight may take.
     """
 
-    def __init__(self, hours: float | None, grace_seconds: float = GRACE_SECONDS) -> None:
+    def __init__(self, hours: float | None, run: Path, grace_seconds: float = GRACE_SECONDS) -> None:
+        INTERRUPTS.run = run
         self._hours = hours
         self._grace = grace_seconds
         self._end = None if hours is None else time.monotonic() + hours * SECONDS_PER_HOUR
@@ -67,12 +72,12 @@ class SignalledStop:
 
     def _on_request(self, signum: int, frame: FrameType | None) -> None:
         if not self._heeded or self._asked.is_set():
-            raise KeyboardInterrupt
+            INTERRUPTS.interrupt()
         self._begin("Ctrl-C again stops at once")
 
     def _on_alarm(self, signum: int, frame: FrameType | None) -> None:
         if self._asked.is_set():
-            raise KeyboardInterrupt
+            INTERRUPTS.interrupt()
         self._why = f"its wall time of {self._hours:g} h is over"
         self._begin(self._why)
 

@@ -9,10 +9,14 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import time
+from collections.abc import Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from typing import Any, Generic
 
+from joblib.externals.loky.backend import resource_tracker
 from joblib.externals.loky.process_executor import (
     BrokenProcessPool,
     ProcessPoolExecutor,
@@ -102,7 +106,9 @@ class WorkerProcess(Generic[A, R]):
                 initargs=(self.factory, self._place, self._limits.memory, os.getpid()),
                 env=ONE_THREAD,
             )
-            self._executor.submit(build_here).add_done_callback(self._built)
+            with _interrupts_held_off():
+                built = self._executor.submit(build_here)
+            built.add_done_callback(self._built)
         future: Future[Finished[R]] = self._executor.submit(finish_here, index, argument)
         return future
 
@@ -118,6 +124,17 @@ class WorkerProcess(Generic[A, R]):
         failure = f"{what} after {self.due - self._begun:g} s, so the worker process was ended"
         self.close()
         return Finished(index, None, failure, False, self._seconds, self._name, out_of_time=True)
+
+
+@contextmanager
+def _interrupts_held_off() -> Iterator[None]:
+    """Processes and threads begun within this never see Ctrl-C, not even before `start_worker`."""
+    resource_tracker.ensure_running()  # which lets interrupts in when it has to begin
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _death(error: BaseException) -> str:

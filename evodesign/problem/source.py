@@ -17,13 +17,13 @@ from typing import Any, TypeVar, get_args
 import msgspec
 import tomli_w
 
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, shortened
+from evodesign.files import write_folder
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.shipped import SHIPPED, problem_path
 from evodesign.records import ProblemSource
 
 __all__ = ["copy_source", "decode_toml", "read_source", "read_text", "source_of"]
-
 
 GIVEN = "the problem given"
 """What messages call a problem that no file holds."""
@@ -98,20 +98,17 @@ def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
     Raises:
         InputError: the folder cannot be made, or is there already.
     """
-    text, files = source.text, {}
+    text, files = source.text, dict[str, str]()
     for name, content in source.files.items():
         inside = Path(*(part for part in Path(name).parts if part not in ("..", Path(name).anchor)))
-        files[folder / inside] = content
+        files[inside.as_posix()] = content
         text = text.replace(f'"{name}"', f'"{inside.as_posix()}"')
-    files = {folder / Path(source.path).name: text, **files}
+    files = {Path(source.path).name: text, **files}
     try:
-        folder.mkdir(parents=True)
-        for path, content in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(content, encoding="utf-8")
+        write_folder(folder, {name: content.encode() for name, content in files.items()}, new=True)
     except OSError as error:
         raise InputError("--to", "", "a new folder", f"'{folder}' ({error.strerror})") from error
-    return tuple(files)
+    return tuple(folder / name for name in files)
 
 
 def read_text(path: Path, source: str, key: str) -> str:
@@ -122,25 +119,42 @@ def read_text(path: Path, source: str, key: str) -> str:
         source: who names it, for messages.
         key: where in the source, empty for the whole.
     Raises:
-        InputError: it cannot be read.
+        InputError: it cannot be read, or is longer than `LONGEST_FILE`.
     """
     try:
         if path.exists() and not path.is_file():  # reading a device or a pipe might never end
             raise InputError(source, key, "a file", f"'{path}', which is none")
-        return path.read_text(encoding="utf-8")
+        with path.open(encoding="utf-8") as file:
+            text = file.read(LONGEST_FILE + 1)
     except FileNotFoundError as error:
         raise InputError(source, key, "an existing file", f"no file '{path}'") from error
     except UnicodeDecodeError as error:
         raise InputError(source, key, "UTF-8 text", f"other bytes in '{path}'") from error
     except (OSError, ValueError) as error:
         raise InputError(source, key, "a readable file", f"'{path}' ({error})") from error
+    if len(text) > LONGEST_FILE:
+        raise InputError(source, key, f"a file of at most {LONGEST_FILE} letters", f"a longer '{path}'")
+    return text
 
 
 RENAMED = {"policy": "allocation", "seeds": "start_portfolio"}
 """Keys of earlier versions, and what they are called now."""
 
+LONGEST_FILE = 10_000_000
+"""Letters of a file that a problem names: a robot of 100 links has 100 kB."""
+
+LONGEST_TEXT, LONGEST_LINE, MOST_DOTS = 1_000_000, 10_000, 100_000
+"""Letters of a TOML file and of its lines, and dots in all its keys: each takes 1 kB to read."""
+
 DEEPEST = 16
-"""Tables and arrays inside each other; a problem has four."""
+"""Tables and arrays inside each other, and dotted parts of a key; a problem has four."""
+
+PART = r"""(?:[\w-]+|"(?:\\.|[^"\\\n])*+"?|'[^'\n]*+'?)"""
+TOKEN = re.compile(
+    r"""\"{3}(?s:\\.|[^\\])*?(?:\"{3,5}|\Z)|'{3}(?s:.)*?(?:'{3,5}|\Z)|\#[^\n]*"""
+    rf"|(?P<key>{PART}(?:[ \t]*+\.[ \t]*+{PART})*+)"
+)
+"""Texts of several lines, comments, and keys: a number or text in one line looks like a key of few parts."""
 
 T = TypeVar("T", bound=msgspec.Struct)
 
@@ -155,6 +169,7 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
     Raises:
         InputError: broken TOML, unknown key, wrong type, value out of range, number that is not finite.
     """
+    _refuse_size(text, source)
     try:
         raw = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # a ValueError for an integer of thousands of digits
@@ -168,6 +183,23 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
         return msgspec.convert(raw, table)
     except msgspec.ValidationError as error:
         raise _explained(error, raw, source, table) from error
+
+
+def _refuse_size(text: str, source: str) -> None:
+    """Refuse a text that would take long, or much memory, to decode; the parser has no limits of its own."""
+    if len(text) > LONGEST_TEXT:
+        raise InputError(source, "", f"TOML of at most {LONGEST_TEXT} letters", f"{len(text)}")
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > LONGEST_LINE:
+            raise InputError(source, f"line {number}", f"at most {LONGEST_LINE} letters", f"{len(line)}")
+    dots = 0
+    for token in TOKEN.finditer(text):
+        parts = len(re.findall(PART, token["key"] or ""))
+        dots += max(0, parts - 1)
+        if parts > DEEPEST:
+            raise InputError(source, token["key"], f"a key of at most {DEEPEST} dotted parts", f"{parts}")
+    if dots > MOST_DOTS:
+        raise InputError(source, "", f"at most {MOST_DOTS} dots in keys and numbers", f"{dots}")
 
 
 def _refuse_depth(raw: Any, source: str) -> None:
@@ -240,7 +272,7 @@ def _explained(error: msgspec.ValidationError, raw: Any, source: str, table: typ
     wanted = wanted.replace("Invalid enum value", "another word than").replace(
         "str of length", "text of length"
     )
-    return InputError(source, key, wanted, _shown(_at(raw, key)))
+    return InputError(source, key, wanted, shortened(repr(_at(raw, key))))
 
 
 FREE = "[...]"
@@ -271,8 +303,3 @@ def _at(raw: Any, key: str) -> Any:
         except (KeyError, IndexError, TypeError):
             return None
     return raw
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

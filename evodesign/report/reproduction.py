@@ -26,6 +26,7 @@ from evodesign.analysis.paper_claims import (
     TorqueNormsByHeight,
 )
 from evodesign.errors import InputError
+from evodesign.files import write_whole
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import CaseDetail, Status
 from evodesign.report.figures.joint_torques import torque_boxes
@@ -173,7 +174,7 @@ def write_reproduction(
 def _urdf(directory: Path, robot: ReproducedRobot) -> Path:
     path = directory / f"{robot.name}.urdf"
     try:
-        path.write_text(urdf_text(robot.models.trees[ROBOT]), encoding="utf-8")
+        write_whole(path, urdf_text(robot.models.trees[ROBOT]).encode())
     except OSError as error:
         wanted = "a directory that can be written"
         raise InputError(str(directory), "", wanted, f"{error.strerror}") from error

@@ -10,7 +10,6 @@ for those generations is kept in its settings as a stage.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +17,7 @@ import msgspec
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import InputError, RunError
+from evodesign.files import replacing
 from evodesign.records import SearchSettings, SearchStage
 from evodesign.runlog.channels import RUN
 from evodesign.runlog.directory import locked, make_directory, refuse_run, run_segments, segment_path, synced
@@ -63,16 +63,15 @@ def merge(directory: Path, to: Path | None) -> RunLog:
     """
     if to is not None:
         run = _undamaged(directory)
+        if to.exists():
+            raise RunError(f"{to}: exists already")
         _write(to, directory, run)
         return run
     paths = run_segments(directory)
     with locked(directory):
         run = _undamaged(directory)
-        unfinished = directory / UNFINISHED
+        _write(segment_path(directory, 0), directory, run, UNFINISHED)
         try:
-            unfinished.unlink(missing_ok=True)  # of a merge that was killed
-            _write(unfinished, directory, run)
-            unfinished.replace(segment_path(directory, 0))
             synced(directory)
             for number, path in paths.items():
                 if number > 0:
@@ -92,14 +91,14 @@ def _undamaged(directory: Path) -> RunLog:
     return run
 
 
-def _write(path: Path, directory: Path, run: RunLog) -> None:
+def _write(path: Path, directory: Path, run: RunLog, part: str = "") -> None:
     """All records of a run, each once, as one segment that is on the disk when this returns.
 
     Raises:
         RunError: the file cannot be written.
     """
     try:
-        with path.open("xb") as file:
+        with replacing(path, part) as file:
             writer = Writer(
                 file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
             )
@@ -111,12 +110,7 @@ def _write(path: Path, directory: Path, run: RunLog) -> None:
                 writer.add_message(channels[entry.topic], time, encoded(entry.record), time, entry.sequence)
             add_header_copy(writer, run.header, time)
             writer.finish()  # type: ignore[no-untyped-call]
-            file.flush()
-            os.fsync(file.fileno())
-    except FileExistsError as error:
-        raise RunError(f"{path}: exists already") from error
     except OSError as error:
-        path.unlink(missing_ok=True)
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 

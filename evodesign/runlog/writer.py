@@ -8,6 +8,7 @@ of 16 parameters and 3 heights (1.8 kB as JSON), and 5 kB more for each design w
 
 from __future__ import annotations
 
+import errno
 import os
 import time
 from collections.abc import Iterator
@@ -37,6 +38,9 @@ from evodesign.runlog.channels import (
 from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
 
 __all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "encoded", "register"]
+
+UNFINISHED = "segment.part"
+"""A segment that has no header yet; a kill leaves at most one, which the next session writes over."""
 
 LONGEST_SEGMENT = 4096
 """Messages after which `commit` begins the next segment: an open one keeps its index in memory, 2 kB each."""
@@ -71,9 +75,23 @@ class RunWriter:
             self._begin()
 
     def _begin(self) -> None:
-        """Open the file of the present segment and put its header on the disk."""
+        """Put the present segment with its header on the disk; it has its name from then on, not before."""
         self.path = segment_path(self._directory, self._segment)
-        self._file = self.path.open("xb")
+        unfinished = self._directory / UNFINISHED
+        self._file = unfinished.open("wb")  # over what a killed session left
+        try:
+            self._put_header()
+            if self.path.exists():
+                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
+            unfinished.rename(self.path)
+        except BaseException:
+            with suppress(OSError):
+                self._file.close()
+            unfinished.unlink(missing_ok=True)
+            raise
+        synced(self._directory, self._directory.parent)
+
+    def _put_header(self) -> None:
         self._messages = 0
         self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
         self._mcap.start(profile="", library="evodesign")
@@ -81,7 +99,6 @@ class RunWriter:
         self._add(RUN, self._header, sequence=self._segment)
         add_header_copy(self._mcap, self._header, self._now())
         _to_disk(self._file)
-        synced(self._directory, self._directory.parent)
 
     def _end(self) -> None:
         """Finish the present segment with its index and footer."""

@@ -7,6 +7,7 @@ names, axes, limits and the tree's form are not.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -127,12 +128,10 @@ class Tree:
     @cached_property
     def child_joints(self) -> Mapping[str, tuple[Joint, ...]]:
         """The joints below each link."""
-        return {
-            link.name: tuple(joint for joint in self.joints if joint.parent == link.name)
-            for link in self.links
-        }
+        below = _joints_below(self)
+        return {link.name: tuple(below.get(link.name, ())) for link in self.links}
 
-    @property
+    @cached_property
     def root(self) -> str:
         """Name of the link that no joint holds."""
         return _roots(self)[0]
@@ -159,9 +158,9 @@ def _check_names(tree: Tree) -> None:
         ("link", [link.name for link in tree.links]),
         ("joint", [joint.name for joint in tree.joints]),
     ):
-        repeated = sorted({name for name in names if names.count(name) > 1})
-        if repeated:
-            raise ModelError(tree.name, f"{noun} {repeated[0]}", "a unique name", "the name twice")
+        repeated = min((name for name, count in Counter(names).items() if count > 1), default=None)
+        if repeated is not None:
+            raise ModelError(tree.name, f"{noun} {repeated}", "a unique name", "the name twice")
     known = {link.name for link in tree.links}
     for joint in tree.joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
@@ -176,23 +175,29 @@ def _roots(tree: Tree) -> list[str]:
     return [link.name for link in tree.links if link.name not in held]
 
 
+def _joints_below(tree: Tree) -> dict[str, list[Joint]]:
+    """The joints below each link that has some."""
+    below: dict[str, list[Joint]] = {}
+    for joint in tree.joints:
+        below.setdefault(joint.parent, []).append(joint)
+    return below
+
+
 def _ordered_joints(tree: Tree) -> tuple[Joint, ...]:
     """Joints breadth first from the root, in file order among brothers."""
     roots = _roots(tree)
     if len(roots) != 1:
         found = "none" if not roots else f"{len(roots)}: {', '.join(roots)}"
         raise ModelError(tree.name, "links", "one root link that no joint holds", found)
-    children = [joint.child for joint in tree.joints]
-    for name in children:
-        if children.count(name) > 1:
+    for name, count in Counter(joint.child for joint in tree.joints).items():
+        if count > 1:
             raise ModelError(tree.name, f"link {name}", "one parent joint", "several")
-    ordered: list[Joint] = []
-    front = [roots[0]]
-    while front:
-        below = [joint for name in front for joint in tree.joints if joint.parent == name]
-        ordered.extend(below)
-        front = [joint.child for joint in below]
+    below = _joints_below(tree)
+    ordered = list(below.get(roots[0], ()))
+    for joint in ordered:  # which grows meanwhile
+        ordered.extend(below.get(joint.child, ()))
     if len(ordered) != len(tree.joints):
-        lost = next(joint for joint in tree.joints if joint not in ordered)
+        reached = {joint.name for joint in ordered}
+        lost = next(joint for joint in tree.joints if joint.name not in reached)
         raise ModelError(tree.name, f"joint {lost.name}", "a tree without loops", "a loop")
     return tuple(ordered)

@@ -14,10 +14,14 @@ own partners. A joint of the middle line with sign -1 (a roll or a yaw) is zero 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from heapq import merge
+from operator import itemgetter
 
-from evodesign.body.placement import Placement, mirrored_matrix, mirrored_point
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Placement, Vector, mirrored_matrix, mirrored_point
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
@@ -25,6 +29,9 @@ __all__ = ["Mirror", "left_half", "mirror_of"]
 
 TOLERANCE = 1e-9
 """Largest difference of figures [m, kg, kg m^2, rad] between mirror images."""
+
+WIDEST = 1e6
+"""Range of a joint [rad or m] beyond which `Waiting` takes all for equal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,26 +63,97 @@ def mirror_of(tree: Tree) -> Mirror:
     joints: dict[str, str] = {}
     signs: dict[str, float] = {}
     _refuse_unequal(tree, tree.link_by_name[tree.root], tree.link_by_name[tree.root])
+    waiting = Waiting(tree)
     for joint in tree.joints:
         if joint.name in joints:
             continue
-        partner = _partner(tree, joint, links[joint.parent], joints)
+        partner = _partner(tree, joint, links[joint.parent], waiting)
+        waiting.discard(joint, partner)
         for one, other in ((joint, partner), (partner, joint)):
             links[one.child], joints[one.name] = other.child, other.name
             signs[one.name] = _sign(joint, partner)
     return Mirror(links, joints, signs)
 
 
-def _partner(tree: Tree, joint: Joint, parent: str, taken: Iterable[str]) -> Joint:
+class Waiting:
+    """The joints without a partner so far; mirror images are found without looking at all of them.
+
+    Each joint has a number of its own, a weighted sum of its place, its range and its link's inertia. That of
+    a joint's mirror image is known up to the tolerances, so that only joints of such numbers are looked at.
+
+    Args:
+        tree: of numbers.
+    """
+
+    WEIGHTS = tuple(1.0 + (k * 0.6180339887498949) % 1.0 for k in range(14))
+
+    def __init__(self, tree: Tree) -> None:
+        self._tree = tree
+        self._joints: dict[tuple[str, JointKind], dict[float, dict[str, tuple[int, Joint]]]] = {}
+        for order, joint in enumerate(tree.joints):
+            same = self._joints.setdefault((joint.parent, joint.kind), {}).setdefault(self._number(joint), {})
+            same[joint.name] = (order, joint)
+        self._numbers = {place: sorted(numbers) for place, numbers in self._joints.items()}
+
+    def among(self, parent: str) -> list[Joint]:
+        """All that wait below a link, in the tree's order."""
+        groups = [same for kind in JointKind for same in self._joints.get((parent, kind), {}).values()]
+        return [
+            joint
+            for _, joint in sorted((entry for same in groups for entry in same.values()), key=itemgetter(0))
+        ]
+
+    def like(self, joint: Joint, parent: str) -> Iterator[Joint]:
+        """Those that wait below a link and may be a joint's mirror image, in the tree's order."""
+        place = (parent, joint.kind)
+        numbers = self._numbers.get(place, [])
+        least, most = self._image(joint)
+        groups = []
+        for number in numbers[bisect_left(numbers, least) :]:
+            if number > most:
+                break
+            groups.append(self._joints[place][number].values())
+        return (candidate for _, candidate in merge(*groups, key=itemgetter(0)))
+
+    def discard(self, *joints: Joint) -> None:
+        """These have a partner now."""
+        for joint in joints:
+            self._joints[joint.parent, joint.kind][self._number(joint)].pop(joint.name, None)
+
+    def _number(self, joint: Joint) -> float:
+        figures = _figures(
+            joint, joint.parent_from_child.translation, self._tree.link_by_name[joint.child].inertia
+        )
+        return sum(weight * figure for weight, figure in zip(self.WEIGHTS, figures, strict=True))
+
+    def _image(self, joint: Joint) -> tuple[float, float]:
+        """Least and largest number of a joint's mirror image: tolerances, and what is lost in rounding."""
+        place = mirrored_point(joint.parent_from_child.translation)
+        figures = _figures(joint, place, self._tree.link_by_name[joint.child].inertia.mirrored())
+        parts = [weight * figure for weight, figure in zip(self.WEIGHTS, figures, strict=True)]
+        slack = 2.0 * TOLERANCE * sum(self.WEIGHTS) + 1e-14 * sum(map(abs, parts))
+        return sum(parts) - slack, sum(parts) + slack
+
+
+def _figures(joint: Joint, place: Vector, inertia: Inertia) -> tuple[float, ...]:
+    """What a joint and its mirror image have in common: place, range, mass, centre and tensor."""
+    span = min(joint.upper - joint.lower, WIDEST) if joint.upper > joint.lower else 0.0
+    rows = inertia.about_center
+    tensor = (rows[0][0], rows[0][1], rows[0][2], rows[1][1], rows[1][2], rows[2][2])
+    return tuple(float(figure) for figure in (*place, span, inertia.mass, *inertia.center, *tensor))
+
+
+def _partner(tree: Tree, joint: Joint, parent: str, waiting: Waiting) -> Joint:
     """The mirror image of a joint among those of its parent's partner."""
-    candidates = [j for j in tree.child_joints[parent] if j.name not in taken]
-    fitting = [c for c in candidates if _same_place(tree, joint, c) and _sign_fits(joint, c)]
     link = tree.link_by_name[joint.child]
-    for candidate in fitting:
-        if _same_body(link, tree.link_by_name[candidate.child]):
+    for candidate in waiting.like(joint, parent):
+        body = tree.link_by_name[candidate.child]
+        if _same_place(tree, joint, candidate) and _sign_fits(joint, candidate) and _same_body(link, body):
             return candidate
-    for candidate in fitting:
-        _refuse_unequal(tree, link, tree.link_by_name[candidate.child])
+    candidates = waiting.among(parent)
+    for candidate in candidates:
+        if _same_place(tree, joint, candidate) and _sign_fits(joint, candidate):
+            _refuse_unequal(tree, link, tree.link_by_name[candidate.child])
     nearest = min((c for c in candidates if c is not joint), key=lambda c: _distance(joint, c), default=None)
     found = "none" if nearest is None else f"none (the nearest is '{nearest.name}')"
     raise ModelError(tree.name, f"joint {joint.name}", "a mirror image in the plane y = 0", found)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from evodesign.errors import ModelError
+from evodesign.errors import ModelError, shortened
 from evodesign.tree.model import JointKind
 
 __all__ = ["checked_urdf"]
@@ -63,8 +63,10 @@ ATTRIBUTES: Mapping[str, Mapping[str, Figures]] = {
 PRIMITIVES = ("box", "cylinder", "sphere")
 SHORTEST_AXIS = 1e-6
 """An <axis> of fewer than this length has no direction."""
-LONGEST_QUOTE = 60
-"""Characters of the file that a message repeats."""
+LONGEST_NAME, LONGEST_TAG = 200, 100_000
+"""Letters of a name, and between the beginnings of two elements."""
+MOST_LINKS, MOST_ELEMENTS = 5_000, 100_000
+"""A robot of 100 links has 1,500 elements."""
 
 
 def checked_urdf(text: str, source: str) -> etree._Element:
@@ -86,6 +88,12 @@ def checked_urdf(text: str, source: str) -> etree._Element:
 
 
 def _parsed(text: str, source: str) -> etree._Element:
+    tags = text.split("<")
+    elements = sum(not tag.startswith(("/", "!", "?")) for tag in tags) - 1
+    if elements > MOST_ELEMENTS:
+        raise ModelError(source, "", f"a URDF file of at most {MOST_ELEMENTS} elements", f"{elements}")
+    if max(map(len, tags)) > LONGEST_TAG:
+        raise ModelError(source, "", f"elements of at most {LONGEST_TAG} letters", "a longer one")
     parser = etree.XMLParser(
         encoding="utf-8",  # whatever the declaration said: the text is decoded already
         resolve_entities=False,
@@ -107,12 +115,13 @@ def _check(root: etree._Element, source: str) -> None:
     """Refuse what cannot be read, and strip what is not, so that only checked elements remain."""
     if root.tag != "robot":
         raise ModelError(source, "", "<robot> as the outermost element", f"<{root.tag}>")
-    _check_name(root, "robot", source)
-    if root.find("link") is None:
-        raise ModelError(source, "robot", "links", "none")
+    _check_name(root, source)
+    count = len(root.findall("link"))
+    if not 0 < count <= MOST_LINKS:
+        raise ModelError(source, "robot", f"links, at most {MOST_LINKS}", f"{count or 'none'}")
     _strip(root, ("link", "joint"))
     for element in root:
-        _check_name(element, _indexed(element), source)
+        _check_name(element, source)
         check = _check_link if element.tag == "link" else _check_joint
         check(element, source)
         for part in element.iter(*ATTRIBUTES):
@@ -121,12 +130,14 @@ def _check(root: etree._Element, source: str) -> None:
         _check_motion(joint, source)
 
 
-def _check_name(element: etree._Element, key: str, source: str) -> None:
-    name = element.get("name")
+def _check_name(element: etree._Element, source: str) -> None:
+    name = element.get("name", "")
+    if name and name.isprintable() and len(name) <= LONGEST_NAME:
+        return
+    key = f"{element.tag if element.getparent() is None else _indexed(element)}.name"
     if not name:
-        raise ModelError(source, f"{key}.name", "a name", "nothing")
-    if not name.isprintable():
-        raise ModelError(source, f"{key}.name", "a name on one line", _quoted(name))
+        raise ModelError(source, key, "a name", "nothing")
+    raise ModelError(source, key, f"a name on one line, of at most {LONGEST_NAME} letters", _quoted(name))
 
 
 def _check_once(element: etree._Element, tags: Iterable[str], source: str) -> None:
@@ -150,7 +161,7 @@ def _check_link(link: etree._Element, source: str) -> None:
         _check_once(look, ("origin", "geometry"), source)
         shapes = [shape.tag for geometry in look.findall("geometry") for shape in geometry]
         if len(shapes) != 1 or shapes[0] not in (*PRIMITIVES, "mesh"):
-            found = _shortened(", ".join(f"<{shape}>" for shape in shapes)) or "nothing"
+            found = shortened(", ".join(f"<{shape}>" for shape in shapes)) or "nothing"
             wanted = "one <box>, <cylinder>, <sphere> or <mesh>"
             raise ModelError(source, f"{_key(look)}.geometry", wanted, found)
         _strip(look, ("origin", "geometry"))
@@ -214,15 +225,11 @@ def _numbers(text: str) -> list[float]:
 
 def _quoted(text: str) -> str:
     """A piece of the file in a message: on one line, and not a page of it."""
-    return repr(_shortened(text))
-
-
-def _shortened(text: str) -> str:
-    return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 3]}..."
+    return repr(shortened(text))
 
 
 def _strip(element: etree._Element, tags: Iterable[str]) -> None:
-    for child in list(element):
+    for child in reversed(element):
         if child.tag not in tags:
             element.remove(child)
 

@@ -45,6 +45,10 @@ ROUNDED = 0.01
 """Share of the largest principal moment by which a file's figures may miss the triangle inequality."""
 
 
+LONGEST_CHAIN = 200
+"""Joints from the root to a link; what is computed along a chain recurs."""
+
+
 class MassRule(StrEnum):
     """Where a link's centre of mass and inertia come from.
 
@@ -75,9 +79,16 @@ def read_urdf(text: str, source: str, masses: MassRule) -> Tree:
     for link in links:
         _refuse_impossible(link, source)
     try:
-        return Tree(robot.name, links, joints)
+        tree = Tree(robot.name, links, joints)
     except ModelError as error:
         raise ModelError(source, error.key, error.wanted, error.found) from error
+    depth = {tree.root: 0}
+    for joint in tree.joints:
+        depth[joint.child] = depth[joint.parent] + 1
+        if depth[joint.child] > LONGEST_CHAIN:
+            key = f"joint {joint.name}"
+            raise ModelError(source, key, f"chains of at most {LONGEST_CHAIN} joints", "a longer one")
+    return tree
 
 
 def _loaded(root: etree._Element, source: str) -> Any:
@@ -85,7 +96,7 @@ def _loaded(root: etree._Element, source: str) -> Any:
     import yourdfpy  # here, because it loads trimesh: half a second that only a read of a robot should pay
 
     for role in ("visual", "collision"):
-        for look in root.xpath(f"link/{role}[../{role}/geometry/mesh]"):
+        for look in root.xpath(f"link[{role}/geometry/mesh]/{role}"):
             look.getparent().remove(look)
     file = BytesIO(etree.tostring(root))
     try:

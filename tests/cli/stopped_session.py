@@ -19,7 +19,7 @@ from tests.faults.synthetic import Synthetic, synthetic_header
 def main() -> int:
     directory, seconds, grace, hours = sys.argv[1:]
     header = synthetic_header(budget=40, seed=1, population=20)
-    stop = SignalledStop(float(hours) or None, float(grace))
+    stop = SignalledStop(float(hours) or None, Path(directory), float(grace))
     with make_pool("joblib", 2) as pool:
         try:
             with stop.heeded():

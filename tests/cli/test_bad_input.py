@@ -29,7 +29,7 @@ def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 def evodesign_alone(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     """A command in a process of its own."""
-    command = [sys.executable, "-c", "from evodesign.cli import main; main()", *map(str, arguments)]
+    command = [sys.executable, "-c", "from evodesign.__main__ import main; main()", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
 def evaluate(problem: Path, environment: dict[str, str], *options: str) -> tuple[dict, str]:

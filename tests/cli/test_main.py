@@ -13,7 +13,7 @@ import pytest
 import evodesign
 from evodesign.cli.main import COMMANDS, app, main
 
-COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
 def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,7 +13,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 
 
 def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from evodesign.cli import main; main()", *map(str, arguments)]
+    command = [sys.executable, "-c", "from evodesign.__main__ import main; main()", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 

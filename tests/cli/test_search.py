@@ -20,7 +20,7 @@ from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 
 POPULATION, BUDGET = 4, 24
-COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
 def arguments(repository: Path, run: Path, *more: str) -> list[str]:

@@ -191,11 +191,11 @@ def hostile(problem: DesignProblem, tmp_path_factory: pytest.TempPathFactory) ->
         'name = "thigh"', f'name = "{HOSTILE}"'
     )
     text = text.replace('start = "../populations/icub.toml"', "")
-    text = text.replace('"l_elbow"', '"l_$el_bow$<b>"').replace('"r_elbow"', '"r_$el_bow$<b>"')
+    text = text.replace('"l_elbow"', '"=l_$el_bow$<b>"').replace('"r_elbow"', '"=r_$el_bow$<b>"')
     urdf = problem.source.files["robots/icub_shapes.urdf"]
     urdf = urdf.replace('name="icub_shapes"', 'name="&lt;script&gt;../x"')
     for side in ("l", "r"):
-        urdf = urdf.replace(f'"{side}_elbow"', f'"{side}_$el_bow$&lt;b&gt;"')
+        urdf = urdf.replace(f'"{side}_elbow"', f'"={side}_$el_bow$&lt;b&gt;"')
     source = ProblemSource(path="x.toml", text=text, files={"robots/icub_shapes.urdf": urdf})
     spoilt = build_problem(source)
     assert spoilt.scene.robot.tree.name == "<script>../x"
@@ -222,7 +222,11 @@ def test_hostile_names_are_text_on_the_terminal(hostile: Path, capsys: pytest.Ca
     names = [row[0] for row in cells(text)]
     assert "length.../x" in names
     assert f"length.{HOSTILE}" in names
-    assert {row[1] for row in cells(text) if row[0] == "robot"} & {"l_$el_bow$<b>", "r_$el_bow$<b>", "l_knee"}
+    assert {row[1] for row in cells(text) if row[0] == "robot"} & {
+        "=l_$el_bow$<b>",
+        "=r_$el_bow$<b>",
+        "l_knee",
+    }
 
 
 def test_hostile_names_stay_names_in_files(hostile: Path, tmp_path: Path) -> None:
@@ -235,11 +239,12 @@ def test_hostile_names_stay_names_in_files(hostile: Path, tmp_path: Path) -> Non
         assert "<script" not in path.read_text()
         ET.parse(path)
     svg = (tmp_path / "figures" / "torques_by_joint.svg").read_text()
-    assert "l_$el_bow$&lt;b&gt;" in svg
+    assert "=l_$el_bow$&lt;b&gt;" in svg
     for name in ("robot.urdf", "robot.xml"):
         text = (tmp_path / "design" / name).read_text()
         assert "<script" not in text
         assert "<script>../x" in ET.fromstring(text.encode()).attrib.values()
+    assert ",'=l_$el_bow$<b>," in (tmp_path / "design/postures.csv").read_text()
     readme = (tmp_path / "design" / "README.md").read_text()
     assert f"`{HOSTILE}`" in readme.splitlines()[0]
     json.loads((tmp_path / "design" / "layout.json").read_text())

@@ -11,7 +11,7 @@ from evodesign.evolve import Silent, start
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
-COMMAND = [sys.executable, "-c", "from evodesign.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
 @pytest.fixture

@@ -13,13 +13,16 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from random import Random
 
+import msgspec
 import pytest
 
 from evodesign.errors import RunError
 from evodesign.evolve import Silent, resume, start
 from evodesign.runlog.directory import locked
 from evodesign.runlog.run import read_run
+from tests.cli.test_bad_input import evodesign
 from tests.faults.kills import Session, Size, uninterrupted
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence
@@ -94,6 +97,50 @@ def test_a_full_disk_ends_the_search_in_a_sentence_and_loses_nothing(tmp_path: P
     assert essence(run) == essence(uninterrupted(5, 64))
 
 
+def test_a_disk_without_room_for_a_header_holds_no_run_that_one_could_go_on_with(tmp_path: Path) -> None:
+    long = msgspec.structs.replace(HEADER, problem_name=Random(1).randbytes(60_000).hex())
+    sentence = r"run/000\.mcap: cannot be written: (No space left on device|File too large)"
+    with small_disk(tmp_path, kilobytes=32) as disk:
+        for _ in range(2):  # the second time for want of room too, not because there is a run
+            with pytest.raises(RunError, match=sentence):
+                start(disk / "run", long, ToyTask(long), OrderedPool(), Silent())
+            assert [path.name for path in (disk / "run").iterdir()] == ["lock"]
+        with pytest.raises(RunError, match="is not a run, for it holds no"):
+            resume(disk / "run", ToyTask, OrderedPool(), Silent(), None)
+        shutil.copytree(disk / "run", tmp_path / "roomier")
+    run = start(tmp_path / "roomier", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    assert essence(run) == essence(uninterrupted(5, 64))
+
+
+def test_a_full_disk_leaves_a_run_to_be_resumed_without_a_further_segment(tmp_path: Path) -> None:
+    with small_disk(tmp_path, kilobytes=32) as disk:
+        with pytest.raises(RunError, match="cannot be written"):
+            start(disk / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+        if disk.is_mount():  # with a limit on files alone, a second one finds room
+            with pytest.raises(RunError, match=r"001\.mcap: cannot be written"):
+                resume(disk / "run", ToyTask, OrderedPool(), Silent(), None)
+            assert sorted(path.name for path in disk.glob("run/*.mcap")) == ["000.mcap"]
+            assert not list(disk.glob("run/*.part"))
+
+
+def test_a_report_on_a_full_disk_leaves_the_old_page(tmp_path: Path) -> None:
+    start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    with small_disk(tmp_path, kilobytes=256) as disk:
+        page = disk / "report.html"
+        page.write_text("the old page")
+        done = evodesign("report", tmp_path / "run", "--output", page)
+        assert_refused(done, "--output", f"'{page}' (No space left on device)", f"'{page}' (File too large)")
+        assert page.read_text() == "the old page"
+        assert [path.name for path in disk.iterdir()] == ["report.html"]
+
+
+def assert_refused(done: subprocess.CompletedProcess[str], option: str, *ends: str) -> None:
+    assert done.returncode == 2
+    (sentence,) = (line for line in done.stderr.splitlines() if line.startswith("error: "))
+    assert option in sentence
+    assert sentence.endswith(ends)
+
+
 def test_a_directory_that_cannot_be_written_is_refused_in_a_sentence(public_folder: Path) -> None:
     start(public_folder / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
     before = (public_folder / "run/000.mcap").read_bytes()
@@ -161,3 +208,12 @@ def test_disks_are_small_in_a_process_that_may_mount_or_not() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "File too large\n"
+
+
+def test_output_that_finds_no_room_is_told_in_a_sentence(tmp_path: Path) -> None:
+    start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    command = [sys.executable, "-m", "evodesign", "front", str(tmp_path / "run"), "--csv"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == "error: the output cannot be written: No space left on device\n"

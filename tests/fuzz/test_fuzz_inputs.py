@@ -276,7 +276,7 @@ DEEP = "<x>" * 3000 + "</x>" * 3000
         (ROBOT, replaced(ROBOT, "</robot>", f"{DEEP}</robot>"), [ROBOT, "XML"]),
         (PERSON, replaced(PERSON, '<parent link="root_link"/>', '<parent link="l_sole"/>'), [PERSON, "loop"]),
         (PERSON, replaced(PERSON, '<link name="claw">', '<link name="l_arm">'), [PERSON, "l_arm", "twice"]),
-        (PROBLEM, replaced(PROBLEM, "seed = 1", f"seed{'.a' * 3000} = 1"), [PROBLEM, "nested"]),
+        (PROBLEM, replaced(PROBLEM, "seed = 1", f"seed{'.a' * 3000} = 1"), [PROBLEM, "at most 16 dotted"]),
         (PROBLEM, replaced(PROBLEM, "friction", '"fric\\ntion"'), [PROBLEM, "limits.fric\\ntion"]),
         (POPULATION, "\udc80\udcff", [PROBLEM, "search.start", POPULATION]),
     ],

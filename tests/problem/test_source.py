@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
+
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -70,3 +73,21 @@ def test_any_text_decodes_or_is_explained_in_one_sentence(text: str) -> None:
 def test_nesting_without_end_is_refused() -> None:
     with pytest.raises(InputError):
         decode_toml("a = " + "[" * 100_000, "file.toml", ProblemFile)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'name = "' + "a.b" * 40 + '"',
+        'name = """\n' + "a.b" * 40 + '\n"""""',
+        "name = '''\n" + "a.b" * 40 + "'''",
+        "# " + "a.b" * 40 + '\nname = "x"',
+        'name = "x" # it\'s """' + "a.b" * 40,
+        'name = "\\" \'" # ' + "a.b" * 40,
+    ],
+)
+def test_dots_in_texts_and_comments_are_no_parts_of_keys(text: str) -> None:
+    class Named(msgspec.Struct):
+        name: str
+
+    assert decode_toml(text, "x.toml", Named).name == tomllib.loads(text)["name"]

@@ -108,7 +108,7 @@ def test_a_merge_that_finds_no_room_leaves_the_run_as_it_was(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(RunError, match=r"merged\.part: cannot be written: No space left"):
+    with pytest.raises(RunError, match=r"000\.mcap: cannot be written: No space left"):
         merge(tmp_path / "run", None)
     assert names(tmp_path / "run") == before
     assert essence(read_run(tmp_path / "run")) == essence(run)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from random import Random
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.problem.build import DesignProblem
+from evodesign.tree import symmetry
 from evodesign.tree.model import Joint, JointKind, Link, Tree
-from evodesign.tree.symmetry import left_half, mirror_of
+from evodesign.tree.symmetry import Mirror, left_half, mirror_of
 
 
 def bird(right_axis: tuple[float, float, float] = (-1.0, 0.0, 0.0), right_mass: float = 1.0) -> Tree:
@@ -105,3 +110,80 @@ def test_robot_and_person_pair_left_with_right(problem: DesignProblem) -> None:
     robot, human = (mirror_of(agent.tree) for agent in (problem.scene.robot, problem.scene.human))
     assert all(robot.joints[name] == "r_" + name[2:] for name in robot.joints if name.startswith("l_"))
     assert all(human.joints[name] == name.replace("Left", "Right") for name in human.joints if "Left" in name)
+
+
+def plain_mirror_of(tree: Tree) -> Mirror:
+    """Every joint compared with every other below its parent's partner."""
+    links, joints, signs = {tree.root: tree.root}, {}, {}
+    symmetry._refuse_unequal(tree, tree.link_by_name[tree.root], tree.link_by_name[tree.root])
+    for joint in tree.joints:
+        if joint.name in joints:
+            continue
+        parent, link = links[joint.parent], tree.link_by_name[joint.child]
+        candidates = [each for each in tree.joints if each.parent == parent and each.name not in joints]
+        fitting = [
+            each
+            for each in candidates
+            if symmetry._same_place(tree, joint, each) and symmetry._sign_fits(joint, each)
+        ]
+        same = [each for each in fitting if symmetry._same_body(link, tree.link_by_name[each.child])]
+        if not same and fitting:
+            symmetry._refuse_unequal(tree, link, tree.link_by_name[fitting[0].child])
+        if not same:
+            raise ModelError(tree.name, f"joint {joint.name}", "a mirror image in the plane y = 0", "")
+        for one, other in ((joint, same[0]), (same[0], joint)):
+            links[one.child], joints[one.name] = other.child, other.name
+            signs[one.name] = symmetry._sign(joint, same[0])
+    return Mirror(links, joints, signs)
+
+
+def crowded_tree(random: Random) -> Tree:
+    """Pairs and middle links of few places, masses, axes and ranges, most of them mirrored."""
+    jitter = [0.0] * 60 + [4e-10, -9e-10, 1.1e-9, 3e-9]
+    limits = [(-1.0, 1.0), (-0.2, 1.0), (-float("inf"), float("inf"))]
+    links, joints, pairs = [Link("root", own_inertia=Inertia(1.0))], [], [("root", "root")]
+    for number in range(random.randint(1, 14)):
+        parents = random.choice(pairs)
+        middle = parents[0] == parents[1] and random.random() < 0.4
+        kind = random.choice([JointKind.FIXED, JointKind.REVOLUTE, JointKind.PRISMATIC])
+        y = 0.0 if middle else random.choice([0.0, 0.1, 0.3])
+        place = (random.choice([0.0, 0.5]), y, random.choice([0.0, 1.0]))
+        mass = random.choice([0.0, 1.0, 2.0])
+        center = (random.choice([0.0, 0.25]), 0.0 if middle else random.choice([0.0, 0.125]), 0.0)
+        axis = random.choice([(0.0, 1.0, 0.0), (1.0, 0.0, 0.0)])
+        turn = random.choice([1.0, 1.0, -1.0])
+        lower, upper = (0.0, 0.0) if kind is JointKind.FIXED else random.choice(limits)
+        names = []
+        for side, parent in zip((1.0,) if middle else (1.0, -1.0), parents, strict=False):
+            name = f"{random.choice('abcdef')}{number}{'lr'[side < 0.0]}"
+            moved = (place[0] + random.choice(jitter), side * place[1] + random.choice(jitter), place[2])
+            inertia = Inertia(mass + random.choice(jitter), (center[0], side * center[1], 0.0))
+            mirrored = axis if side > 0.0 else (-turn * axis[0], turn * axis[1], axis[2])
+            links.append(Link(name, own_inertia=inertia))
+            joints.append(
+                Joint(name, kind, parent, name, Placement(translation=moved), mirrored, lower, upper)
+            )
+            names.append(name)
+        pairs.append((names[0], names[-1]))
+    random.shuffle(joints)
+    return Tree("crowd", tuple(links), tuple(joints))
+
+
+def outcome(find: Callable[[Tree], Mirror], tree: Tree) -> Mirror | tuple[str, str]:
+    """The mirror, or of whom what was wanted."""
+    try:
+        return find(tree)
+    except ModelError as error:
+        return error.key, error.wanted
+
+
+@given(st.randoms(use_true_random=False))
+def test_partners_are_those_of_a_comparison_of_all_with_all(random: Random) -> None:
+    tree = crowded_tree(random)
+    assert outcome(mirror_of, tree) == outcome(plain_mirror_of, tree)
+
+
+def test_about_as_many_crowded_trees_have_a_mirror_as_have_none() -> None:
+    """The comparison above compares something."""
+    found = [outcome(mirror_of, crowded_tree(Random(seed))) for seed in range(200)]
+    assert 40 < sum(isinstance(each, Mirror) for each in found) < 160

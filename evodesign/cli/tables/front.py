@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
@@ -13,6 +11,7 @@ from evodesign.analysis.failures import causes, failures
 from evodesign.cli.output import printable
 from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Evaluation, materials_of
+from evodesign.report.csv_text import csv_text
 from evodesign.runlog.run import RunLog
 from evodesign.violations import HEIGHT, constraint_sentences, constraints_json, violations
 
@@ -66,27 +65,20 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
     objectives = [objective.name for objective in run.header.objectives]
     constraints = [constraint.name for constraint in run.header.constrained_alone]
     parameters = [parameter.name for parameter in run.header.parameters]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     made_of = [parameter for parameter in run.header.parameters if parameter.materials]
-    writer.writerow(
+    materials = [f"{parameter.name}.material" for parameter in made_of]
+    columns = ["design", *objectives, *constraints, *parameters, *materials]
+    rows = [
         [
-            *("design", *objectives, *constraints, *parameters),
-            *(f"{parameter.name}.material" for parameter in made_of),
+            evaluation.number,
+            *(evaluation.assessment.objectives[name] for name in objectives),
+            *(evaluation.assessment.constrained.get(name) for name in constraints),
+            *(evaluation.assessment.design[name] for name in parameters),
+            *(parameter.material_of(evaluation.assessment.design[parameter.name]) for parameter in made_of),
         ]
-    )
-    for evaluation in designs:
-        assessment = evaluation.assessment
-        writer.writerow(
-            [
-                evaluation.number,
-                *(assessment.objectives[name] for name in objectives),
-                *(assessment.constrained.get(name) for name in constraints),
-                *(assessment.design[name] for name in parameters),
-                *(parameter.material_of(assessment.design[parameter.name]) for parameter in made_of),
-            ]
-        )
-    return text.getvalue()
+        for evaluation in designs
+    ]
+    return csv_text([columns, *rows])
 
 
 def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> FittedTable:

@@ -7,8 +7,6 @@ back to the same double.
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +15,7 @@ import msgspec
 
 from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import CaseDetail, CaseOutcome, Evaluation, RunHeader, hold_names, materials_of
+from evodesign.report.csv_text import csv_text
 from evodesign.report.scene_models import SceneModels, SceneSet
 from evodesign.tree.model import JointKind, Tree
 from evodesign.violations import constraints_json
@@ -145,10 +144,8 @@ def _wrenches_of(agent: Agent, detail: CaseDetail) -> Iterator[Row]:
 def _text(columns: Row, cases: Sequence[CaseDetail], rows_of: Iterable[Iterable[Row]]) -> str:
     """The rows of each case under their columns, with names of people and loads where they are needed."""
     named = any(detail.case.label for detail in cases)
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow((*NAME_COLUMNS, *columns) if named else columns)
+    lines: list[Row] = [(*NAME_COLUMNS, *columns) if named else columns]
     for detail, rows in zip(cases, rows_of, strict=True):
         names = detail.case.pair if named else ()
-        writer.writerows((*names, *row) for row in rows)
-    return stream.getvalue()
+        lines += [(*names, *row) for row in rows]
+    return csv_text(lines)

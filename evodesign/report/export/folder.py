@@ -15,6 +15,7 @@ from typing import Final
 import msgspec
 
 from evodesign.errors import InputError, ModelError, on_one_line
+from evodesign.files import write_folder
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.progress import SILENT, PrecomputeProgress
@@ -233,9 +234,7 @@ def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) ->
     names = [*contents]
     contents = {"README.md": readme_text(design, names, left_out).encode(), **contents}
     try:
-        directory.mkdir(parents=True, exist_ok=True)
-        for name, content in contents.items():
-            (directory / name).write_bytes(content)
+        write_folder(directory, contents)
     except OSError as error:
         found = f"'{directory}' ({error.strerror})"
         raise InputError("--to", "", "a folder that can be written", found) from error

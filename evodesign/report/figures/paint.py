@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evodesign.errors import InputError
+from evodesign.files import replacing
 
 __all__ = ["GROUND_FORCE", "HAND_FORCE", "INK", "SEQUENCE", "clean", "color_of", "new_figure", "write_figure"]
 
@@ -71,8 +72,10 @@ def write_figure(figure: Figure, directory: Path, stem: str) -> tuple[Path, Path
             warnings.filterwarnings(
                 "ignore", message="Glyph", category=UserWarning
             )  # a name in other letters
-            figure.savefig(svg, metadata={"Date": None})
-            figure.savefig(png, dpi=DOTS_PER_INCH)
+            with replacing(svg) as file:
+                figure.savefig(file, format="svg", metadata={"Date": None})
+            with replacing(png) as file:
+                figure.savefig(file, format="png", dpi=DOTS_PER_INCH)
     except OSError as error:
         wanted = "a directory that can be written"
         raise InputError(str(directory), "", wanted, f"{error.strerror}") from error

@@ -1,5 +1,0 @@
-"""`python -m evodesign.cli` is `evodesign`."""
-
-from evodesign.cli.main import main
-
-main()

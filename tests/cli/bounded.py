@@ -1,0 +1,41 @@
+"""Commands in processes that may use 5 s of processor time and 300 MB beyond what they import."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+__all__ = ["evodesign_bounded"]
+
+SECONDS, BYTES = 5, 300_000_000
+
+
+def evodesign_bounded(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """What a command does within the bounds; beyond them it is killed, or fails with a traceback."""
+    command = [sys.executable, "-m", "tests.cli.bounded", *map(str, arguments)]
+    root = Path(__file__).parents[2]
+    return subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=120, check=False)
+
+
+def _bound() -> None:
+    """Set the bounds from what this process has used so far."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    room = pages * resource.getpagesize() + BYTES
+    resource.setrlimit(resource.RLIMIT_AS, (room, room))
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    seconds = int(usage.ru_utime + usage.ru_stime) + 1 + SECONDS
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+
+
+if __name__ == "__main__":
+    import casadi  # noqa: F401
+    import yourdfpy  # noqa: F401
+
+    import evodesign.cli.check
+    import evodesign.problem.build  # noqa: F401
+    from evodesign.cli import main
+
+    _bound()
+    main()

@@ -1,0 +1,122 @@
+"""Ctrl-C at any moment, once or more: an exit code that says whether there is a run to resume."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from evodesign.evolve import Silent, start
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.runlog.directory import segments
+from evodesign.runlog.run import read_run
+from tests.faults.synthetic import synthetic_header
+from tests.runlog.toys import OrderedPool, ToyTask
+
+BEGUN = "begun"
+COMMAND = [sys.executable, "-c", f"from evodesign.__main__ import main; print('{BEGUN}', flush=True); main()"]
+HEADER = synthetic_header(budget=20, seed=4, population=10)
+
+
+def interrupted(arguments: Sequence[str | Path], delays: Sequence[float]) -> subprocess.CompletedProcess[str]:
+    """A command that gets Ctrl-C, as all of its terminal does, after each of the delays [s]."""
+    command = [*COMMAND, *map(str, arguments)]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline().strip() == BEGUN
+            for delay in delays:
+                try:
+                    process.wait(delay)
+                except subprocess.TimeoutExpired:
+                    os.killpg(process.pid, signal.SIGINT)
+            output, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    return subprocess.CompletedProcess(command, process.returncode, output, errors)
+
+
+def check(done: subprocess.CompletedProcess[str], run: Path) -> None:
+    assert "Traceback" not in done.stderr, done.stderr
+    assert "Error" not in done.stderr, done.stderr
+    if segments(run):
+        assert done.returncode in (0, 3), done.stderr
+        assert done.returncode == 0 or f"evodesign resume {run}" in done.stderr
+        assert read_run(run).header.budget == 4000 or done.returncode == 0
+    else:
+        assert done.returncode == 130
+        assert done.stderr.splitlines()[-1] == "stopped"
+
+
+LONG = [
+    (delay, *more)
+    for delay in (0.02, 0.2, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0, 8.0)
+    for more in ((), (0.05,), (0.4, 0.1))
+]
+
+
+@pytest.mark.parametrize(
+    "delays",
+    [
+        (0.0,),
+        (0.3, 0.1),
+        (1.0, 0.2),
+        (2.0, 0.0, 0.0),
+        (6.0, 0.3, 0.1),
+        *(pytest.param(delays, marks=pytest.mark.slow) for delays in LONG),
+    ],
+    ids=str,
+)
+def test_a_search_that_is_interrupted_says_whether_it_can_be_resumed(
+    delays: Sequence[float], known: Precomputed, tmp_path: Path
+) -> None:
+    assert known.values, "worked out before, so that a run begins within seconds"
+    run = tmp_path / "run"
+    sizes = ["--population", "4", "--evaluations", "4000", "--jobs", "2"]
+    check(interrupted(["search", "icub-lifting", "--run", run, *sizes], delays), run)
+
+
+@pytest.mark.parametrize("delays", [(0.0,), (0.1, 0.1), (0.4,), (0.6, 0.0)], ids=str)
+@pytest.mark.parametrize("command", ["front", "report"])
+def test_a_look_at_a_run_ends_with_130_or_is_done(
+    command: str, delays: Sequence[float], tmp_path: Path
+) -> None:
+    start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    before = {path.name for path in (tmp_path / "run").iterdir()}
+    done = interrupted([command, tmp_path / "run"], delays)
+    assert done.returncode in (0, 130)
+    assert "Traceback" not in done.stderr, done.stderr
+    assert done.returncode == 0 or done.stderr.splitlines()[-1] == "stopped"
+    assert {path.name for path in (tmp_path / "run").iterdir()} - {"report.html"} == before
+
+
+def test_what_is_done_stays_done_when_its_end_is_interrupted(tmp_path: Path) -> None:
+    start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    command = [*COMMAND, "front", str(tmp_path / "run"), "--csv"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline().strip() == BEGUN
+        assert process.stdout.readline().startswith("design,")
+        for _ in range(3):
+            os.killpg(process.pid, signal.SIGINT)
+        assert "Traceback" not in process.stderr.read()
+    assert process.returncode in (0, 130)
+
+
+def test_a_command_in_the_background_ignores_what_its_terminal_sends(tmp_path: Path) -> None:
+    start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        done = interrupted(["front", tmp_path / "run"], (0.0, 0.2, 0.2))
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert done.returncode == 0
+    assert "the run lies in" in done.stdout
