@@ -36,6 +36,7 @@ class Segment:
         path: the file.
         headers: a single one, or of a merged segment one of each; none when even that is missing.
         evaluations, generations, fronts, details: in the order of the file.
+        sessions: numbers in the run of the segments whose headers are here, of a merged segment many.
         complete: whether the file is whole, to its last byte.
         damaged: whether something is wrong that no kill explains.
         note: a sentence on what is missing; empty when nothing is.
@@ -47,6 +48,7 @@ class Segment:
     generations: tuple[Generation, ...]
     fronts: tuple[Front, ...]
     details: tuple[Detail, ...]
+    sessions: tuple[int, ...]
     complete: bool
     damaged: bool
     note: str
@@ -68,14 +70,18 @@ class _Version(msgspec.Struct):
     format_version: int
 
 
-def read_segment(path: Path) -> Segment:
+def read_segment(path: Path, *, last: bool = True) -> Segment:
     """A segment as far as it can be read; damage never raises.
 
+    Args:
+        path: the file.
+        last: whether it is the run's last one, which may still be written.
     Raises:
         RunError: the file cannot be opened, or a later version of evodesign wrote it.
     """
     found = scan(read_content(path))
-    records = [entry.record for entry in entries(path, found)]
+    read = list(entries(path, found))
+    records = [entry.record for entry in read]
     headers = _all(records, RunHeader) or _header_copy(path, found)
     evaluations = _all(records, Evaluation)
     return Segment(
@@ -85,9 +91,10 @@ def read_segment(path: Path) -> Segment:
         generations=_all(records, Generation),
         fronts=_all(records, Front),
         details=_all(records, Detail),
+        sessions=tuple(entry.sequence for entry in read if entry.topic == RUN),
         complete=found.sound,
         damaged=bool(found.damage) or (found.ended and not found.sound),
-        note=_note(path, found, len(evaluations), bool(headers)),
+        note=_note(path, found, len(evaluations), headed=bool(headers), last=last),
     )
 
 
@@ -149,14 +156,18 @@ def _all(records: Sequence[msgspec.Struct], kind: type[R]) -> tuple[R, ...]:
     return tuple(record for record in records if isinstance(record, kind))
 
 
-def _note(path: Path, found: Scan, evaluations: int, headed: bool) -> str:
+def _note(path: Path, found: Scan, evaluations: int, *, headed: bool, last: bool) -> str:
     """A sentence on what a file lacks."""
     if found.sound:
         return ""
+    if found.size == 0:
+        other = "has just begun" if last else "what it wrote is lost"
+        return f"{path.name} is empty: its session was killed before it wrote, or {other}"
     where = f"after {evaluations} evaluations" if headed else "before its header"
     if found.damage:
         places = ", ".join(f"{gap.end - gap.start} bytes at {gap.start}" for gap in found.damage)
         return f"{path.name} is damaged: {places} cannot be read; {evaluations} evaluations can"
     if found.ended:
         return f"{path.name} does not match its checksums, though each of its {evaluations} evaluations does"
-    return f"{path.name} ends {where}, without a footer: its session was killed, or is still writing"
+    other = "is still writing" if last else "its end is lost"
+    return f"{path.name} ends {where}, without a footer: its session was killed, or {other}"

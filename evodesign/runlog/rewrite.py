@@ -21,6 +21,7 @@ from evodesign.errors import InputError, RunError
 from evodesign.records import SearchSettings, SearchStage
 from evodesign.runlog.channels import RUN
 from evodesign.runlog.directory import locked, make_directory, refuse_run, run_segments, segment_path, synced
+from evodesign.runlog.gaps import record_gaps
 from evodesign.runlog.reader import Entry, entries, read_content
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.scan import scan
@@ -84,11 +85,12 @@ def merge(directory: Path, to: Path | None) -> RunLog:
 
 
 def _undamaged(directory: Path) -> RunLog:
+    """The run, whose files are all there; records that it lacks it lacks in one file too."""
     run = read_run(directory)
-    if run.damaged:
-        raise RunError(
-            f"{directory}: {run.notes[0]}; save what can be read first: evodesign recover {directory}"
-        )
+    gaps = record_gaps(run.header, run.evaluations, run.generations, run.fronts)
+    fault = next((fault for fault in run.faults if fault not in gaps), None)
+    if fault is not None:
+        raise RunError(f"{directory}: {fault}; save what can be read first: evodesign recover {directory}")
     return run
 
 

@@ -17,6 +17,7 @@ import msgspec
 from evodesign.errors import RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.directory import run_segments
+from evodesign.runlog.gaps import record_gaps, segment_gaps
 from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
 
@@ -38,7 +39,7 @@ class RunLog:
         details: in order of evaluation, each once; every member of a front has one.
         complete: whether every segment is whole.
         notes: a sentence for everything that is missing or strange.
-        damaged: whether a segment has damage that no kill explains.
+        faults: those of the notes that no kill explains; none while the run is still being written.
     """
 
     directory: Path
@@ -49,7 +50,12 @@ class RunLog:
     details: tuple[Detail, ...]
     complete: bool
     notes: tuple[str, ...]
-    damaged: bool = False
+    faults: tuple[str, ...] = ()
+
+    @property
+    def damaged(self) -> bool:
+        """Whether records that were written are lost or changed, so that the front may be another one."""
+        return bool(self.faults)
 
 
 def read_run(directory: Path) -> RunLog:
@@ -59,7 +65,8 @@ def read_run(directory: Path) -> RunLog:
         RunError: the directory is missing or is not a run, none of its headers can be read,
             a later version of evodesign wrote it, or its segments come from different runs.
     """
-    segments = [read_segment(path) for path in run_segments(directory).values()]
+    paths = run_segments(directory)
+    segments = [read_segment(path, last=number == max(paths)) for number, path in paths.items()]
     headers = _headers(directory, segments)
     evaluations, contradictions = _by_number(segments)
     generations = _first_of_each(
@@ -69,6 +76,13 @@ def read_run(directory: Path) -> RunLog:
     details = _first_of_each(
         (detail.evaluation, detail) for segment in segments for detail in segment.details
     )
+    sessions = [session for segment in segments for session in segment.sessions]
+    faults = (
+        *(segment.note for segment in segments if segment.damaged),
+        *segment_gaps(paths, sessions),
+        *record_gaps(headers[-1], evaluations, generations, fronts),
+        *contradictions,
+    )
     return RunLog(
         directory=directory,
         header=headers[-1],
@@ -77,8 +91,8 @@ def read_run(directory: Path) -> RunLog:
         fronts=fronts,
         details=details,
         complete=all(segment.complete for segment in segments),
-        damaged=any(segment.damaged for segment in segments),
-        notes=(*(segment.note for segment in segments if segment.note), *contradictions),
+        notes=tuple(dict.fromkeys((*(segment.note for segment in segments if segment.note), *faults))),
+        faults=faults,
     )
 
 
