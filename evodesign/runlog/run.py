@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -20,10 +20,11 @@ from evodesign.runlog.directory import run_segments
 from evodesign.runlog.gaps import record_gaps, segment_gaps
 from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
+from evodesign.runlog.validity import Validity
 
 __all__ = ["RunLog", "digest", "read_run"]
 
-R = TypeVar("R")
+R = TypeVar("R", bound=msgspec.Struct)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +69,8 @@ def read_run(directory: Path) -> RunLog:
     paths = run_segments(directory)
     segments = [read_segment(path, last=number == max(paths)) for number, path in paths.items()]
     headers = _headers(directory, segments)
+    strange: list[str] = []
+    segments = [_valid(segment, Validity(headers[-1]), strange) for segment in segments]
     evaluations, contradictions = _by_number(segments)
     generations = _first_of_each(
         (generation.number, generation) for segment in segments for generation in segment.generations
@@ -79,6 +82,7 @@ def read_run(directory: Path) -> RunLog:
     sessions = [session for segment in segments for session in segment.sessions]
     faults = (
         *(segment.note for segment in segments if segment.damaged),
+        *strange,
         *segment_gaps(paths, sessions),
         *record_gaps(headers[-1], evaluations, generations, fronts),
         *contradictions,
@@ -112,6 +116,32 @@ def _headers(directory: Path, segments: list[Segment]) -> list[RunHeader]:
                 f"{'; '.join(differing)}; take it out of the directory"
             )
     return [header for _, header in headed]
+
+
+def _valid(segment: Segment, validity: Validity, strange: list[str]) -> Segment:
+    """A segment without the records that contradict the header, on which there is a note then."""
+    faults: list[str] = []
+
+    def kept(records: tuple[R, ...]) -> tuple[R, ...]:
+        return tuple(record for record in records if not _noted(validity.fault(record), faults))
+
+    valid = replace(
+        segment,
+        evaluations=kept(segment.evaluations),
+        generations=kept(segment.generations),
+        fronts=kept(segment.fronts),
+        details=kept(segment.details),
+    )
+    if faults:
+        many = f"{len(faults)} records contradict" if len(faults) > 1 else "a record contradicts"
+        strange.append(f"{segment.path.name}: {many} the header and are left out ({faults[0]})")
+    return valid
+
+
+def _noted(fault: str, faults: list[str]) -> bool:
+    if fault:
+        faults.append(fault)
+    return bool(fault)
 
 
 def _by_number(segments: list[Segment]) -> tuple[tuple[Evaluation, ...], list[str]]:
