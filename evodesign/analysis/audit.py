@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import groupby
 
 from evodesign.analysis.run_state import RunState
 from evodesign.records import Evaluation, Generation, RunHeader, design_of
+from evodesign.runlog.gaps import consecutive, listed, missing, record_gaps
 from evodesign.runlog.run import RunLog
 from evodesign.violations import missed_height, total_violation
 
@@ -19,7 +20,8 @@ TOLERANCE = 1e-9
 
 def audit(run: RunLog) -> list[str]:
     """A sentence for each contradiction; none in a sound run."""
-    return [*_evaluations(run), *_holes(run), *_generations(run), *_details(run)]
+    gaps = record_gaps(run.header, run.evaluations, run.generations, run.fronts)
+    return [*_evaluations(run), *gaps, *_generations(run), *_details(run)]
 
 
 def _evaluations(run: RunLog) -> Iterator[str]:
@@ -50,15 +52,6 @@ def _fault(header: RunHeader, evaluation: Evaluation) -> str:
     if constraints and assessment.violation != total_violation(constraints, assessment.constrained, missed):
         return "its violation is not that of its values"
     return ""
-
-
-def _holes(run: RunLog) -> Iterator[str]:
-    """Evaluations that are missing from generations that were concluded."""
-    known = {evaluation.number for evaluation in run.evaluations}
-    concluded = max((generation.evaluations for generation in run.generations), default=0)
-    missing = [str(number) for number in range(concluded) if number not in known]
-    if missing:
-        yield f"missing evaluations: {', '.join(missing)}"
 
 
 def _generations(run: RunLog) -> Iterator[str]:
@@ -101,10 +94,10 @@ def _details(run: RunLog) -> Iterator[str]:
     members = {number for front in run.fronts for number in front.evaluations}
     bare = sorted(members - detailed)
     if detailed and bare:
-        yield f"no postures for members of a front: {', '.join(map(str, bare))}"
+        yield f"no postures for members of a front: {listed(consecutive(bare))}"
     lost = sorted(number for number in detailed - known if number < max(known, default=0))
     if lost:
-        yield f"postures without an evaluation: {', '.join(map(str, lost))}"
+        yield f"postures without an evaluation: {listed(consecutive(lost))}"
 
 
 def losses(run: RunLog) -> list[str]:
@@ -118,21 +111,10 @@ def losses(run: RunLog) -> list[str]:
     concluded = max((evaluation.generation for evaluation in run.evaluations), default=0)
     members = {number for front in run.fronts for number in front.evaluations}
     detailed = {detail.evaluation for detail in run.details}
-    missing = {
-        "evaluations": set(range(1 + max(numbered, default=-1))) - known,
-        "states of generations": set(range(concluded)) - {state.number for state in run.generations},
-        "fronts of generations": set(range(concluded)) - {front.generation for front in run.fronts},
-        "postures of designs": members - detailed if detailed else set(),
+    lost = {
+        "evaluations": missing(known, 1 + max(numbered, default=-1)),
+        "states of generations": missing((state.number for state in run.generations), concluded),
+        "fronts of generations": missing((front.generation for front in run.fronts), concluded),
+        "postures of designs": consecutive(members - detailed) if detailed else [],
     }
-    return [f"missing {what}: {_listed(numbers)}" for what, numbers in missing.items() if numbers]
-
-
-def _listed(numbers: Iterable[int]) -> str:
-    """Numbers in order, consecutive ones as a range: `3, 7 to 9`."""
-    ranges: list[tuple[int, int]] = []
-    for number in sorted(numbers):
-        if ranges and number == ranges[-1][1] + 1:
-            ranges[-1] = (ranges[-1][0], number)
-        else:
-            ranges.append((number, number))
-    return ", ".join(str(low) if low == high else f"{low} to {high}" for low, high in ranges)
+    return [f"missing {what}: {listed(ranges)}" for what, ranges in lost.items() if ranges]

@@ -96,6 +96,11 @@ class Run:
         return self.log.notes
 
     @property
+    def damaged(self) -> bool:
+        """Whether evaluations or files of the run are lost, so that its front may be another one."""
+        return self.log.damaged
+
+    @property
     def designs(self) -> tuple[Design, ...]:
         """Every evaluated design, in order of number."""
         return tuple(self._design(evaluation) for evaluation in self.log.evaluations)

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli.options import Json
+from evodesign.cli import damage
+from evodesign.cli.options import Damaged, Json
 from evodesign.errors import InputError
 
 __all__ = ["compare"]
@@ -19,6 +20,7 @@ def compare(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write a figure of the comparison (HTML).")
     ] = None,
+    damaged: Damaged = False,
 ) -> None:
     """Several runs side by side: hypervolumes, rank tests over seeds, the best designs of all."""
     from evodesign.analysis import comparison
@@ -42,9 +44,9 @@ def compare(
         write_text(plot, comparison_html(comparisons), "--plot")
     if json:
         print_json({"comparisons": [comparison_json(each) for each in comparisons]})
-        return
-    for each in comparisons:
+    for each in () if json else comparisons:
         print_lines(*map(printable, lines_before(each, alone=len(comparisons) == 1)))
         for table in comparison_tables(each):
             console().print(table)
         print_lines(*map(printable, lines_after(each)))
+    damage.end(*opened, accepted=damaged)

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli.options import CORES, Design, Jobs, RunPath
+from evodesign.cli import damage
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, RunPath
 
 __all__ = ["export"]
 
@@ -17,6 +18,7 @@ def export(
     design: Design,
     to: Annotated[Path, typer.Option(metavar="DIR", help="A new or empty folder.")],
     jobs: Jobs = CORES,
+    damaged: Damaged = False,
 ) -> None:
     """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
     from evodesign.cli.output import print_lines, show_notes
@@ -31,3 +33,4 @@ def export(
         done = export_logged(logged, design, to, jobs, progress)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())
     print_lines(*map(str, done.files))
+    damage.end(logged, accepted=damaged)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli.options import Json, RunPath
+from evodesign.cli import damage
+from evodesign.cli.options import Damaged, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ def front(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also write a figure of the front (HTML).")
     ] = None,
+    damaged: Damaged = False,
 ) -> None:
     """The Pareto front of a run, or a choice of its designs."""
     from evodesign.cli.output import show_notes, write_text
@@ -71,6 +73,7 @@ def front(
 
         write_text(plot, front_html(opened.header, opened.evaluations), "--plot")
     print_front(opened, choice, json=json, csv=csv)
+    damage.end(opened, accepted=damaged)
 
 
 def _choice(

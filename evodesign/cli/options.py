@@ -36,6 +36,9 @@ NewRun = Annotated[
 ]
 Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+Damaged = Annotated[
+    bool, typer.Option("--damaged", help="Exit with 0, not 4, though records of the run are lost.")
+]
 SymmetryName = Annotated[
     str | None,
     typer.Option(

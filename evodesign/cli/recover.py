@@ -29,7 +29,7 @@ def recover(
     damaged = read_run(run)
     place = run.with_name(f"{run.resolve().name}-recovered") if to is None else to
     recovered = rewrite.recover(run, place)
-    lost = [*damaged.notes, *losses(damaged)]
+    lost = list(dict.fromkeys((*damaged.notes, *losses(damaged))))
     if json:
         print_json(run_json(recovered) | {"lost": lost})
     else:

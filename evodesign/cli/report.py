@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli.options import CORES, Jobs, RunPath
+from evodesign.cli import damage
+from evodesign.cli.options import CORES, Damaged, Jobs, RunPath
 from evodesign.errors import InputError
 
 __all__ = ["report"]
@@ -30,6 +31,7 @@ def report(
         ),
     ] = False,
     jobs: Jobs = CORES,
+    damaged: Damaged = False,
 ) -> None:
     """Write the page of a run: front, parameters, progress, failures, postures; one file, no network."""
     from evodesign.cli.output import print_lines, show_notes, write_text
@@ -50,6 +52,7 @@ def report(
     page = page_html(content)
     write_text(path, page, "--output")
     print_lines(f"{path} ({len(page.encode()) / 1e6:.1f} MB)")
+    damage.end(opened, accepted=damaged)
 
 
 def _numbers(text: str) -> tuple[int, ...]:

@@ -17,6 +17,7 @@ DISPLAY = Display(lambda note: show_notes([note]), precompute_progress, search_p
 
 def show_result(run: RunLog, *, json: bool) -> None:
     """A few designs of the front, why the search ended if not for its budget, and what to do next."""
+    show_notes(run.faults)
     if len(run.evaluations) < run.header.budget:
         show_notes(
             [

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli.options import CORES, Design, Jobs, Json, RunPath
+from evodesign.cli import damage
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ def show(
         Path | None,
         typer.Option(metavar="DIR", help="Also write figures of its torques and postures (SVG and PNG)."),
     ] = None,
+    damaged: Damaged = False,
 ) -> None:
     """One design of a run: objectives, parameters, torques, contact forces."""
     from evodesign.cli.output import console, print_json, show_notes
@@ -54,6 +56,7 @@ def show(
         from evodesign.cli.tables.card import card
 
         console().print(card(opened, _ergonomics(opened)))
+    damage.end(logged, accepted=damaged)
 
 
 def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:

@@ -17,7 +17,7 @@ def verify(run: RunPath, json: Json = False) -> None:
     from evodesign.runlog.run import read_run
 
     opened = read_run(run)
-    faults = [*(opened.notes if opened.damaged else ()), *audit(opened)]
+    faults = list(dict.fromkeys((*opened.faults, *audit(opened))))
     try:
         replay(opened)
     except ResumeMismatch as mismatch:
@@ -26,6 +26,6 @@ def verify(run: RunPath, json: Json = False) -> None:
         print_json(run_json(opened) | {"sound": not faults, "faults": faults})
     else:
         print_lines(*(faults or run_lines(opened)))
-        show_notes(() if opened.damaged else opened.notes)
+        show_notes(note for note in opened.notes if note not in faults)
     if faults:
         raise RunError(f"{run}: {len(faults)} fault{'s' * (len(faults) > 1)} found")

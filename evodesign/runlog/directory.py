@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 LOCK = "lock"
-SEGMENT = re.compile(r"(\d{3,})\.mcap")
+SEGMENT = re.compile(r"([0-9]{3}|[1-9][0-9]{3,8})\.mcap")
 
 LONGEST_NAME = 50
 """Letters of a name that go into a path, whose parts may have 255 bytes."""
@@ -44,10 +44,17 @@ def segment_path(directory: Path, number: int) -> Path:
 
 
 def segments(directory: Path) -> dict[int, Path]:
-    """The segments in a directory, by number, in order; none when there is no such directory."""
-    if not directory.is_dir():
-        return {}
-    found = {int(name[1]): path for path in directory.iterdir() if (name := SEGMENT.fullmatch(path.name))}
+    """The segments in a directory, by number, in order; none when there is no such directory.
+
+    Raises:
+        RunError: the directory cannot be read.
+    """
+    try:
+        if not directory.is_dir():
+            return {}
+        found = {int(name[1]): path for path in directory.iterdir() if (name := SEGMENT.fullmatch(path.name))}
+    except OSError as error:
+        raise RunError(f"{directory}: cannot be read: {error.strerror}") from error
     return dict(sorted(found.items()))
 
 
@@ -70,11 +77,11 @@ def run_segments(directory: Path) -> dict[int, Path]:
     Raises:
         RunError: the directory is missing, is a file, or holds no run.
     """
-    if not directory.exists():
-        raise RunError(f"{directory}: there is no such run directory")
-    if not directory.is_dir():
-        raise RunError(f"{directory}: wanted the directory of a run, found a file")
     found = segments(directory)
+    if not found and not os.path.lexists(directory):
+        raise RunError(f"{directory}: there is no such run directory")
+    if not found and not directory.is_dir():
+        raise RunError(f"{directory}: wanted the directory of a run, found a file")
     if not found:
         raise RunError(f"{directory}: is not a run, for it holds no 000.mcap")
     return found
@@ -100,7 +107,8 @@ def locked(directory: Path) -> Iterator[None]:
         RunError: another process holds it, or it cannot be written.
     """
     try:
-        file = (directory / LOCK).open("ab")
+        flags = os.O_RDWR | os.O_CREAT | os.O_NONBLOCK | os.O_NOFOLLOW  # a lock may be any file that was sent
+        file = os.fdopen(os.open(directory / LOCK, flags, 0o666), "r+b", buffering=0)
     except OSError as error:
         raise RunError(f"{directory}: cannot be locked: {error.strerror}") from error
     with file:

@@ -6,43 +6,28 @@ half there waits for the next look.
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
 from typing import Final
 
 import msgspec
-import zstandard
-from mcap.exceptions import EndOfFile, McapError
-from mcap.opcode import Opcode
-from mcap.records import Channel, Message
-from mcap.stream_reader import StreamReader
 
-from evodesign.errors import RunError
-from evodesign.runlog.channels import RECORDS
+from evodesign.records import RunHeader
 from evodesign.runlog.directory import run_segments
-from evodesign.runlog.upgrade import record_of
+from evodesign.runlog.gaps import segment_gaps
+from evodesign.runlog.header import differences
+from evodesign.runlog.reader import Believer, Entry
+from evodesign.runlog.scan import ATTACHMENT, CHUNK, DATA_END, HEADER, MESSAGE_INDEX, Unpacker, chunk_of
+from evodesign.runlog.segment_file import opened
+from evodesign.runlog.validity import Validity
 
 __all__ = ["Follower", "Logged"]
-
-DAMAGE: Final = (
-    MemoryError,  # a damaged length
-    OverflowError,  # a damaged length
-    McapError,
-    ValueError,  # checksums, text that is not UTF-8
-    msgspec.MsgspecError,
-    struct.error,
-    zstandard.ZstdError,
-)
-"""What reading raises where a file is damaged."""
 
 MAGIC_SIZE: Final = 8
 """Bytes before the first record of an MCAP file."""
 
-PREFIX: Final = struct.Struct("<BQ")
-"""Before each record of an MCAP file: its kind and its length."""
+PASSED_OVER: Final = (HEADER, MESSAGE_INDEX, ATTACHMENT)
+"""Records of a log that hold none of its messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +43,11 @@ class _Place:
     """How far a segment was read."""
 
     path: Path
+    believer: Believer
     offset: int = MAGIC_SIZE
-    topics: dict[int, str] = field(default_factory=dict)
     ended: bool = False
     damage: str = ""
+    strange: list[str] = field(default_factory=list)
 
 
 class Follower:
@@ -77,6 +63,8 @@ class Follower:
         run_segments(directory)
         self.directory = directory
         self._places: dict[int, _Place] = {}
+        self._sessions: set[int] = set()
+        self._header: RunHeader | None = None
 
     @property
     def ended(self) -> bool:
@@ -85,12 +73,15 @@ class Follower:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A sentence for every segment that cannot be read further."""
-        return tuple(
-            f"{place.path.name} cannot be read further: {place.damage}"
-            for place in self._places.values()
-            if place.damage
-        )
+        """A sentence for every segment that is missing, cannot be read further or has what is no record."""
+        notes = segment_gaps(self._places, self._sessions)
+        for place in self._places.values():
+            if place.damage:
+                notes.append(f"{place.path.name} cannot be read further: {place.damage}")
+            if refused := place.believer.refused + len(place.strange):
+                reason = (place.strange or [place.believer.reason])[0]
+                notes.append(f"{place.path.name} has {refused} messages that are no records ({reason})")
+        return tuple(notes)
 
     def look(self) -> list[Logged]:
         """The records that have come since the last look, in the order of the log.
@@ -99,52 +90,60 @@ class Follower:
             RunError: the run has gone, or cannot be read.
         """
         for number, path in run_segments(self.directory).items():
-            self._places.setdefault(number, _Place(path))
-        return [logged for number in sorted(self._places) for logged in _news(self._places[number])]
+            self._places.setdefault(number, _Place(path, Believer(path)))
+        return [
+            Logged(entry.record, entry.time / 1e9)
+            for number in sorted(self._places)
+            for entry in _news(self._places[number])
+            if self._fits(self._places[number], entry)
+        ]
+
+    def _fits(self, place: _Place, entry: Entry) -> bool:
+        """Whether a record agrees with the header that was read before it."""
+        record = entry.record
+        if isinstance(record, RunHeader):
+            if self._header is not None and (differing := differences(self._header, record)):
+                place.strange.append(f"it is of another problem or search: {'; '.join(differing)}")
+                return False
+            self._sessions.add(entry.sequence)
+            self._header = record
+            return True
+        fault = "a record without a header" if self._header is None else Validity(self._header).fault(record)
+        if fault:
+            place.strange.append(fault)
+        return not fault
 
 
-def _news(place: _Place) -> list[Logged]:
+def _news(place: _Place) -> list[Entry]:
     """New records of a segment; what cannot be read ends it."""
-    found: list[Logged] = []
-    if place.ended or place.damage:
-        return found
-    try:
-        with place.path.open("rb") as file:
-            file.seek(place.offset)
-            content = file.read()
-    except OSError as error:
-        raise RunError(f"{place.path}: cannot be read: {error.strerror}") from error
-    whole, place.ended = _whole_records(content)
-    place.offset += whole
-    try:
-        for logged in _records(content[:whole], place.topics):
-            found.append(logged)  # noqa: PERF402 - what came before damage is kept
-    except EndOfFile:
-        pass  # no footer follows: there is more to come
-    except DAMAGE as error:
-        place.damage = " ".join(str(error).split()) or type(error).__name__
+    found: list[Entry] = []
+    if not place.ended and not place.damage:
+        with opened(place.path) as file:
+            unpacker = Unpacker(file.size)
+            while not place.ended and not place.damage and (record := file.record(place.offset)) is not None:
+                found += _step(place, record, unpacker)
+            if file.beyond_any(place.offset):
+                place.damage = f"the record at {place.offset} is longer than any"
     return found
 
 
-def _whole_records(content: bytes) -> tuple[int, bool]:
-    """Length of the data's records that are there from end to end, and whether the data ends after them."""
-    end = 0
-    while end + PREFIX.size <= len(content):
-        kind, length = PREFIX.unpack_from(content, end)
-        if kind == Opcode.DATA_END:
-            return end, True
-        if end + PREFIX.size + length > len(content):
-            break
-        end += PREFIX.size + length
-    return end, False
-
-
-def _records(content: bytes, topics: dict[int, str]) -> Iterator[Logged]:
-    """Records of whole chunks; the topics of channels are remembered from call to call."""
-    stream = BytesIO(content)
-    reader = StreamReader(stream, skip_magic=True, validate_crcs=True, record_size_limit=len(content))
-    for entry in reader.records:
-        if isinstance(entry, Channel):
-            topics[entry.id] = entry.topic
-        elif isinstance(entry, Message) and (topic := topics.get(entry.channel_id, "")) in RECORDS:
-            yield Logged(record_of(topic, entry.data), entry.log_time / 1e9)
+def _step(place: _Place, record: tuple[int, int, bytes], unpacker: Unpacker) -> list[Entry]:
+    """The records of the next whole record of a file, if that is a chunk; moves the place behind it."""
+    kind, end, body = record
+    found: list[Entry] = []
+    if kind == DATA_END:
+        place.ended = True
+        return found
+    if kind == CHUNK:
+        records = unpacker.records(body)
+        chunk = None if records is None else chunk_of(records)
+        if chunk is None:
+            place.damage = f"the chunk at {place.offset} does not match its checksum, or holds no records"
+            return found
+        place.believer.topics |= chunk.topics
+        found = [entry for message in chunk.messages if (entry := place.believer.entry(message)) is not None]
+    elif kind not in PASSED_OVER:
+        place.damage = f"the record at {place.offset} is of a kind that no log has"
+        return found
+    place.offset = end
+    return found

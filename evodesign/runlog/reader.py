@@ -12,20 +12,30 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 import msgspec
-import zstandard
 
-from evodesign.errors import RunError
+from evodesign.errors import RunError, on_one_line
 from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
-from evodesign.runlog.channels import HEADER_COPY, RECORDS, RUN
-from evodesign.runlog.scan import Scan, messages, scan, topics
+from evodesign.runlog.channels import RECORDS, RUN
+from evodesign.runlog.scan import Message, Scan
+from evodesign.runlog.segment_file import LARGEST_RECORD, opened
 from evodesign.runlog.upgrade import record_of
+from evodesign.runlog.validity import header_fault
 
-__all__ = ["Entry", "Segment", "entries", "read_content", "read_segment"]
+__all__ = ["Believer", "Entry", "Segment", "entries", "read_segment"]
 
 R = TypeVar("R")
 
 USUAL_TOPICS: Final = dict(enumerate(RECORDS, 1))
 """Topics by channel number as the writer registers them, for a segment whose descriptions are damaged."""
+
+MOST_LISTED: Final = 20
+"""Gaps in one sentence."""
+
+LONGEST_REASON: Final = 200
+"""Letters of what is quoted of an error."""
+
+NOT_DECODED: Final = (msgspec.MsgspecError, ValueError, RecursionError)
+"""What decoding raises: other fields or types, text that is not UTF-8 or JSON, too much of one in another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +46,7 @@ class Segment:
         path: the file.
         headers: a single one, or of a merged segment one of each; none when even that is missing.
         evaluations, generations, fronts, details: in the order of the file.
+        sessions: numbers in the run of the segments whose headers are here, of a merged segment many.
         complete: whether the file is whole, to its last byte.
         damaged: whether something is wrong that no kill explains.
         note: a sentence on what is missing; empty when nothing is.
@@ -47,13 +58,13 @@ class Segment:
     generations: tuple[Generation, ...]
     fronts: tuple[Front, ...]
     details: tuple[Detail, ...]
+    sessions: tuple[int, ...]
     complete: bool
     damaged: bool
     note: str
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(msgspec.Struct, frozen=True):
     """A record of the log with its topic, its number there and its time [ns since 1970]."""
 
     topic: str
@@ -68,15 +79,21 @@ class _Version(msgspec.Struct):
     format_version: int
 
 
-def read_segment(path: Path) -> Segment:
+def read_segment(path: Path, *, last: bool = True) -> Segment:
     """A segment as far as it can be read; damage never raises.
 
+    Args:
+        path: the file.
+        last: whether it is the run's last one, which may still be written.
     Raises:
         RunError: the file cannot be opened, or a later version of evodesign wrote it.
     """
-    found = scan(read_content(path))
-    records = [entry.record for entry in entries(path, found)]
-    headers = _all(records, RunHeader) or _header_copy(path, found)
+    with opened(path) as file:
+        found = Scan(file)
+        believer = Believer(path)
+        read = list(_believed(found, believer))
+    records = [entry.record for entry in read]
+    headers = _all(records, RunHeader) or believer.copied(found.header_copy)
     evaluations = _all(records, Evaluation)
     return Segment(
         path=path,
@@ -85,78 +102,112 @@ def read_segment(path: Path) -> Segment:
         generations=_all(records, Generation),
         fronts=_all(records, Front),
         details=_all(records, Detail),
-        complete=found.sound,
-        damaged=bool(found.damage) or (found.ended and not found.sound),
-        note=_note(path, found, len(evaluations), bool(headers)),
+        sessions=tuple(entry.sequence for entry in read if entry.topic == RUN),
+        complete=found.sound and not believer.refused,
+        damaged=bool(found.damage) or (found.ended and not found.sound) or bool(believer.refused),
+        note=_note(path, found, believer, len(evaluations), headed=bool(headers), last=last),
     )
 
 
-def read_content(path: Path) -> bytes:
-    """The bytes of a segment.
-
-    Raises:
-        RunError: the file cannot be opened.
-    """
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise RunError(f"{path}: cannot be read: {error.strerror}") from error
-
-
-def entries(path: Path, found: Scan) -> Iterator[Entry]:
+def entries(path: Path) -> Iterator[Entry]:
     """All records in the order of the file; what this version does not know is passed over.
 
     Raises:
-        RunError: a later version of evodesign wrote the file.
+        RunError: the file cannot be opened, or a later version of evodesign wrote it.
     """
-    known = dict(USUAL_TOPICS)
-    for chunk in found.chunks:
-        known |= topics(chunk)
-        for message in messages(chunk):
-            topic = known.get(message.channel, "")
+    with opened(path) as file:
+        yield from _believed(Scan(file), Believer(path))
+
+
+def _believed(found: Scan, believer: Believer) -> Iterator[Entry]:
+    for chunk in found.chunks():
+        believer.topics |= chunk.topics
+        for message in chunk.messages:
+            entry = believer.entry(message)
+            if entry is not None:
+                yield entry
+
+
+class Believer:
+    """Takes messages for the records that they are, and keeps account of those that are none.
+
+    Args:
+        path: of the file, for messages.
+    Attributes:
+        topics: by channel number, as far as they are known.
+        refused: how many messages are none of this version's records.
+        reason: why the first of them is none.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.topics = dict(USUAL_TOPICS)
+        self.refused = 0
+        self.reason = ""
+
+    def entry(self, message: Message) -> Entry | None:
+        """The record of a message; None if its topic is unknown, or it is no record.
+
+        Raises:
+            RunError: a later version of evodesign wrote it.
+        """
+        topic = self.topics.get(message.channel, "")
+        if topic not in RECORDS:
+            return None
+        record = self._record(topic, message.data)
+        return None if record is None else Entry(topic, message.sequence, message.time, record)
+
+    def copied(self, header: bytes) -> tuple[RunHeader, ...]:
+        """The header of its copy beside the messages, if that is one."""
+        record = self._record(RUN, header) if header else None
+        return _all([record] if record is not None else [], RunHeader)
+
+    def _record(self, topic: str, data: bytes) -> msgspec.Struct | None:
+        try:
+            if len(data) > LARGEST_RECORD:
+                raise ValueError(f"{len(data)} bytes are more than any record has")
             if topic == RUN:
-                _check_version(path, message.data)
-            if topic in RECORDS and (record := _decoded(topic, message.data)) is not None:
-                yield Entry(topic, message.sequence, message.time, record)
+                self._check_version(data)
+            record = record_of(topic, data)
+            if isinstance(record, RunHeader) and (fault := header_fault(record)):
+                raise ValueError(fault)
+        except NOT_DECODED as error:
+            self.refused += 1
+            self.reason = self.reason or f"{topic}: {on_one_line(str(error))[:LONGEST_REASON]}"
+            return None
+        return record
 
-
-def _decoded(topic: str, data: bytes) -> msgspec.Struct | None:
-    try:
-        return record_of(topic, data)
-    except (msgspec.MsgspecError, UnicodeDecodeError):
-        return None
-
-
-def _header_copy(path: Path, found: Scan) -> tuple[RunHeader, ...]:
-    """The header from its copy beside the messages."""
-    copies = [attachment.data for attachment in found.attachments if attachment.name == HEADER_COPY]
-    headers = [zstandard.ZstdDecompressor().decompress(copy) for copy in copies[:1]]
-    for header in headers:
-        _check_version(path, header)
-    return _all([record_of(RUN, header) for header in headers], RunHeader)
-
-
-def _check_version(path: Path, header: bytes) -> None:
-    version = msgspec.json.decode(header, type=_Version).format_version
-    if version > FORMAT_VERSION:
-        raise RunError(
-            f"{path}: wanted a log of format {FORMAT_VERSION} or earlier, found format {version}; "
-            "read it with a later evodesign"
-        )
+    def _check_version(self, header: bytes) -> None:
+        version = msgspec.json.decode(header, type=_Version).format_version
+        if version > FORMAT_VERSION:
+            raise RunError(
+                f"{self._path}: wanted a log of format {FORMAT_VERSION} or earlier, found format {version}; "
+                "read it with a later evodesign"
+            )
 
 
 def _all(records: Sequence[msgspec.Struct], kind: type[R]) -> tuple[R, ...]:
     return tuple(record for record in records if isinstance(record, kind))
 
 
-def _note(path: Path, found: Scan, evaluations: int, headed: bool) -> str:
+def _note(path: Path, found: Scan, believer: Believer, evaluations: int, *, headed: bool, last: bool) -> str:
     """A sentence on what a file lacks."""
+    if found.size == 0:
+        other = "has just begun" if last else "what it wrote is lost"
+        return f"{path.name} is empty: its session was killed before it wrote, or {other}"
+    if found.damage:
+        places = [f"{gap.end - gap.start} bytes at {gap.start}" for gap in found.damage[:MOST_LISTED]]
+        further = len(found.damage) - len(places)
+        more = f" and at {further} more places" if further else ""
+        return (
+            f"{path.name} is damaged: {', '.join(places)}{more} cannot be read; {evaluations} evaluations can"
+        )
+    if believer.refused:
+        return f"{path.name} has {believer.refused} messages that are no records ({believer.reason})"
     if found.sound:
         return ""
-    where = f"after {evaluations} evaluations" if headed else "before its header"
-    if found.damage:
-        places = ", ".join(f"{gap.end - gap.start} bytes at {gap.start}" for gap in found.damage)
-        return f"{path.name} is damaged: {places} cannot be read; {evaluations} evaluations can"
     if found.ended:
         return f"{path.name} does not match its checksums, though each of its {evaluations} evaluations does"
-    return f"{path.name} ends {where}, without a footer: its session was killed, or is still writing"
+    where = f"after {evaluations} evaluations" if headed else "before its header"
+    other = "is still writing" if last else "its end is lost"
+    return f"{path.name} ends {where}, without a footer: its session was killed, or {other}"

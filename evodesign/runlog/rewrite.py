@@ -18,12 +18,12 @@ from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import InputError, RunError
 from evodesign.files import replacing
-from evodesign.records import SearchSettings, SearchStage
-from evodesign.runlog.channels import RUN
+from evodesign.records import Detail, Evaluation, Front, Generation, SearchSettings, SearchStage
+from evodesign.runlog.channels import DETAIL, EVALUATION, FRONT, GENERATION, RUN
 from evodesign.runlog.directory import locked, make_directory, refuse_run, run_segments, segment_path, synced
-from evodesign.runlog.reader import Entry, entries, read_content
+from evodesign.runlog.gaps import record_gaps
+from evodesign.runlog.reader import Entry, entries
 from evodesign.runlog.run import RunLog, read_run
-from evodesign.runlog.scan import scan
 from evodesign.runlog.writer import RunWriter, add_header_copy, encoded, register
 
 __all__ = ["begin_branch", "merge", "recover"]
@@ -83,11 +83,12 @@ def merge(directory: Path, to: Path | None) -> RunLog:
 
 
 def _undamaged(directory: Path) -> RunLog:
+    """The run, whose files are all there; records that it lacks it lacks in one file too."""
     run = read_run(directory)
-    if run.damaged:
-        raise RunError(
-            f"{directory}: {run.notes[0]}; save what can be read first: evodesign recover {directory}"
-        )
+    gaps = record_gaps(run.header, run.evaluations, run.generations, run.fronts)
+    fault = next((fault for fault in run.faults if fault not in gaps), None)
+    if fault is not None:
+        raise RunError(f"{directory}: {fault}; save what can be read first: evodesign recover {directory}")
     return run
 
 
@@ -116,15 +117,32 @@ def _write(path: Path, directory: Path, run: RunLog, part: str = "") -> None:
 
 def _once(directory: Path, run: RunLog) -> Iterator[Entry]:
     """Every record of a run in the order of its segments, headers first, each other one once."""
-    found = [(path, scan(read_content(path))) for path in run_segments(directory).values()]
-    headers = [entry for path, part in found for entry in entries(path, part) if entry.topic == RUN]
+    paths = run_segments(directory).values()
+    headers = [entry for path in paths for entry in entries(path) if entry.topic == RUN]
     yield from headers or [Entry(RUN, 0, 0, run.header)]
-    seen: set[tuple[str, int]] = set()
-    for path, part in found:
-        for entry in entries(path, part):
-            if entry.topic != RUN and (entry.topic, entry.sequence) not in seen:
-                seen.add((entry.topic, entry.sequence))
+    left: dict[str, dict[int, msgspec.Struct]] = {
+        EVALUATION: {evaluation.number: evaluation for evaluation in run.evaluations},
+        GENERATION: {generation.number: generation for generation in run.generations},
+        FRONT: {front.generation: front for front in run.fronts},
+        DETAIL: {detail.evaluation: detail for detail in run.details},
+    }
+    for path in paths:
+        for entry in entries(path):
+            if entry.topic != RUN and left[entry.topic].get(_number(entry.record)) == entry.record:
+                del left[entry.topic][_number(entry.record)]
                 yield entry
+
+
+def _number(record: msgspec.Struct) -> int:
+    """By what a record is known among those of its kind."""
+    match record:
+        case Evaluation() | Generation():
+            return record.number
+        case Front():
+            return record.generation
+        case Detail():
+            return record.evaluation
+    return -1
 
 
 def begin_branch(old: RunLog, directory: Path, generations: int, settings: SearchSettings) -> int:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,12 +17,14 @@ import msgspec
 from evodesign.errors import RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.directory import run_segments
+from evodesign.runlog.gaps import record_gaps, segment_gaps
 from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
+from evodesign.runlog.validity import Validity
 
 __all__ = ["RunLog", "digest", "read_run"]
 
-R = TypeVar("R")
+R = TypeVar("R", bound=msgspec.Struct)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +40,7 @@ class RunLog:
         details: in order of evaluation, each once; every member of a front has one.
         complete: whether every segment is whole.
         notes: a sentence for everything that is missing or strange.
-        damaged: whether a segment has damage that no kill explains.
+        faults: those of the notes that no kill explains; none while the run is still being written.
     """
 
     directory: Path
@@ -49,7 +51,12 @@ class RunLog:
     details: tuple[Detail, ...]
     complete: bool
     notes: tuple[str, ...]
-    damaged: bool = False
+    faults: tuple[str, ...] = ()
+
+    @property
+    def damaged(self) -> bool:
+        """Whether records that were written are lost or changed, so that the front may be another one."""
+        return bool(self.faults)
 
 
 def read_run(directory: Path) -> RunLog:
@@ -59,8 +66,11 @@ def read_run(directory: Path) -> RunLog:
         RunError: the directory is missing or is not a run, none of its headers can be read,
             a later version of evodesign wrote it, or its segments come from different runs.
     """
-    segments = [read_segment(path) for path in run_segments(directory).values()]
+    paths = run_segments(directory)
+    segments = [read_segment(path, last=number == max(paths)) for number, path in paths.items()]
     headers = _headers(directory, segments)
+    strange: list[str] = []
+    segments = [_valid(segment, Validity(headers[-1]), strange) for segment in segments]
     evaluations, contradictions = _by_number(segments)
     generations = _first_of_each(
         (generation.number, generation) for segment in segments for generation in segment.generations
@@ -68,6 +78,14 @@ def read_run(directory: Path) -> RunLog:
     fronts = _first_of_each((front.generation, front) for segment in segments for front in segment.fronts)
     details = _first_of_each(
         (detail.evaluation, detail) for segment in segments for detail in segment.details
+    )
+    sessions = [session for segment in segments for session in segment.sessions]
+    faults = (
+        *(segment.note for segment in segments if segment.damaged),
+        *strange,
+        *segment_gaps(paths, sessions),
+        *record_gaps(headers[-1], evaluations, generations, fronts),
+        *contradictions,
     )
     return RunLog(
         directory=directory,
@@ -77,8 +95,8 @@ def read_run(directory: Path) -> RunLog:
         fronts=fronts,
         details=details,
         complete=all(segment.complete for segment in segments),
-        damaged=any(segment.damaged for segment in segments),
-        notes=(*(segment.note for segment in segments if segment.note), *contradictions),
+        notes=tuple(dict.fromkeys((*(segment.note for segment in segments if segment.note), *faults))),
+        faults=faults,
     )
 
 
@@ -98,6 +116,32 @@ def _headers(directory: Path, segments: list[Segment]) -> list[RunHeader]:
                 f"{'; '.join(differing)}; take it out of the directory"
             )
     return [header for _, header in headed]
+
+
+def _valid(segment: Segment, validity: Validity, strange: list[str]) -> Segment:
+    """A segment without the records that contradict the header, on which there is a note then."""
+    faults: list[str] = []
+
+    def kept(records: tuple[R, ...]) -> tuple[R, ...]:
+        return tuple(record for record in records if not _noted(validity.fault(record), faults))
+
+    valid = replace(
+        segment,
+        evaluations=kept(segment.evaluations),
+        generations=kept(segment.generations),
+        fronts=kept(segment.fronts),
+        details=kept(segment.details),
+    )
+    if faults:
+        many = f"{len(faults)} records contradict" if len(faults) > 1 else "a record contradicts"
+        strange.append(f"{segment.path.name}: {many} the header and are left out ({faults[0]})")
+    return valid
+
+
+def _noted(fault: str, faults: list[str]) -> bool:
+    if fault:
+        faults.append(fault)
+    return bool(fault)
 
 
 def _by_number(segments: list[Segment]) -> tuple[tuple[Evaluation, ...], list[str]]:

@@ -1,57 +1,92 @@
-"""Finding everything sound in the bytes of a segment, whole, cut off or damaged anywhere.
+"""Finding everything sound in the file of a segment, whole, cut off or damaged anywhere.
 
 A segment is an MCAP file: a header, then chunks (each with a checksum), their indexes and attachments (each
 with a checksum), then a checksum of all that, then an index of the whole. Records are walked from the front.
 Where one is damaged, the walk goes on at the next chunk whose checksum is right, and the bytes between are a
 gap: nothing that is given back is guessed.
 
+A right checksum makes nothing true: whoever changes a file can write it. What a record declares is compared
+with the file and with what any sound record has before it is read or unpacked, and the work on what turns out
+to be none is bounded, so that reading ends in time and memory that the size of the file bounds.
+
 Source: the MCAP specification, version 0 (mcap.dev/spec); the written files are checked with its own reader.
 """
 
 from __future__ import annotations
 
+import math
 import struct
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
+import msgspec
 import zstandard
 
 from evodesign.runlog.channels import HEADER_COPY
+from evodesign.runlog.segment_file import LARGEST_CHUNK, LARGEST_RECORD, PREFIX, SegmentFile
 
-__all__ = ["Attachment", "Chunk", "Gap", "Message", "Scan", "messages", "scan", "topics"]
+__all__ = [
+    "ATTACHMENT",
+    "CHUNK",
+    "DATA_END",
+    "HEADER",
+    "MESSAGE_INDEX",
+    "Chunk",
+    "Gap",
+    "Message",
+    "Scan",
+    "Unpacker",
+    "chunk_of",
+]
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 HEADER, FOOTER, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, ATTACHMENT, DATA_END = 1, 2, 4, 5, 6, 7, 9, 15
 
-RECORD: Final = struct.Struct("<BQ")
-CHUNK_START: Final = struct.Struct("<QQQI")
+CHUNK_START: Final = struct.Struct("<QQQI8sQ")
 CHUNK_MARK: Final = b"\x04\x00\x00\x00zstd"
-CHUNK_MARK_AT: Final = RECORD.size + CHUNK_START.size
+FRAME_HEADER: Final = 18
+"""Most bytes before the first block of a zstd frame."""
+
 COPY_MARK: Final = struct.pack("<I", len(HEADER_COPY)) + HEADER_COPY.encode()
-COPY_MARK_AT: Final = RECORD.size + 16
+ATTACHMENT_NAME_AT: Final = 16
 MESSAGE_START: Final = struct.Struct("<HIQQ")
 FOOTER_BODY: Final = struct.Struct("<QQI")
 INDEX_START: Final = struct.Struct("<HI")
 INDEX_ENTRY: Final = 16
+CHANNEL_START: Final = struct.Struct("<HHI")
+
+MARK_AT: Final = {
+    CHUNK_MARK: (CHUNK, PREFIX.size + 28),
+    COPY_MARK: (ATTACHMENT, PREFIX.size + ATTACHMENT_NAME_AT),
+}
+"""By what a record is found after damage: its kind, and where in it the mark stands."""
+
+MOST_RATIO: Final = 64
+MOST_WORK: Final = 64 * 2**20
+"""Bytes unpacked, and bytes tried in vain, are at most so many times the file's, and so many more."""
 
 
-@dataclass(frozen=True, slots=True)
-class Chunk:
-    """The uncompressed records of a sound chunk, and where it begins and ends in the file."""
+class Message(msgspec.Struct, frozen=True):
+    """A message of a chunk; its time is in nanoseconds since 1970."""
 
-    start: int
-    end: int
-    records: bytes
-
-
-@dataclass(frozen=True, slots=True)
-class Attachment:
-    """A sound attachment."""
-
-    name: str
+    channel: int
+    sequence: int
+    time: int
     data: bytes
+
+
+class Chunk(msgspec.Struct, frozen=True):
+    """What a sound chunk holds.
+
+    Args:
+        topics: by channel number, as far as this chunk describes channels.
+        messages: in order.
+    """
+
+    topics: dict[int, str]
+    messages: tuple[Message, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,189 +97,216 @@ class Gap:
     end: int
 
 
-@dataclass(frozen=True, slots=True)
-class Message:
-    """A message of a chunk; its time is in nanoseconds since 1970."""
-
-    channel: int
-    sequence: int
-    time: int
-    data: bytes
-
-
-@dataclass(frozen=True, slots=True)
 class Scan:
-    """What is sound in a file.
+    """A walk through a segment; what it found out about the file is whole when the chunks have been taken.
 
     Args:
-        chunks, attachments: in the order of the file.
-        gaps: what cannot be read, in the order of the file.
+        file: of the segment.
+    Attributes:
         size: of the file, in bytes.
+        gaps: what cannot be read, in the order of the file.
         ended: whether the file has its last bytes: no process was killed while it wrote.
         sound: whether the file is as it was written, to its last byte.
+        header_copy: the header's JSON from the first sound attachment that repeats it; empty without one.
     """
 
-    chunks: tuple[Chunk, ...]
-    attachments: tuple[Attachment, ...]
-    gaps: tuple[Gap, ...]
-    size: int
-    ended: bool
-    sound: bool
+    def __init__(self, file: SegmentFile) -> None:
+        self._file = file
+        self.size = file.size
+        self.gaps: list[Gap] = []
+        self.ended = file.size > len(MAGIC) and file.read(file.size - len(MAGIC), len(MAGIC)) == MAGIC
+        self.sound = False
+        self.header_copy = b""
+        self._forged = False
+        self._unpacker = Unpacker(file.size)
 
     @property
     def damage(self) -> tuple[Gap, ...]:
         """Gaps that no kill explains: all but one at the end of a file that lacks its last bytes."""
-        return tuple(gap for gap in self.gaps if self.ended or gap.end < self.size)
+        killed = not self.ended and not self._forged
+        return tuple(gap for gap in self.gaps if not killed or gap.end < self.size)
+
+    def chunks(self) -> Iterator[Chunk]:
+        """Every sound chunk, in the order of the file.
+
+        Raises:
+            OSError: the file cannot be read.
+        """
+        place = self._after_header()
+        unindexed: float = 0
+        while place < self.size and not self._unpacker.exhausted:
+            kind, end, body = self._file.record(place) or (0, place, b"")
+            if kind == DATA_END and len(body) == 4:
+                self.sound = not self.gaps and self._whole(place, end, body)
+                return
+            if kind == CHUNK and (records := self._unpacker.records(body)) is not None:
+                if (chunk := chunk_of(records)) is not None:
+                    unindexed = len(chunk.messages)
+                    yield chunk
+                else:
+                    self._forged = True
+                    self.gaps.append(Gap(place, end))
+            elif kind == ATTACHMENT and (copy := attached_header(body)) is not None:
+                self.header_copy = self.header_copy or copy
+            elif kind == MESSAGE_INDEX and (indexed := _indexed(body)) <= unindexed:
+                unindexed -= indexed
+            else:
+                self._unpacker.spend(len(body))
+                end = self._next_sound(place + 1)
+                self.gaps.append(Gap(place, end))
+            place = end
+        if place < self.size:
+            self._forged = True
+            self.gaps.append(Gap(place, self.size))
+
+    def _after_header(self) -> int:
+        """Where the first sound record after the file's header begins."""
+        if self._file.read(0, len(MAGIC)) == MAGIC and self.size > len(MAGIC):
+            kind, end, body = self._file.record(len(MAGIC)) or (0, 0, b"")
+            if kind == HEADER and body:
+                return end
+        place = self._next_sound(0)
+        self.gaps.append(Gap(0, place))
+        return place
+
+    def _next_sound(self, place: int) -> int:
+        """Where the next sound chunk or copy of the header begins, from a place on; the end if none does."""
+        for found, mark in self._file.occurrences(tuple(MARK_AT), place):
+            kind, mark_at = MARK_AT[mark]
+            start = found - mark_at
+            if start >= place and self._file.read(start, 1)[0] == kind and self._sound_at(start, kind):
+                return start
+            if self._unpacker.exhausted:
+                break
+        return self.size
+
+    def _sound_at(self, place: int, kind: int) -> bool:
+        """Whether a record of a kind, of which a mark was found, is sound."""
+        start = self._file.read(place, PREFIX.size + CHUNK_START.size + FRAME_HEADER)
+        _, length = PREFIX.unpack_from(start)
+        if kind == CHUNK and _declared(start[PREFIX.size :], length) is None:
+            return False
+        _, _, body = self._file.record(place) or (0, 0, b"")
+        read: Callable[[bytes], bytes | None] = self._unpacker.records if kind == CHUNK else attached_header
+        self._unpacker.spend(len(body))
+        return read(body) is not None
+
+    def _whole(self, data_end: int, summary: int, checksum: bytes) -> bool:
+        """Whether the checksums of the data and of the index after it are right, and nothing follows."""
+        footer = self.size - len(MAGIC) - PREFIX.size - FOOTER_BODY.size
+        if not (summary <= footer <= 2 * summary + LARGEST_CHUNK and self.ended):
+            return False
+        kind, end, body = self._file.record(footer) or (0, 0, b"")
+        if kind != FOOTER or end != self.size - len(MAGIC):
+            return False
+        start, _, index_checksum = FOOTER_BODY.unpack(body)
+        return bool(
+            start == summary
+            and self._file.checksum(summary, end - 4) == index_checksum
+            and self._file.checksum(0, data_end) == int.from_bytes(checksum, "little")
+        )
 
 
-def scan(content: bytes) -> Scan:
-    """Everything sound in the bytes of a segment; never raises."""
-    chunks: list[Chunk] = []
-    attachments: list[Attachment] = []
-    gaps: list[Gap] = []
-    unpack = _Unpacker()
-    ended = content.endswith(MAGIC) and len(content) > len(MAGIC)
-    place = _after_header(content)
-    if place is None:
-        place = _next_sound(content, 0)
-        gaps.append(Gap(0, place))
-    while place < len(content):
-        end, body = _record(content, place)
-        opcode = content[place]
-        if opcode == DATA_END and len(body) == 4:
-            sound = not gaps and _whole(content, place, end, body)
-            return Scan(
-                tuple(chunks), tuple(attachments), tuple(gaps), len(content), ended=ended, sound=sound
-            )
-        if opcode == CHUNK and (records := unpack.records(body)) is not None:
-            chunks.append(Chunk(place, end, records))
-        elif opcode == ATTACHMENT and (attachment := _attachment(body)) is not None:
-            attachments.append(attachment)
-        elif not (opcode == MESSAGE_INDEX and _is_index(body)):
-            end = _next_sound(content, place + 1)
-            gaps.append(Gap(place, end))
-        place = end
-    return Scan(tuple(chunks), tuple(attachments), tuple(gaps), len(content), ended=ended, sound=False)
+class Unpacker:
+    """Unpacks chunks, all with one decompressor, which takes longer to make than a chunk to unpack.
 
+    Args:
+        size: of the file [byte], which bounds how much is unpacked of it in all.
+    """
 
-def topics(chunk: Chunk) -> dict[int, str]:
-    """Topics by channel number, as far as this chunk describes channels."""
-    found = {}
-    for opcode, body in _inner(chunk.records):
-        if opcode == CHANNEL:
-            (number,) = struct.unpack_from("<H", body)
-            (length,) = struct.unpack_from("<I", body, 4)
-            found[number] = body[8 : 8 + length].decode()
-    return found
-
-
-def messages(chunk: Chunk) -> Iterator[Message]:
-    """The messages of a chunk, in order."""
-    for opcode, body in _inner(chunk.records):
-        if opcode == MESSAGE:
-            channel, sequence, time, _ = MESSAGE_START.unpack_from(body)
-            yield Message(channel, sequence, time, body[MESSAGE_START.size :])
-
-
-def _inner(records: bytes) -> Iterator[tuple[int, bytes]]:
-    """Opcode and body of the records in a chunk, whose checksum was right."""
-    place = 0
-    while place < len(records):
-        opcode, length = RECORD.unpack_from(records, place)
-        place += RECORD.size
-        yield opcode, records[place : place + length]
-        place += length
-
-
-def _record(content: bytes, place: int) -> tuple[int, bytes]:
-    """End and body of the record at a place; the place itself and nothing if it is not all there."""
-    if place + RECORD.size > len(content):
-        return place, b""
-    _, length = RECORD.unpack_from(content, place)
-    end = place + RECORD.size + length
-    return (end, content[place + RECORD.size : end]) if end <= len(content) else (place, b"")
-
-
-def _after_header(content: bytes) -> int | None:
-    """Where the first record after the file's header begins; None if the header is damaged."""
-    if not content.startswith(MAGIC) or len(content) == len(MAGIC) or content[len(MAGIC)] != HEADER:
-        return None
-    end, body = _record(content, len(MAGIC))
-    return end if body else None
-
-
-def _next_sound(content: bytes, place: int) -> int:
-    """Where the next sound chunk or copy of the header begins, from a place on; the end if none does."""
-    chunk = _next(content, place, CHUNK, CHUNK_MARK, CHUNK_MARK_AT, _Unpacker().records)
-    return _next(content[:chunk], place, ATTACHMENT, COPY_MARK, COPY_MARK_AT, _attachment)
-
-
-def _next(
-    content: bytes, place: int, opcode: int, mark: bytes, mark_at: int, read: Callable[[bytes], object]
-) -> int:
-    """Where the next sound record of a kind begins, found by a mark in it; the end if none does."""
-    found = content.find(mark, place + mark_at)
-    while found >= 0:
-        start = found - mark_at
-        if content[start] == opcode and read(_record(content, start)[1]) is not None:
-            return start
-        found = content.find(mark, found + 1)
-    return len(content)
-
-
-class _Unpacker:
-    """Unpacks chunks, all with one decompressor, which takes longer to make than a chunk to unpack."""
-
-    def __init__(self) -> None:
+    def __init__(self, size: int) -> None:
         self._zstd = zstandard.ZstdDecompressor()
+        self._left = MOST_RATIO * size + MOST_WORK
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether more was unpacked than any sound file of this size holds."""
+        return self._left < 0
+
+    def spend(self, work: int) -> None:
+        """Count bytes that were read or unpacked."""
+        self._left -= work
 
     def records(self, body: bytes) -> bytes | None:
         """The uncompressed records of a chunk; None unless sizes and checksum are right."""
-        data_at = CHUNK_START.size + len(CHUNK_MARK) + 8
-        if len(body) < data_at or body[CHUNK_START.size : CHUNK_START.size + len(CHUNK_MARK)] != CHUNK_MARK:
+        declared = _declared(body, len(body))
+        if declared is None:
             return None
-        _, _, size, checksum = CHUNK_START.unpack_from(body)
-        (stored,) = struct.unpack_from("<Q", body, data_at - 8)
-        data = body[data_at:]
-        if len(data) != stored:
+        size, checksum = declared
+        self._left -= size
+        if self._left < 0:
             return None
         try:
-            if zstandard.frame_content_size(data) != size:
-                return None
-            records = self._zstd.decompress(data)
+            records = self._zstd.decompress(memoryview(body)[CHUNK_START.size :])
         except (zstandard.ZstdError, MemoryError):
             return None
         return records if zlib.crc32(records) == checksum else None
 
 
-def _attachment(body: bytes) -> Attachment | None:
-    """The attachment of a record's body; None unless its checksum is right."""
-    if len(body) < 4 or zlib.crc32(body[:-4]) != int.from_bytes(body[-4:], "little"):
+def _declared(start: bytes, length: int) -> tuple[int, int] | None:
+    """Size and checksum that a chunk's records are to have, from the first bytes of its body.
+
+    None if they do not fit the body's length, or are more than a sound chunk has.
+    """
+    if len(start) < CHUNK_START.size:
         return None
-    (name_length,) = struct.unpack_from("<I", body, 16)
-    name = body[20 : 20 + name_length]
-    kind_at = 20 + name_length
-    (kind_length,) = struct.unpack_from("<I", body, kind_at)
-    return Attachment(name.decode(), body[kind_at + 4 + kind_length + 8 : -4])
+    _, _, size, checksum, mark, stored = CHUNK_START.unpack_from(start)
+    if mark != CHUNK_MARK or stored != length - CHUNK_START.size or size > LARGEST_CHUNK:
+        return None
+    try:
+        frame = start[CHUNK_START.size : CHUNK_START.size + FRAME_HEADER]
+        return (size, checksum) if zstandard.frame_content_size(frame) == size else None
+    except zstandard.ZstdError:
+        return None
 
 
-def _is_index(body: bytes) -> bool:
-    """Whether a body has the shape of a message index."""
+def chunk_of(records: bytes) -> Chunk | None:
+    """What the uncompressed records of a chunk say; None if one of them is none."""
+    topics: dict[int, str] = {}
+    messages: list[Message] = []
+    place = 0
+    try:
+        while place < len(records):
+            kind, length = PREFIX.unpack_from(records, place)
+            place += PREFIX.size
+            body = records[place : place + length]
+            if len(body) != length:
+                return None
+            if kind == MESSAGE:
+                channel, sequence, time, _ = MESSAGE_START.unpack_from(body)
+                messages.append(Message(channel, sequence, time, body[MESSAGE_START.size :]))
+            elif kind == CHANNEL:
+                number, _, name_length = CHANNEL_START.unpack_from(body)
+                topic = body[CHANNEL_START.size : CHANNEL_START.size + name_length]
+                if len(topic) != name_length:
+                    return None
+                topics[number] = topic.decode()
+            place += length
+    except (struct.error, UnicodeDecodeError):
+        return None
+    return Chunk(topics, tuple(messages))
+
+
+def attached_header(body: bytes) -> bytes | None:
+    """The header's JSON in an attachment, empty in another attachment; None unless its checksum is right."""
+    if len(body) < 4 or zlib.crc32(memoryview(body)[:-4]) != int.from_bytes(body[-4:], "little"):
+        return None
+    name_at = ATTACHMENT_NAME_AT + len(COPY_MARK)
+    if body[ATTACHMENT_NAME_AT:name_at] != COPY_MARK or len(body) < name_at + 4:
+        return b""
+    data_at = name_at + 4 + int.from_bytes(body[name_at : name_at + 4], "little") + 8
+    data = body[data_at:-4]
+    try:
+        if zstandard.frame_content_size(data) not in range(LARGEST_RECORD + 1):
+            return b""
+        return zstandard.ZstdDecompressor().decompress(data)
+    except (zstandard.ZstdError, MemoryError):
+        return b""
+
+
+def _indexed(body: bytes) -> float:
+    """How many messages a message index has; infinitely many if the body has not its shape."""
     if len(body) < INDEX_START.size:
-        return False
+        return math.inf
     _, length = INDEX_START.unpack_from(body)
-    return bool(length == len(body) - INDEX_START.size and length % INDEX_ENTRY == 0)
-
-
-def _whole(content: bytes, data_end: int, summary: int, checksum: bytes) -> bool:
-    """Whether the checksums of the data and of the index after it are right, and nothing follows."""
-    if zlib.crc32(content[:data_end]) != int.from_bytes(checksum, "little"):
-        return False
-    footer = len(content) - len(MAGIC) - RECORD.size - FOOTER_BODY.size
-    if footer < summary or not content.endswith(MAGIC):
-        return False
-    end, body = _record(content, footer)
-    if content[footer] != FOOTER or end != len(content) - len(MAGIC):
-        return False
-    start, _, index_checksum = FOOTER_BODY.unpack(body)
-    return bool(start == summary and zlib.crc32(content[summary : end - 4]) == index_checksum)
+    return length / INDEX_ENTRY if length == len(body) - INDEX_START.size else math.inf

@@ -25,8 +25,10 @@ from evodesign.runlog.channels import RECORDS, RUN
 __all__ = ["record_of", "upgraded"]
 
 RENAMED_KEYS: Final = {
-    re.compile(r"\bseeds(?=\s*=\s*(true|false)\b)"): "start_portfolio",
-    re.compile(r"^(\s*(?:\[*\s*design\s*\.\s*)?)policy(?=\s*[].=])", re.MULTILINE): r"\1allocation",
+    re.compile(r"\bseeds(?=[ \t]*=[ \t]*(true|false)\b)"): "start_portfolio",
+    re.compile(
+        r"^([ \t]*(?:(?:\[+[ \t]*)?design[ \t]*\.[ \t]*)?)policy(?=[ \t]*[].=])", re.MULTILINE
+    ): r"\1allocation",
 }
 """Keys of problem and population files, told from equal names of joints and groups by what they hold."""
 

@@ -36,6 +36,7 @@ from evodesign.runlog.channels import (
     described,
 )
 from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
+from evodesign.runlog.segment_file import LARGEST_RECORD
 
 __all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "encoded", "register"]
 
@@ -163,8 +164,13 @@ class RunWriter:
 
     def _add(self, topic: str, record: msgspec.Struct, sequence: int) -> None:
         """A chunk with one message, handed to the operating system."""
-        now = self._now()
-        self._mcap.add_message(self._channels[topic], now, encoded(record), now, sequence)
+        now, data = self._now(), encoded(record)
+        if len(data) > LARGEST_RECORD:
+            raise RunError(
+                f"{self.path}: wanted records of at most {LARGEST_RECORD} bytes, which can be read again, "
+                f"found one for {topic} of {len(data)}"
+            )
+        self._mcap.add_message(self._channels[topic], now, data, now, sequence)
         self._mcap.flush()  # type: ignore[no-untyped-call]
         self._messages += 1
 

@@ -140,8 +140,12 @@ def test_a_recovered_run_holds_what_was_sound_and_goes_on(tmp_path: Path) -> Non
     assert 50 < len(damaged.evaluations) < 60
     recovered = recover(tmp_path / "run", tmp_path / "saved")
     assert recovered.evaluations == damaged.evaluations
-    assert (recovered.complete, recovered.damaged) == (True, False)
+    assert recovered.complete
+    assert len(recovered.faults) == 1
+    assert recovered.faults[0].startswith("missing evaluations: ")
+    assert merge(tmp_path / "saved", None).faults == recovered.faults, "one file lacks nothing else"
     run = resume(tmp_path / "saved", ToyTask, OrderedPool(), Silent(), None)
+    assert not run.damaged
     assert essence(run) == essence(whole)
     with pytest.raises(RunError, match="holds a run already"):
         recover(tmp_path / "run", tmp_path / "saved")

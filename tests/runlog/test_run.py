@@ -53,7 +53,7 @@ def test_what_overlapping_segments_repeat_is_read_once_and_in_order(tmp_path: Pa
     assert list(run.evaluations) == EVALUATIONS
     assert [generation.number for generation in run.generations] == [0, 1]
     assert [front.generation for front in run.fronts] == [0, 1]
-    assert run.notes == ()
+    assert (run.notes, run.damaged) == ((), False)
 
 
 def test_an_evaluation_that_comes_back_changed_is_noted_and_the_first_holds(tmp_path: Path) -> None:
@@ -65,6 +65,7 @@ def test_an_evaluation_that_comes_back_changed_is_noted_and_the_first_holds(tmp_
     assert list(run.evaluations) == EVALUATIONS[:2]
     assert len(run.notes) == 1
     assert "evaluation 1 stands again in 001.mcap" in run.notes[0]
+    assert run.damaged
 
 
 def test_a_killed_session_costs_its_tail_only(tmp_path: Path) -> None:
@@ -84,8 +85,9 @@ def test_a_later_segment_without_a_header_holds_nothing_but_stops_nothing(tmp_pa
     run = read_run(tmp_path / "run")
     assert list(run.evaluations) == EVALUATIONS
     assert run.notes == (
-        "001.mcap ends before its header, without a footer: its session was killed, or is still writing",
+        "001.mcap is empty: its session was killed before it wrote, or what it wrote is lost",
     )
+    assert not run.damaged
 
 
 def test_what_is_not_a_run_is_refused_in_a_sentence(tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ from evodesign.analysis.hypervolume import best
 from evodesign.errors import RunError
 from evodesign.records import Evaluation, Generation, RunHeader, Status
 from evodesign.runlog.follow import Follower
+from evodesign.runlog.gaps import listed, missing
 from evodesign.violations import exceeded_bounds
 
 __all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "FollowedRun", "LiveRun", "LiveState", "state_of", "word"]
@@ -129,6 +130,13 @@ class LiveRun:
             latest=times[-1] if times else None,
             pace=(len(times) - 1) / span if span > 0.0 else None,
         )
+
+    @property
+    def gaps(self) -> list[str]:
+        """A sentence on evaluations that are missing below the last concluded generation, if any are."""
+        concluded = max((state.evaluations for state in self._generations.values()), default=0)
+        lost = missing(self._numbers, concluded)
+        return [f"missing evaluations: {listed(lost)}"] if lost else []
 
     def _count(self, evaluation: Evaluation, written: float) -> None:
         self._numbers.add(evaluation.number)
@@ -257,8 +265,8 @@ class FollowedRun:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What cannot be read."""
-        return self._follower.notes
+        """What cannot be read, or is missing."""
+        return (*self._follower.notes, *self._live_run.gaps)
 
     def state(self) -> dict[str, Any]:
         """Where the search stands now, as the JSON object of the page."""

@@ -1,0 +1,137 @@
+"""Whether a record can be what it says, by itself and beside its run's header.
+
+A checksum says that a record was not changed by accident, not that evodesign wrote it. What is shown,
+replayed or computed with relies on what is checked here: names, lengths and numbers that fit the header.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+import msgspec
+
+from evodesign.records import AgentDetail, Detail, Evaluation, Front, Generation, LoadCaseDetail, RunHeader
+
+__all__ = ["Validity", "header_fault"]
+
+LARGEST_NUMBER: Final = 10**9
+"""More evaluations than any run has: what is counted and listed stays bounded."""
+
+AGENTS: Final = frozenset(("robot", "human"))
+SIDES: Final = frozenset(("left", "right"))
+
+
+def header_fault(header: RunHeader) -> str:
+    """What is wrong with a header by itself; empty if nothing is."""
+    parameters = [parameter.name for parameter in header.parameters]
+    objectives = [objective.name for objective in header.objectives]
+    search = header.search
+    lengths = [len(genome) for genome in search.start]
+    if len(set(parameters)) < len(parameters) or len(set(objectives)) < len(objectives):
+        return "a parameter or objective stands twice"
+    if not objectives or search.objectives != len(objectives):
+        return f"its search is of {search.objectives} objectives, and it has {len(objectives)}"
+    if {search.dimension, len(search.counts), *lengths} != {len(parameters)}:
+        return f"its search has other dimensions than its {len(parameters)} parameters"
+    if search.population < 1 or not 0 <= header.budget <= LARGEST_NUMBER:
+        return f"its population is {search.population} and its budget {header.budget}"
+    if any(each.lower > each.upper or len(each.materials) > len(each.choices) for each in header.parameters):
+        return "the bounds or materials of a parameter contradict each other"
+    return ""
+
+
+class Validity:
+    """What the records of a run must agree with.
+
+    Args:
+        header: of the run.
+    """
+
+    def __init__(self, header: RunHeader) -> None:
+        self._dimension = len(header.parameters)
+        self._parameters = frozenset(parameter.name for parameter in header.parameters)
+        self._objectives = frozenset(objective.name for objective in header.objectives)
+        self._constraints = frozenset(constraint.name for constraint in header.constrained)
+        self._asynchronous = header.search.asynchronous
+
+    def fault(self, record: msgspec.Struct) -> str:
+        """What is wrong with a record, and with which, such as `evaluation 3: ...`; empty if nothing is."""
+        match record:
+            case Evaluation():
+                fault = self._evaluation(record)
+                return fault and f"evaluation {record.number}: {fault}"
+            case Generation():
+                fault = self._generation(record)
+                return fault and f"generation {record.number}: {fault}"
+            case Front():
+                fault = _front(record)
+                return fault and f"the front of generation {record.generation}: {fault}"
+            case Detail():
+                fault = _detail(record)
+                return fault and f"the postures of evaluation {record.evaluation}: {fault}"
+        return ""
+
+    def _evaluation(self, evaluation: Evaluation) -> str:
+        assessment, turn = evaluation.assessment, evaluation.turn
+        if not (0 <= evaluation.number <= LARGEST_NUMBER and 0 <= evaluation.generation <= LARGEST_NUMBER):
+            return "its number or generation is none"
+        if len(evaluation.genome) != self._dimension:
+            return f"wanted {self._dimension} coordinates, found {len(evaluation.genome)}"
+        if assessment.design.keys() != self._parameters:
+            return "its design has not the run's parameters"
+        if not assessment.objectives.keys() <= self._objectives:
+            return "it has unknown objectives"
+        if not assessment.constrained.keys() <= self._constraints:
+            return "it has unknown constraints"
+        if (turn is not None) != self._asynchronous:
+            return "its search has turns, and it has none, or the reverse"
+        if turn is not None and not (_counts(turn.number, turn.told) and turn.told <= evaluation.number):
+            return "its turn came after it"
+        return ""
+
+    def _generation(self, generation: Generation) -> str:
+        if not _counts(generation.number, generation.evaluations):
+            return "its number or count of evaluations is none"
+        if not {*generation.best, *(generation.reference or ())} <= self._objectives:
+            return "it has unknown objectives"
+        return ""
+
+
+def _front(front: Front) -> str:
+    return "" if _counts(front.generation, *front.evaluations) else "it has numbers that are none"
+
+
+def _detail(detail: Detail) -> str:
+    if not _counts(detail.evaluation):
+        return "its number is none"
+    for case in detail.cases:
+        if len(case.instants) != 1 or case.instants[0].agents.keys() != AGENTS:
+            return "a case has not one posture of robot and person"
+        (instant,) = case.instants
+        if any(agents.keys() != AGENTS for agents in instant.disturbed.values()):
+            return "a disturbance has not robot and person"
+        found: list[AgentDetail | LoadCaseDetail] = [*instant.agents.values()]
+        found += [each for agents in instant.disturbed.values() for each in agents.values()]
+        if not all(map(_complete, found)):
+            return "a position, an angle or a wrench has too few or too many components"
+    return ""
+
+
+def _complete(agent: AgentDetail | LoadCaseDetail) -> bool:
+    """Whether places have three components, and there is a wrench of six for each hand and foot."""
+    places = (agent.base_position_m, agent.base_rpy_rad) if isinstance(agent, AgentDetail) else ()
+    return all(len(place) == 3 for place in places) and all(
+        wrenches.keys() == SIDES and all(len(wrench) == 6 for wrench in wrenches.values())
+        for wrenches in _wrenches(agent)
+    )
+
+
+def _wrenches(agent: AgentDetail | LoadCaseDetail) -> Iterator[Mapping[str, Sequence[float]]]:
+    yield agent.hand_wrenches
+    yield agent.foot_wrenches
+
+
+def _counts(*numbers: int) -> bool:
+    """Whether all these count something."""
+    return all(0 <= number <= LARGEST_NUMBER for number in numbers)

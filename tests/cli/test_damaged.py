@@ -1,0 +1,96 @@
+"""What is left of a damaged run is shown with a note and exit code 4, never in silence."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from evodesign.evolve import resume, start
+from evodesign.report.page import page_content
+from evodesign.runlog.run import read_run
+from evodesign.runlog.session_log import Silent
+from tests.faults.synthetic import synthetic_header
+from tests.runlog.toys import OrderedPool, ToyTask, shuffled
+
+COMMAND = [sys.executable, "-m", "evodesign.cli"]
+MISSING = "note: missing evaluations: 24 to 47"
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    header = synthetic_header(budget=24, seed=4, population=12)
+    start(tmp_path / "run", header, ToyTask(header), OrderedPool(shuffled(1)), Silent())
+    for budget in (48, 60):
+        resume(tmp_path / "run", ToyTask, OrderedPool(), Silent(), budget)
+    return tmp_path / "run"
+
+
+def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+def test_a_front_without_a_removed_segment_ends_with_exit_code_four(run: Path) -> None:
+    whole = call("front", run, "--json")
+    assert (whole.returncode, whole.stderr) == (0, "")
+    (run / "001.mcap").unlink()
+    done = call("front", run, "--json")
+    assert done.returncode == 4
+    assert json.loads(done.stdout)["evaluations"] == 36
+    assert "note: segment 1 of the run is missing\n" in done.stderr
+    assert MISSING in done.stderr
+    assert "exit code 4, or 0 with --damaged" in done.stderr
+    accepted = call("front", run, "--json", "--damaged")
+    assert (accepted.returncode, accepted.stdout) == (0, done.stdout)
+    assert MISSING in accepted.stderr
+
+
+def test_a_comparison_with_a_damaged_run_ends_with_exit_code_four(run: Path, tmp_path: Path) -> None:
+    other = shutil.copytree(run, tmp_path / "other")
+    (run / "001.mcap").write_bytes(b"")
+    done = call("compare", other, run, "--json")
+    assert done.returncode == 4
+    assert "run: missing evaluations: 24 to 47" in done.stderr
+    assert f"{other} is damaged" not in done.stderr
+    assert json.loads(done.stdout)["comparisons"]
+    assert call("compare", other, run, "--damaged").returncode == 0
+
+
+def test_the_page_of_a_damaged_run_says_what_is_missing(run: Path, repository: Path, tmp_path: Path) -> None:
+    """With the robots of a golden run, of which some bytes are changed."""
+    golden = shutil.copytree(repository / "tests/golden/lifting/format-2", tmp_path / "golden")
+    content = bytearray((golden / "000.mcap").read_bytes())
+    content[content.index(b"zstd", content.index(b"zstd", 40) + 40) + 30] ^= 0x20
+    (golden / "000.mcap").write_bytes(content)
+    done = call("report", golden, "--output", tmp_path / "page.html")
+    assert done.returncode == 4, done.stderr
+    assert "note: 000.mcap is damaged" in done.stderr
+    assert page_content(read_run(golden), ()).notes[0].startswith("000.mcap is damaged")
+    assert call("report", golden, "--output", tmp_path / "page.html", "--damaged").returncode == 0
+    shown = call("show", golden, 4, "--json")
+    assert (shown.returncode, json.loads(shown.stdout)["id"]) == (4, 4)
+    assert call("export", golden, 4, "--to", tmp_path / "design").returncode == 4
+    assert (tmp_path / "design/postures.json").exists()
+    assert call("export", golden, 4, "--to", tmp_path / "again", "--damaged").returncode == 0
+
+
+def test_a_run_whose_session_was_killed_is_not_damaged(run: Path) -> None:
+    path = run / "002.mcap"
+    path.write_bytes(path.read_bytes()[:-3000])
+    done = call("front", run)
+    assert done.returncode == 0
+    assert "its session was killed, or is still writing" in done.stderr
+
+
+def test_verify_tells_each_gap_once(run: Path) -> None:
+    (run / "001.mcap").unlink()
+    done = call("verify", run)
+    assert done.returncode == 2
+    assert done.stdout.count("missing evaluations: 24 to 47") == 1
+    assert "segment 1 of the run is missing" in done.stdout
