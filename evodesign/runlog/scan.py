@@ -14,7 +14,6 @@ Source: the MCAP specification, version 0 (mcap.dev/spec); the written files are
 
 from __future__ import annotations
 
-import math
 import struct
 import zlib
 from collections.abc import Callable, Iterator
@@ -304,9 +303,10 @@ def attached_header(body: bytes) -> bytes | None:
         return b""
 
 
-def _indexed(body: bytes) -> float:
-    """How many messages a message index has; infinitely many if the body has not its shape."""
+def _indexed(body: bytes) -> int:
+    """How many messages a message index has; more than any if the body has not its shape."""
     if len(body) < INDEX_START.size:
-        return math.inf
+        return LARGEST_CHUNK
     _, length = INDEX_START.unpack_from(body)
-    return length / INDEX_ENTRY if length == len(body) - INDEX_START.size else math.inf
+    entries, rest = divmod(length, INDEX_ENTRY)
+    return int(entries) if not rest and length == len(body) - INDEX_START.size else LARGEST_CHUNK

@@ -18,6 +18,9 @@ __all__ = ["Validity", "header_fault"]
 LARGEST_NUMBER: Final = 10**9
 """More evaluations than any run has: what is counted and listed stays bounded."""
 
+LARGEST_POPULATION: Final = 10**5
+"""More designs than any search asks for at once."""
+
 AGENTS: Final = frozenset(("robot", "human"))
 SIDES: Final = frozenset(("left", "right"))
 
@@ -34,7 +37,9 @@ def header_fault(header: RunHeader) -> str:
         return f"its search is of {search.objectives} objectives, and it has {len(objectives)}"
     if {search.dimension, len(search.counts), *lengths} != {len(parameters)}:
         return f"its search has other dimensions than its {len(parameters)} parameters"
-    if search.population < 1 or not 0 <= header.budget <= LARGEST_NUMBER:
+    if not parameters:
+        return "it has no parameters"
+    if not 1 <= search.population <= LARGEST_POPULATION or not 0 <= header.budget <= LARGEST_NUMBER:
         return f"its population is {search.population} and its budget {header.budget}"
     if any(each.lower > each.upper or len(each.materials) > len(each.choices) for each in header.parameters):
         return "the bounds or materials of a parameter contradict each other"
