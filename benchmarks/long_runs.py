@@ -101,7 +101,7 @@ def opening(folder: Path, evaluations: int) -> dict[str, Any]:
         for number in range(evaluations):
             log.evaluation(msgspec.structs.replace(some[number % 1000], number=number))
     size = (folder / "large" / "000.mcap").stat().st_size
-    command = [sys.executable, "-m", "evodesign.cli", "front", str(folder / "large")]
+    command = [sys.executable, "-m", "evodesign", "front", str(folder / "large")]
     began = time.perf_counter()
     subprocess.run(command, check=True, capture_output=True)
     command_seconds = time.perf_counter() - began

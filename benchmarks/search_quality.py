@@ -89,7 +89,7 @@ def _search(problem: Path, folder: Path, algorithm: str, seed: int, options: arg
         "--population": options.population,
         "--jobs": options.jobs,
     }
-    command = [sys.executable, "-m", "evodesign.cli", "search", str(problem)]
+    command = [sys.executable, "-m", "evodesign", "search", str(problem)]
     command += ["--run", str(run), "--algorithm", algorithm, "--json"]
     command += [str(part) for pair in numbers.items() for part in pair]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

@@ -22,7 +22,7 @@ from evodesign.runlog.directory import segments
 
 POPULATION, BUDGET, SEED = 4, 12, 3
 SIZES: dict[str, Any] = {"population": POPULATION, "evaluations": BUDGET, "seed": SEED}
-COMMAND = [sys.executable, "-m", "evodesign.cli"]
+COMMAND = [sys.executable, "-m", "evodesign"]
 TIMES = re.compile(rb'"(seconds|started|worker)":("[^"]*"|[^,}]*)')
 
 

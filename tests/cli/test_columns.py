@@ -212,7 +212,7 @@ def test_a_terminal_says_how_wide_tables_are(place: Path) -> None:
     fcntl.ioctl(shell, termios.TIOCSWINSZ, struct.pack("4H", 24, NARROW, 0, 0))
     environment = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
     environment |= {"TERM": "xterm", "NO_COLOR": "1", "PYTHONPATH": str(GOLDEN.parents[1])}
-    command = [sys.executable, "-m", "evodesign.cli", "front", "run"]
+    command = [sys.executable, "-m", "evodesign", "front", "run"]
     done = subprocess.run(command, stdout=shell, stderr=subprocess.PIPE, env=environment, check=False)
     os.close(shell)
     assert done.returncode == 0, done.stderr

@@ -17,7 +17,7 @@ from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
-COMMAND = [sys.executable, "-m", "evodesign.cli"]
+COMMAND = [sys.executable, "-m", "evodesign"]
 MISSING = "note: missing evaluations: 24 to 47"
 
 

@@ -135,7 +135,8 @@ def test_runs_of_one_and_of_five_objectives_have_a_table(
     objectives = tuple(
         Objective(name=f"number_{index}", sense=Sense.MINIMISE, unit="kg") for index in range(count)
     )
-    header = msgspec.structs.replace(HEADER, objectives=objectives)
+    search = msgspec.structs.replace(HEADER.search, objectives=count)
+    header = msgspec.structs.replace(HEADER, objectives=objectives, search=search)
     run = [_with_objectives(each, objectives) for each in RUN]
     place = logged(tmp_path / "run", header, run)
     for options in ({}, {"knee": True}, {"different": True}, {"near": "number_0=0"}):

@@ -26,7 +26,7 @@ DIGEST = "0f0f30b2b942b4a73f189ccebe3fd05e92fdbd5821fa3e5a7fa29c8acdb4268b"
 
 LIFTING = FOLDER / "lifting"
 LIFTING_DIGEST = "b54f105def3043c833e7e53f7dc77237624016cccfd71dfa0f014f11a03c6e65"
-COMMAND = [sys.executable, "-m", "evodesign.cli"]
+COMMAND = [sys.executable, "-m", "evodesign"]
 
 
 @pytest.fixture(params=VERSIONS)

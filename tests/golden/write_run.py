@@ -27,7 +27,7 @@ def main() -> None:
     search = [
         sys.executable,
         "-m",
-        "evodesign.cli",
+        "evodesign",
         "search",
         "problem.toml",
         "--run",
