@@ -65,6 +65,15 @@ class Interrupts:
         self.unwinding = True
         raise KeyboardInterrupt
 
+    def check(self) -> None:
+        """Raise an interrupt again that was lost: some libraries clear every error while they load.
+
+        Raises:
+            KeyboardInterrupt: there was one.
+        """
+        if self.unwinding:
+            raise KeyboardInterrupt
+
     def end(self, code: int) -> None:
         """All is done, and the exit code is known."""
         self._handle(lambda: os._exit(code))

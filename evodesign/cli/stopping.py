@@ -37,6 +37,7 @@ class SignalledStop:
     """
 
     def __init__(self, hours: float | None, run: Path, grace_seconds: float = GRACE_SECONDS) -> None:
+        INTERRUPTS.check()
         INTERRUPTS.run = run
         self._hours = hours
         self._grace = grace_seconds
@@ -49,7 +50,7 @@ class SignalledStop:
 
     def __call__(self) -> bool:
         """Whether no further evaluation is to begin."""
-        return self._asked.is_set()
+        return self._asked.is_set() or INTERRUPTS.unwinding
 
     @property
     def why(self) -> str:
@@ -64,6 +65,7 @@ class SignalledStop:
             signal.setitimer(signal.ITIMER_REAL, max(self._end - time.monotonic(), 1e-3))
         self._heeded = True
         try:
+            INTERRUPTS.check()
             yield
         finally:
             self._heeded = False

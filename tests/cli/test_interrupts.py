@@ -7,11 +7,13 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from evodesign.evolve import Silent, start
+from evodesign.interrupts import Interrupts
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.runlog.directory import segments
 from evodesign.runlog.run import read_run
@@ -120,3 +122,12 @@ def test_a_command_in_the_background_ignores_what_its_terminal_sends(tmp_path: P
         signal.signal(signal.SIGINT, handler)
     assert done.returncode == 0
     assert "the run lies in" in done.stdout
+
+
+def test_an_interrupt_that_a_library_swallows_is_raised_again() -> None:
+    interrupts = Interrupts()
+    interrupts.check()
+    with suppress(KeyboardInterrupt):
+        interrupts.interrupt()
+    with pytest.raises(KeyboardInterrupt):
+        interrupts.check()
