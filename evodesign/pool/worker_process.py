@@ -14,9 +14,9 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import Any, Generic
 
-from joblib.externals.loky.backend import resource_tracker
 from joblib.externals.loky.process_executor import (
     BrokenProcessPool,
     ProcessPoolExecutor,
@@ -129,7 +129,7 @@ class WorkerProcess(Generic[A, R]):
 @contextmanager
 def _interrupts_held_off() -> Iterator[None]:
     """Processes and threads begun within this never see Ctrl-C, not even before `start_worker`."""
-    resource_tracker.ensure_running()  # which lets interrupts in when it has to begin
+    resource_tracker.ensure_running()  # loky begins it otherwise, and it lets interrupts in when it has begun
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
         yield
