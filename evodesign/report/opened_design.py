@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from evodesign.analysis.front import front
-from evodesign.errors import InputError, RunError
+from evodesign.errors import InputError, RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN
 from evodesign.records import CaseDetail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
@@ -79,12 +79,19 @@ class OpenedDesign:
 
         Raises:
             InputError: the people cannot be told from the header's problem.
+            RunError: it has not the person of a case.
         """
         if not self.cases:
             return ()
         from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
 
         people = self.rebuilt.people
+        stranger = next((each.case.person for each in self.cases if each.case.person not in people), None)
+        if stranger is not None:
+            name = on_one_line(stranger)
+            raise RunError(
+                f"{self.run.directory}: its problem has no person '{name}', of whom it has postures"
+            )
         return tuple(ergonomics(people[detail.case.person], detail.agents[HUMAN]) for detail in self.cases)
 
 

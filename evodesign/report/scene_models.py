@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Shape
+from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.tree.frames import link_frames
@@ -205,8 +206,19 @@ class SceneSet:
         return tuple({models.payload.label: models.payload for models in self.models}.values())
 
     def models_of(self, detail: CaseDetail) -> SceneModels:
-        """Who stands there in a logged case."""
-        return next(models for models in self.models if models.pair == detail.case.pair)
+        """Who stands there in a logged case.
+
+        Raises:
+            RunError: the run's problem has not its person, load or joints.
+        """
+        models = next((models for models in self.models if models.pair == detail.case.pair), None)
+        if models is None or not all(
+            posture.torques_n_m.keys() == posture.joints_rad.keys() <= models.trees[name].joint_by_name.keys()
+            for name, posture in detail.agents.items()
+        ):
+            case = on_one_line(detail.case.name)
+            raise RunError(f"the logged postures of case '{case}' are not those of the run's problem")
+        return models
 
     def placed_scene(self, detail: CaseDetail) -> PlacedScene:
         """The stage of a logged case."""

@@ -123,7 +123,9 @@ def _valid(segment: Segment, validity: Validity, strange: list[str]) -> Segment:
     faults: list[str] = []
 
     def kept(records: tuple[R, ...]) -> tuple[R, ...]:
-        return tuple(record for record in records if not _noted(validity.fault(record), faults))
+        wrong = {place: fault for place, record in enumerate(records) if (fault := validity.fault(record))}
+        faults.extend(wrong.values())
+        return tuple(each for place, each in enumerate(records) if place not in wrong) if wrong else records
 
     valid = replace(
         segment,
@@ -136,12 +138,6 @@ def _valid(segment: Segment, validity: Validity, strange: list[str]) -> Segment:
         many = f"{len(faults)} records contradict" if len(faults) > 1 else "a record contradicts"
         strange.append(f"{segment.path.name}: {many} the header and are left out ({faults[0]})")
     return valid
-
-
-def _noted(fault: str, faults: list[str]) -> bool:
-    if fault:
-        faults.append(fault)
-    return bool(fault)
 
 
 def _by_number(segments: list[Segment]) -> tuple[tuple[Evaluation, ...], list[str]]:

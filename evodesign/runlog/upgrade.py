@@ -15,7 +15,6 @@ whatever became of its segment's header.
 from __future__ import annotations
 
 import re
-from contextlib import suppress
 from typing import Any, Final
 
 import msgspec
@@ -40,8 +39,10 @@ def record_of(topic: str, data: bytes) -> msgspec.Struct:
         msgspec.MsgspecError, UnicodeDecodeError: it holds none of its topic.
     """
     if topic != RUN:
-        with suppress(msgspec.ValidationError):
+        try:
             return msgspec.json.decode(data, type=RECORDS[topic])
+        except msgspec.ValidationError:
+            pass  # it may be of an earlier format
     return msgspec.convert(upgraded(msgspec.json.decode(data)), RECORDS[topic])
 
 

@@ -6,15 +6,21 @@ import json
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import pytest
 
 from evodesign.evolve import resume, start
 from evodesign.report.page import page_content
+from evodesign.runlog.channels import DETAIL
+from evodesign.runlog.reader import entries
 from evodesign.runlog.run import read_run
 from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import synthetic_header
+from tests.runlog import crafted
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 COMMAND = [sys.executable, "-m", "evodesign"]
@@ -94,3 +100,48 @@ def test_verify_tells_each_gap_once(run: Path) -> None:
     assert done.returncode == 2
     assert done.stdout.count("missing evaluations: 24 to 47") == 1
     assert "segment 1 of the run is missing" in done.stdout
+
+
+def with_other_postures(golden: Path, to: Path, change: Callable[[Any], None]) -> Path:
+    """A copy of a golden run, with right checksums, in which every logged case is changed."""
+    to.mkdir()
+    parts = [crafted.channels()]
+    for entry in entries(golden / "000.mcap"):
+        value = msgspec.json.decode(msgspec.json.encode(entry.record))
+        for case in value["cases"] if entry.topic == DETAIL else ():
+            change(case)
+        parts.append(crafted.told(entry.topic, value, entry.sequence))
+    (to / "000.mcap").write_bytes(crafted.segment(map(crafted.chunk, parts)))
+    return to
+
+
+def with_a_stranger(case: Any) -> None:
+    case["case"]["person"] = "nobody"
+
+
+def with_strange_joints(case: Any) -> None:
+    for agent in case["instants"][0]["agents"].values():
+        agent |= {"joints_rad": {"tail": 0.0}, "torques_n_m": {"tail": 1.0}}
+
+
+@pytest.mark.parametrize("change", [with_a_stranger, with_strange_joints])
+def test_postures_that_are_not_of_the_runs_problem_are_refused_in_a_sentence(
+    change: Callable[[Any], None], repository: Path, tmp_path: Path
+) -> None:
+    golden = repository / "tests/golden/lifting/format-2"
+    run = with_other_postures(golden, tmp_path / "changed", change)
+    done = call("export", run, 4, "--to", tmp_path / "design")
+    assert done.returncode == 2, done.stderr
+    assert "are not those of the run's problem" in done.stderr
+    assert "Traceback" not in done.stderr
+    same = with_other_postures(golden, tmp_path / "same", lambda case: None)
+    assert call("export", same, 4, "--to", tmp_path / "other").returncode == 0
+
+
+def test_a_card_of_a_person_that_the_problem_has_not_is_refused_in_a_sentence(
+    repository: Path, tmp_path: Path
+) -> None:
+    golden = repository / "tests/golden/lifting/format-2"
+    done = call("show", with_other_postures(golden, tmp_path / "run", with_a_stranger), 4)
+    assert done.returncode == 2, done.stderr
+    assert "its problem has no person 'nobody'" in done.stderr
