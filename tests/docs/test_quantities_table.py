@@ -1,4 +1,4 @@
-"""docs/choosing.md lists every quantity that can be an objective or a constraint, as the code has it."""
+"""The README lists every quantity that can be an objective or a constraint, as the code has it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from evodesign.records import Sense
 @pytest.fixture(scope="module")
 def rows(repository: Path) -> dict[str, list[str]]:
     """The table's cells after the name, by name."""
-    text = (repository / "docs" / "choosing.md").read_text(encoding="utf-8")
-    section = text.split("## Quantities")[1].split("\n## ")[0]
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    section = text.split("### Quantities")[1].split("\n#")[0]
     lines = [line for line in section.splitlines() if line.startswith("| `")]
     cells = [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in lines]
     return {name: rest for name, *rest in cells}
