@@ -90,9 +90,11 @@ def folder(work: Path) -> None:
     ("make", "kind"),
     [
         (pipe, "001.mcap: wanted a file, found a named pipe"),
-        (device, "000.mcap: wanted a file, found a symbolic link"),
-        (link_elsewhere, "000.mcap: wanted a file, found a symbolic link"),
-        (folder, "001.mcap: wanted a file, found a directory"),
+        pytest.param(device, "000.mcap: wanted a file, found a symbolic link", marks=pytest.mark.slow),
+        pytest.param(
+            link_elsewhere, "000.mcap: wanted a file, found a symbolic link", marks=pytest.mark.slow
+        ),
+        pytest.param(folder, "001.mcap: wanted a file, found a directory", marks=pytest.mark.slow),
     ],
 )
 def test_what_is_no_regular_file_is_refused_by_every_command(
@@ -122,6 +124,7 @@ def test_a_sparse_segment_of_ten_gigabytes_is_refused_by_every_command(work: Pat
         assert (code, errors.count("\n")) == (2, 1), f"{name}: {errors}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("share", "evaluations"), [(0.3, range(1, 12)), (0.9, range(12, 13))])
 def test_what_stands_around_a_hole_of_ten_gigabytes_is_read(
     share: float, evaluations: range, work: Path

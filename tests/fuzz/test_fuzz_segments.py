@@ -25,7 +25,7 @@ from tests.faults.synthetic import synthetic_header
 from tests.runlog import crafted
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
-QUICK_CASES, CASES = 300, 10_000
+QUICK_CASES, CASES = 100, 1_500
 
 HEADER = synthetic_header(budget=24, seed=4, population=12)
 STRANGE: tuple[Any, ...] = (
