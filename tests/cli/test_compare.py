@@ -36,12 +36,16 @@ def logged(directory: Path, seed: int, algorithm: str, count: int, objectives: i
         header,
         problem_name=NAME if objectives == 2 else "other",
         objectives=header.objectives[:objectives],
-        search=msgspec.structs.replace(header.search, algorithm=algorithm, seed=seed),
+        search=msgspec.structs.replace(header.search, algorithm=algorithm, seed=seed, objectives=objectives),
     )
+    names = {objective.name for objective in header.objectives}
     evaluations = toy_evaluations(toy_header(seed=seed + 10 * len(algorithm)), count)
     with RunWriter(directory, header) as writer:
         for evaluation in evaluations:
-            writer.evaluation(evaluation)
+            found = evaluation.assessment.objectives
+            values = {name: value for name, value in found.items() if name in names}
+            assessment = msgspec.structs.replace(evaluation.assessment, objectives=values)
+            writer.evaluation(msgspec.structs.replace(evaluation, assessment=assessment))
     return directory
 
 

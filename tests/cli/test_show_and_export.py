@@ -259,7 +259,8 @@ def toy_run(place: Path, objectives: int = 2, count: int = 8) -> Path:
     chosen = tuple(
         Objective(name=name, sense=senses[index % 2], unit="N m") for index, name in enumerate(names)
     )
-    header = msgspec.structs.replace(toy_header(), objectives=chosen)
+    search = msgspec.structs.replace(toy_header().search, objectives=objectives)
+    header = msgspec.structs.replace(toy_header(), objectives=chosen, search=search)
     evaluations = []
     for evaluation in toy_evaluations(header, count):
         found = evaluation.assessment.objectives

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 
 import msgspec
 import pytest
@@ -27,6 +28,10 @@ class Counting:
     value: float = 1.0 / 3.0
     seconds: float = 0.0
     limits: Limits = field(default_factory=Limits)
+
+    @property
+    def problem(self) -> SimpleNamespace:
+        return SimpleNamespace(objectives=())
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         return self.assess

@@ -192,4 +192,4 @@ def test_cases_are_a_data_frame_with_people_and_loads(run: RunLog) -> None:
         outcomes = run.evaluations[int(str(number))].assessment.cases
         assert [*own.robot_torque] == [one.robot_torque_norm for one in outcomes]
         assert [*own.human_torque] == [one.human_torque_norm for one in outcomes]
-    assert opened.cases(opened.designs[:1])["number"] == [0] * len(CASES)
+    assert opened.cases(opened.designs[:1])["number"].tolist() == [0] * len(CASES)

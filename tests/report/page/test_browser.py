@@ -258,13 +258,16 @@ def toy_run(
         problem_name=title,
         objectives=(*toy_header().objectives, *more)[:objectives],
         parameters=parameters,
+        search=msgspec.structs.replace(toy_header().search, objectives=objectives),
     )
+    names = {objective.name for objective in header.objectives}
     with RunWriter(directory, header) as log:
         for evaluation in toy_evaluations(header, count):
             if feasible or not evaluation.feasible:
                 found = evaluation.assessment
                 values = {one.name: (0.5 - evaluation.genome[i % 2]) ** 2 for i, one in enumerate(more)}
-                found = msgspec.structs.replace(found, objectives={**found.objectives, **values})
+                values = {name: value for name, value in (found.objectives | values).items() if name in names}
+                found = msgspec.structs.replace(found, objectives=values)
                 log.evaluation(msgspec.structs.replace(evaluation, assessment=found))
     return read_run(directory)
 

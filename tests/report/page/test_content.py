@@ -170,12 +170,17 @@ def test_run_without_feasible_design_shows_the_nearest(tmp_path: Path) -> None:
 def test_any_number_of_objectives(tmp_path: Path, count: int) -> None:
     more = tuple(Objective(name=f"more.{i}", sense=Sense.MINIMISE, unit="kg") for i in range(3))
     objectives = (*toy_header().objectives, *more)[:count]
-    header = msgspec.structs.replace(toy_header(), objectives=objectives)
+    search = msgspec.structs.replace(toy_header().search, objectives=count)
+    header = msgspec.structs.replace(toy_header(), objectives=objectives, search=search)
+    names = {objective.name for objective in objectives}
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in toy_evaluations(header, 30):
             assessment = evaluation.assessment
             values = {one.name: evaluation.genome[0] + i for i, one in enumerate(more)}
-            assessment = msgspec.structs.replace(assessment, objectives={**assessment.objectives, **values})
+            values = {
+                name: value for name, value in (assessment.objectives | values).items() if name in names
+            }
+            assessment = msgspec.structs.replace(assessment, objectives=values)
             log.evaluation(msgspec.structs.replace(evaluation, assessment=assessment))
     made = page_content(read_run(tmp_path / "run"))
     assert list(made.points.objectives) == [objective.name for objective in objectives]
