@@ -91,8 +91,8 @@ def search(
     budgets = Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations)
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
     display = _display(callback, progress)
-    with _ended_by_time(directory) as deadline:
-        begin(built, directory, settings, budgets, workers, display, deadline)
+    with _ended_by_time() as deadline:
+        return Run(begin(built, directory, settings, budgets, workers, display, deadline))
     return open_run(directory)
 
 
@@ -139,8 +139,8 @@ def resume(
     budgets = Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations)
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
     display = _display(callback, progress)
-    with _ended_by_time(directory) as deadline:
-        proceed(directory, budgets, workers, display, deadline, accept_versions=accept_versions)
+    with _ended_by_time() as deadline:
+        return Run(proceed(directory, budgets, workers, display, deadline, accept_versions=accept_versions))
     return open_run(directory)
 
 
@@ -151,7 +151,7 @@ def _at_least(least: int, **given: float | None) -> None:
 
 
 @contextmanager
-def _ended_by_time(directory: Path) -> Iterator[Callable[[float | None], Deadline]]:
+def _ended_by_time() -> Iterator[Callable[[float | None], Deadline]]:
     """Makes the stop of a session; where its time ends a run that has begun, that is no error."""
     made: list[Deadline] = []
 
