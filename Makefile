@@ -7,6 +7,9 @@ BIN := $(VENV)/bin
 PROBLEM ?= problems/icub_lifting.toml
 RUN ?=
 JOBS ?= 2
+KILLS ?= 1000
+MINUTES ?= 10
+FOLDER ?=
 PYTEST := $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 QUICK := tests/analysis tests/body tests/conformance/test_searches.py tests/design tests/golden tests/human tests/runlog \
 	tests/searches tests/test_evolve.py tests/tree
@@ -14,7 +17,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test test-quick test-all test-bare check bench faults robot api clean
+.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot api clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST) | expand --tabs=20
@@ -28,6 +31,10 @@ $(VENV)/installed-dev: $(VENV)/installed
 	$(PIP) --editable '.[test,check]'
 	@touch $@
 
+$(VENV)/installed-robots: $(VENV)/installed-dev
+	$(PIP) --editable '.[robots]'
+	@touch $@
+
 install: $(VENV)/installed  ## the virtual environment with evodesign in it
 
 search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, JOBS=)
@@ -39,7 +46,7 @@ test: $(VENV)/installed-dev  ## the tests, but for the slow ones
 test-quick: $(VENV)/installed-dev  ## the tests that take no minute, for every save
 	$(PYTEST) -m 'not slow and not prepared' $(QUICK)
 
-test-all: $(VENV)/installed-dev  ## every test
+test-all: $(VENV)/installed-robots  ## every test (150 MB of public robots are installed for them)
 	$(PYTEST)
 
 test-bare:  ## what the tests make of a machine without a browser and a C compiler
@@ -51,7 +58,7 @@ check: $(VENV)/installed-dev  ## format, lint, types, import contracts
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
+bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/results
 	$(BIN)/python benchmarks/search_quality.py
 	$(BIN)/python -m benchmarks.catalogue_quality --population 24
 	$(BIN)/python benchmarks/evolution_vs_gradient.py
@@ -65,9 +72,13 @@ bench: $(VENV)/installed-dev  ## measured ratios, written to benchmarks/results
 	$(BIN)/python -m benchmarks.disturbed_speed
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
+	$(BIN)/python -m benchmarks.public_robots
 
-faults: $(VENV)/installed-dev  ## kill searches and damage logs, hundreds of times (half an hour)
-	$(BIN)/python -m tests.faults.campaign
+faults: $(VENV)/installed-dev  ## kill searches and commands 1,000 times, damage logs (KILLS=, FOLDER= to go on)
+	$(BIN)/python -m tests.faults.campaign --kills $(KILLS) $(if $(FOLDER),--folder $(FOLDER))
+
+fuzz: $(VENV)/installed-dev  ## segments, problems, robots and designs spoilt by grammar, for MINUTES=10
+	$(BIN)/python -m tests.fuzz.fuzzer --minutes $(MINUTES)
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py

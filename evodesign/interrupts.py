@@ -2,6 +2,7 @@
 
     while modules load          it ends at once, with exit code 130: nothing has begun
     while the command works     KeyboardInterrupt; a search may hold it off (`cli.stopping`)
+    while a module of it loads  the same, once the module has loaded: libraries in C++ abort otherwise
     while it unwinds, or ends   it ends at once
 
 The exit code is 3 when there is a run to be resumed, and 130 before. This module loads nothing but the
@@ -14,6 +15,7 @@ import atexit
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -28,6 +30,9 @@ STOPPED = 3
 
 INTERRUPTED = 130
 """Exit code of what was stopped and leaves nothing to resume."""
+
+SOON = 0.02
+"""Seconds after which an interrupt comes again that came while a module was loaded."""
 
 SHOW_CURSOR = b"\x1b[?25h"
 
@@ -62,6 +67,11 @@ class Interrupts:
         """
         if self.unwinding:
             self._leave(self.code)
+        if _loading(sys._getframe()):
+            again = threading.Timer(SOON, os.kill, (os.getpid(), signal.SIGINT))
+            again.daemon = True
+            again.start()
+            return
         self.unwinding = True
         raise KeyboardInterrupt
 
@@ -115,6 +125,13 @@ class Interrupts:
         if issubclass(unraisable.exc_type, KeyboardInterrupt):
             self._leave(self.code)
         sys.__unraisablehook__(unraisable)
+
+
+def _loading(frame: FrameType | None) -> bool:
+    """Whether a module is loaded in a frame or in one that called it."""
+    while frame is not None and not frame.f_code.co_filename.startswith("<frozen importlib."):
+        frame = frame.f_back
+    return frame is not None
 
 
 INTERRUPTS = Interrupts()

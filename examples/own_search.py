@@ -1,11 +1,13 @@
 """A search of your own, in a file of your own: small steps from the best design so far. About a minute.
 
 Its name is MODULE:CLASS. It is logged, resumed and run in parallel like any other, for it is ready when
-constructed, and its random numbers come from the seed alone.
+constructed, and its random numbers come from the seed alone. EVODESIGN_MODULES names the modules that
+evodesign may import: a run that somebody sends executes nothing that you did not ask for.
 
     python examples/own_search.py [EVALUATIONS]
 """
 
+import os
 import sys
 
 import numpy as np
@@ -38,6 +40,7 @@ class SmallSteps:
 
 if __name__ == "__main__":
     evaluations = int(sys.argv[1]) if len(sys.argv) > 1 else 24
+    os.environ["EVODESIGN_MODULES"] = "own_search"
     search = {"algorithm": "own_search:SmallSteps", "population": 6, "seed": 1, "jobs": 2}
     run = evodesign.search("icub-lifting", "runs/steps", evaluations=evaluations // 2, **search)
     run = evodesign.resume("runs/steps", evaluations=evaluations, jobs=2)

@@ -17,6 +17,8 @@ from typing import NoReturn
 
 import pytest
 
+from tests.robots import robots_installed
+
 
 def leave_out(reason: str) -> NoReturn:
     """End a test that this machine cannot run."""
@@ -60,6 +62,7 @@ def compiler_works() -> bool:
 NEEDS: dict[str, tuple[Callable[[], object], str]] = {
     "needs_chromium": (chromium, "no Chromium (Debian: apt-get install chromium)"),
     "needs_compiler": (compiler_works, "no C compiler that works (Debian: apt-get install gcc libc6-dev)"),
+    "needs_robots": (robots_installed, "no public robots (pip install 'evodesign[robots]')"),
 }
 """By marker: whether this machine has what is needed, and the reason and remedy if not."""
 

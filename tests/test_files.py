@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import tomllib
 from pathlib import Path
 
 import pytest
 
-from evodesign.files import replacing, write_folder, write_whole
+from evodesign.errors import InputError
+from evodesign.files import is_there, replacing, write_folder, write_whole
+from evodesign.problem.source import read_source, source_of
 from tests.faults.test_disk import small_disk
 
 
@@ -86,3 +89,49 @@ def test_a_folder_that_is_there_is_left_as_it_is_when_a_new_one_is_wanted(tmp_pa
     with pytest.raises(FileExistsError):
         write_folder(tmp_path, {"other": b"1"}, new=True)
     assert names(tmp_path) == ["file"]
+
+
+def test_what_a_killed_process_left_of_a_file_goes_with_the_next_one(tmp_path: Path) -> None:
+    left = tmp_path / f".evodesign-{'0' * 16}.part"
+    left.write_bytes(b"half")
+    (tmp_path / ".evodesign-mine.part").write_bytes(b"of another name")
+    (tmp_path / f".evodesign-{'1' * 16}.part").symlink_to(tmp_path / ".evodesign-mine.part")
+    write_whole(tmp_path / "page", b"x")
+    assert not left.exists()
+    assert sorted(names(tmp_path)) == [f".evodesign-{'1' * 16}.part", ".evodesign-mine.part", "page"]
+
+
+def test_a_file_that_is_being_written_is_left_alone_by_others(tmp_path: Path) -> None:
+    with replacing(tmp_path / "one") as one:
+        one.write(b"1")
+        with replacing(tmp_path / "two") as two:
+            two.write(b"2")
+        assert len(names(tmp_path)) == 2
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"one": b"1", "two": b"2"}
+
+
+@pytest.mark.parametrize("part", ["", "segment.part"])
+def test_what_others_put_in_the_place_of_a_file_is_replaced_and_leads_nowhere(
+    part: str, tmp_path: Path
+) -> None:
+    (tmp_path / "far").write_text("far")
+    for name in ("page", "segment.part"):
+        (tmp_path / name).symlink_to(tmp_path / "far")
+    os.mkfifo(tmp_path / "pipe")
+    for name in ("page", "pipe"):
+        with replacing(tmp_path / name, part, follow=False) as file:
+            file.write(b"new")
+        assert not (tmp_path / name).is_symlink()
+        assert (tmp_path / name).read_bytes() == b"new"
+    assert (tmp_path / "far").read_text() == "far"
+
+
+@pytest.mark.parametrize("name", ["x" * 5000, "a\0b"], ids=["too long", "with a zero"])
+def test_a_name_that_no_file_can_have_is_nowhere(name: str, tmp_path: Path) -> None:
+    assert not is_there(tmp_path / name)
+    tables = tomllib.loads(read_source("icub-lifting").text)
+    tables["robot"]["urdf"] = name
+    with pytest.raises(InputError, match=r"robot\.urdf: wanted a readable file"):
+        source_of(tables, tmp_path)
+    with pytest.raises(InputError, match="PROBLEM: wanted a problem file"):
+        read_source(name)

@@ -173,6 +173,7 @@ def copied(tmp_path: Path) -> Path:
     return Path(shutil.copytree(identity.PACKAGE, tmp_path / "evodesign", ignore=skipped))
 
 
+@pytest.mark.slow
 def test_any_changed_line_below_is_another_code_and_none_beside(tmp_path: Path) -> None:
     package = copied(tmp_path)
     closure = import_closure(package, *EVALUATING)

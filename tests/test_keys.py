@@ -32,6 +32,8 @@ from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.source import decode_toml, read_source
 from evodesign.records import Hold, ProblemSource
 
+pytestmark = pytest.mark.slow
+
 
 @dataclass(frozen=True)
 class Change:

@@ -17,6 +17,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
+from evodesign.problem.notes import notes
 from evodesign.problem.shipped import shipped_problems
 from evodesign.problem.source import read_source, source_of
 from evodesign.records import (
@@ -122,6 +123,11 @@ class Problem:
     def built(self) -> DesignProblem:
         """Everything that the file says, with all names resolved."""
         return self._built
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a careful reader would ask about, such as a robot that was averaged with its mirror image."""
+        return notes(self.built)
 
     @property
     def tasks(self) -> tuple[Task, ...]:

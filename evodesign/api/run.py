@@ -9,13 +9,11 @@ import os
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, conditions, quantities
+from evodesign.api.columns import Column, case_columns, evaluation_columns
 from evodesign.api.design import Design
 from evodesign.errors import InputError
 from evodesign.files import write_whole
@@ -27,9 +25,6 @@ if TYPE_CHECKING:
     from optuna.storages import BaseStorage
 
 __all__ = ["Run", "open_run"]
-
-Column = NDArray[Any]
-"""A value per row: whole numbers, numbers, truth values, or texts."""
 
 
 def open_run(path: str | os.PathLike[str]) -> Run:
@@ -205,18 +200,7 @@ class Run:
             >>> table["number"].tolist(), table["feasible"].tolist()
             ([4, 2, 1], [True, True, True])
         """
-        rows = self._evaluations(designs)
-        columns = {
-            "number": _whole([row.number for row in rows]),
-            "generation": _whole([row.generation for row in rows]),
-            "feasible": np.array([row.feasible for row in rows], dtype=bool),
-            "status": _text([str(row.assessment.status) for row in rows]),
-            "violation": _real([row.assessment.violation for row in rows]),
-            "seconds": _real([row.seconds for row in rows]),
-        }
-        return columns | {
-            name: _real([value(row) for row in rows]) for name, value in self._quantities.items()
-        }
+        return evaluation_columns(self._evaluations(designs), self._quantities)
 
     def cases(self, designs: Sequence[Design] | None = None) -> dict[str, Column]:
         """Every case of designs as columns, a row per design, person, load and task.
@@ -233,18 +217,7 @@ class Run:
             >>> [*zip(cases["human"].tolist(), cases["height"].tolist())]
             [('short', 0.8), ('short', 1.0), ('tall', 0.8), ('tall', 1.0)]
         """
-        rows = [(row.number, found) for row in self._evaluations(designs) for found in row.assessment.cases]
-        return {
-            "number": _whole([number for number, _ in rows]),
-            "human": _text([outcome.case.person for _, outcome in rows]),
-            "payload": _text([outcome.case.payload for _, outcome in rows]),
-            "height": _real([outcome.case.task.height_m for _, outcome in rows]),
-            "status": _text([str(outcome.status) for _, outcome in rows]),
-            "reason": _text([outcome.reason for _, outcome in rows]),
-            "robot_torque": _real([outcome.robot_torque_norm for _, outcome in rows]),
-            "human_torque": _real([outcome.human_torque_norm for _, outcome in rows]),
-            "residual": _real([outcome.residual for _, outcome in rows]),
-        }
+        return case_columns(self._evaluations(designs))
 
     def to_optuna(
         self, storage: str | os.PathLike[str] | BaseStorage | None = None, study_name: str | None = None
@@ -314,20 +287,6 @@ class Run:
         return Design(
             evaluation.number, evaluation.assessment, postures, self.constraints, partial(_same, self.log)
         )
-
-
-def _whole(values: Sequence[int]) -> Column:
-    return np.array(values, dtype=np.int64)
-
-
-def _real(values: Sequence[float | None]) -> Column:
-    """Numbers; those that do not exist are not a number, also where none exists."""
-    return np.array(values, dtype=np.float64)
-
-
-def _text(values: Sequence[str]) -> Column:
-    """Texts; pandas would not see that an empty column of objects is one."""
-    return np.array(values, dtype=np.object_ if values else np.str_)
 
 
 def _same(log: RunLog) -> RunLog:

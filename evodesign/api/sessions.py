@@ -21,11 +21,11 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering, evaluation_factory
 from evodesign.problem.notes import notes
-from evodesign.problem.source import read_source
+from evodesign.problem.reread import reread
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
-from evodesign.runlog.directory import name_in_path, refuse_run, segments
+from evodesign.runlog.directory import name_in_path, segments
 from evodesign.runlog.header import header_of, renewed, source_differences, version_differences, versions
-from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.run import RunLog, read_run, refuse_run
 from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.session import Display, Evaluate
 
@@ -235,9 +235,9 @@ def _resumable(directory: Path, stop: Stop) -> Iterator[None]:
 
 
 def _note_changed_problem(source: ProblemSource, display: Display) -> None:
-    """Say so if the files that a run was started with hold something else now."""
+    """Say so if the files that a run was started with, here or below, hold something else now."""
     try:
-        now = read_source(source.path, source.symmetry)
+        now = reread(source, Path())
     except InputError:
         return  # moved, gone or never a file: the run has its own copy
     if differing := source_differences(source, now):

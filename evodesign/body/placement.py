@@ -62,6 +62,12 @@ class Placement:
         """Chain: `a_from_b @ b_from_c` is `a_from_c`."""
         return Placement(multiply(self.rotation, inner.rotation), self.apply(inner.translation))
 
+    @property
+    def inverse(self) -> Placement:
+        """The place of the outer frame in the inner one."""
+        back = transpose(self.rotation)
+        return Placement(back, scale(-1.0, rotate(back, self.translation)))
+
     def mirrored(self) -> Placement:
         """The placement on the other side, of a frame that is itself mirrored."""
         return Placement(mirrored_matrix(self.rotation), mirrored_point(self.translation))
@@ -106,11 +112,12 @@ def multiply(a: Matrix, b: Matrix) -> Matrix:
 def matrix_from_rpy(rpy: Sequence[float]) -> Matrix:
     """Rotation Rz(yaw) Ry(pitch) Rx(roll) of URDF's roll, pitch and yaw [rad]."""
     (sr, sp, sy), (cr, cp, cy) = [tuple(f(angle) for angle in rpy) for f in (math.sin, math.cos)]
-    return (
+    rows = (
         (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
         (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
         (-sp, cp * sr, cp * cr),
     )
+    return tuple(tuple(entry + 0.0 for entry in row) for row in rows)  # type: ignore[return-value]  # no -0.0
 
 
 def rpy_from_matrix(matrix: Matrix) -> tuple[float, float, float]:

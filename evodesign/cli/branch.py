@@ -35,6 +35,7 @@ def branch(
 
     from evodesign.api.sessions import new_directory
     from evodesign.cli.output import show_notes
+    from evodesign.interrupts import INTERRUPTS
     from evodesign.runlog.rewrite import begin_branch
     from evodesign.runlog.run import read_run
 
@@ -43,6 +44,7 @@ def branch(
     given = {name: value for name, value in asked.items() if value is not None}
     settings = replace(old.header.search, **given)
     directory = new_directory(old.header.problem_name) if to is None else to
+    INTERRUPTS.run = directory  # what there is of it when an interrupt comes is whole, and can be resumed
     past = begin_branch(old, directory, branch_from, settings)
     show_notes([f"{past} evaluations taken over from {run}; the new run lies in {directory}"])
     resume(

@@ -2,24 +2,41 @@
 
 from __future__ import annotations
 
-from evodesign.cli.options import Json, ProblemPath
+from dataclasses import asdict
+
+import typer
+
+from evodesign.cli.options import BAD_INPUT, Json, ProblemPath
 
 __all__ = ["check"]
 
 
 def check(problem: ProblemPath, json: Json = False) -> None:
-    """Read a problem and show what was understood: agents, load, task, and what each parameter changes."""
-    from evodesign.cli.output import console, print_json, show_notes
-    from evodesign.cli.tables.problem import model_tables
+    """Read a problem, show what was understood, and try whether the robot can do what is asked of it.
+
+    Agents, load, task, and what each parameter changes; then whether the robot stands on its soles, faces the
+    load, has hands that reach it, and holds it at one of the heights.
+    """
+    from evodesign.cli.output import console, print_json, print_lines, show_notes
+    from evodesign.cli.tables.problem import findings_table, model_tables, rules_table
     from evodesign.problem.build import build_problem
+    from evodesign.problem.inertia_rules import rule_differences
     from evodesign.problem.model_json import model_json
     from evodesign.problem.notes import notes
+    from evodesign.problem.preflight import preflight
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem))
     show_notes(notes(built))
+    found, differences = preflight(built), rule_differences(built)
     if json:
-        print_json(model_json(built))
-        return
-    for table in model_tables(built):
-        console().print(table)
+        tried, rules = [asdict(each) for each in found], [asdict(each) for each in differences]
+        print_json({**model_json(built), "inertia_rules": rules, "preflight": tried})
+    else:
+        rules_tables = [rules_table(differences)] if differences else []
+        for table in (*model_tables(built), *rules_tables, findings_table(found)):
+            console().print(table)
+    faults = [each.fault for each in found if each.fault]
+    print_lines(*(f"error: {fault}" for fault in faults), stderr=True)
+    if faults:
+        raise typer.Exit(BAD_INPUT)

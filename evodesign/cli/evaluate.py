@@ -33,16 +33,18 @@ def evaluate(
     json: Json = False,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals."""
-    from evodesign.cli.output import console, print_json
+    from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.design import design_tables
     from evodesign.problem.build import build_problem
     from evodesign.problem.evaluation_json import evaluation_json
     from evodesign.problem.factory import evaluator_of
+    from evodesign.problem.notes import notes
     from evodesign.problem.sensitivities import Sensitivities
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem, symmetry))
+    show_notes(notes(built))
     chosen, values = _chosen(built, design, name)
     with precompute_progress() as progress:
         evaluator = evaluator_of(built, jobs, progress)

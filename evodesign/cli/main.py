@@ -22,7 +22,9 @@ from evodesign.cli.compare import compare
 from evodesign.cli.evaluate import evaluate
 from evodesign.cli.export import export
 from evodesign.cli.front import front
+from evodesign.cli.init import init
 from evodesign.cli.merge import merge
+from evodesign.cli.options import BAD_INPUT
 from evodesign.cli.polish import polish
 from evodesign.cli.problems import problems
 from evodesign.cli.recover import recover
@@ -38,8 +40,6 @@ from evodesign.errors import EvodesignError, Interrupted
 from evodesign.interrupts import STOPPED
 
 __all__ = ["COMMANDS", "app", "main"]
-
-BAD_INPUT = 2
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -57,6 +57,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "polish": polish,
     "check": check,
     "problems": problems,
+    "init": init,
     "starts": starts,
     "verify": verify,
     "recover": recover,

@@ -9,6 +9,9 @@ from typing import Annotated
 
 import typer
 
+BAD_INPUT = 2
+"""Exit code of what a user gave wrong."""
+
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -42,7 +45,10 @@ Damaged = Annotated[
 SymmetryName = Annotated[
     str | None,
     typer.Option(
-        "--symmetry", metavar="MODE", help="Postures: on, off or polish.", show_default="as in the problem"
+        "--symmetry",
+        metavar="MODE",
+        help="Postures: auto, on, off or polish.",
+        show_default="as in the problem",
     ),
 ]
 Evaluations = Annotated[

@@ -99,13 +99,13 @@ def show_notes(sentences: Iterable[str]) -> None:
     print_lines(*(f"note: {sentence}" for sentence in sentences), stderr=True)
 
 
-def write_text(path: Path, text: str, option: str) -> None:
-    """Write the file that an option names.
+def write_text(path: Path, text: str, option: str, *, follow: bool = True) -> None:
+    """Write the file that an option names, or would name; `follow` as in `files.replacing`.
 
     Raises:
         InputError: it cannot be written.
     """
     try:
-        write_whole(path, text.encode())
+        write_whole(path, text.encode(), follow=follow)
     except OSError as error:
         raise InputError(option, "", "a file that can be written", f"'{path}' ({error.strerror})") from error

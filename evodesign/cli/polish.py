@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -62,7 +63,9 @@ def polish(
     done = polishing.polish(evaluator, genome, aim, evaluations, lambda step: _show(step, evaluations))
     name = f"polished_{design}"
     remark = f"Design {design} of {problem.name}, polished for {', '.join(aim.weights)}."
-    write_text(file, designs_text(name, {name: done.values}, problem.space, remark), "--to")
+    write_text(
+        file, designs_text(name, {name: done.values}, problem.space, remark), "--to", follow=to is not None
+    )
     if json:
         print_json(polish_json(logged, design, aim, done, file))
         return
@@ -111,7 +114,7 @@ def _show(step: Step, budget: int) -> None:
 
 def _refuse_existing(file: Path) -> None:
     """Refuse to write over a file, before anything takes time."""
-    if file.exists():
+    if os.path.lexists(file):
         raise InputError("--to", "", "a new file", f"'{file}', which exists")
     if not file.parent.is_dir():
         raise InputError("--to", "", "a file in an existing directory", f"'{file}'")

@@ -50,7 +50,7 @@ def report(
     show_notes(content.notes)
     path = run / DEFAULT if output is None else output
     page = page_html(content)
-    write_text(path, page, "--output")
+    write_text(path, page, "--output", follow=output is not None)
     print_lines(f"{path} ({len(page.encode()) / 1e6:.1f} MB)")
     damage.end(opened, accepted=damaged)
 

@@ -25,6 +25,7 @@ from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import growth_of, resize
 from evodesign.tree.symmetry import mirror_of
+from evodesign.tree.welded import without_frames
 
 __all__ = [
     "ALLOCATIONS",
@@ -161,7 +162,8 @@ class DesignSpace:
         """Refuse parameters that make a mirror-symmetric tree unequal.
 
         Raises:
-            ModelError: naming a link whose mirror image is not in its group, or what in the tree differs.
+            ModelError: naming a link whose mirror image is not in its group, or what in the tree differs,
+                before or after resizing.
         """
         partners = mirror_of(tree).links
         for parameter in self.parameters:
@@ -169,6 +171,13 @@ class DesignSpace:
                 if partners[link] not in parameter.links:
                     found = f"'{link}' without '{partners[link]}'"
                     raise ModelError(tree.name, f"{parameter.name}.links", "both links of a pair", found)
+        values = self.unscaled(tree)
+        changed = [value * (1.1 + 0.01 * number) for number, value in enumerate(values)]
+        try:
+            mirror_of(without_frames(self.resized(tree, changed), ()))
+        except ModelError as error:
+            wanted = "parameters that keep the robot its own mirror image"
+            raise ModelError(tree.name, "design", wanted, f"others ({error})") from error
 
     def resized(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
         """The tree of a design.
@@ -206,11 +215,9 @@ class DesignSpace:
             return 1.0
         if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
-        solids = [
-            solid for name in parameter.links for solid in tree.link(name, f"{parameter.name}.links").solids
-        ]
-        volume = sum(float(solid.shape.volume) for solid in solids)
-        return sum(float(solid.mass) for solid in solids) / volume if volume else 0.0
+        links = [tree.link(name, f"{parameter.name}.links") for name in parameter.links]
+        volume = sum(float(link.volume) for link in links)
+        return sum(float(link.inertia.mass) for link in links) / volume if volume else 0.0
 
     def values(self, genome: Genome) -> tuple[float, ...]:
         """Parameter values of a genome."""

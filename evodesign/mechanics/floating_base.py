@@ -151,7 +151,10 @@ def _placement(placement: Placement) -> Any:
 
 
 def _body(inertia: Inertia) -> Any:
-    return pin.Inertia(float(inertia.mass), np.array(inertia.center), np.array(inertia.about_center))
+    body = pin.Inertia.Zero()  # whose constructor would refuse tensors that no body has, but files do
+    body.mass, body.lever = float(inertia.mass), np.array(inertia.center, dtype=float)
+    body.inertia = np.array(inertia.about_center, dtype=float)
+    return body
 
 
 def _joint_model(joint: Joint) -> Any:

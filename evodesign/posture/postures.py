@@ -61,8 +61,9 @@ FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetri
 
 
 class Symmetry(StrEnum):
-    """Which postures are looked for."""
+    """Which postures are looked for; `auto` becomes `on` or `off` when a problem is built."""
 
+    AUTO = "auto"
     ON = "on"
     OFF = "off"
     POLISH = "polish"

@@ -12,10 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.posture.results import AgentPosture, Array
+from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 from evodesign.tree.symmetry import Mirror, left_half, mirror_of
 
@@ -23,6 +25,9 @@ __all__ = ["Form", "half", "symmetric_forms", "whole"]
 
 POLAR = np.array([1.0, -1.0, 1.0])
 WRENCH = np.concatenate([POLAR, -POLAR])
+
+PARALLEL = 1e-9
+"""Entries of two rotations that differ by less are equal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +123,10 @@ def half(agent: Agent) -> Form:
         if mirror.links[frames["left"]] != frames["right"]:
             found = f"'{frames['left']}' and '{frames['right']}'"
             raise ModelError(agent.tree.name, f"{agent.name}.{noun}", "mirror images of each other", found)
+        if frames["left"] not in mirror.left:
+            key, found = f"{agent.name}.{noun}.left", f"'{frames['left']}'"
+            raise ModelError(agent.tree.name, key, "a frame to the left of the middle (y > 0)", found)
+    _refuse_turned_soles(agent)
     for name in agent.joints:
         if mirror.joints[name] not in agent.joints:
             found = f"'{name}' without '{mirror.joints[name]}'"
@@ -129,6 +138,17 @@ def half(agent: Agent) -> Form:
         if name in kept and not (mirror.joints[name] == name and mirror.signs[name] < 0.0)
     )
     return Form(agent, joints, ("left",), mirror)
+
+
+def _refuse_turned_soles(agent: Agent) -> None:
+    """Refuse soles whose frames are no mirror images: wrenches on feet live in them (x forward, z up)."""
+    frames = link_frames(agent.tree, Placement(), {})
+    left, right = (frames[agent.soles[side]] for side in SIDES)
+    turn = np.abs(np.array(left.mirrored().rotation) - np.array(right.rotation)).max()
+    if turn > PARALLEL:
+        found = f"'{agent.soles['left']}' and '{agent.soles['right']}', which are turned differently"
+        wanted = "frames that are mirror images of each other"
+        raise ModelError(agent.tree.name, f"{agent.name}.soles", wanted, found)
 
 
 def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
@@ -159,7 +179,8 @@ def _refuse_lopsided(disturbance: Disturbance, forms: tuple[Form, Form]) -> None
         raise ModelError(where, "", "y = 0 everywhere in a symmetric scene", "a part along y")
     for form in forms:
         pushed = any(disturbance.push_on(PushedAt(form.agent.name)))
-        if pushed and form.mirror and not form.mirror.is_middle(form.agent.pushed_frame):
+        frame = form.agent.pushed_frame if pushed else ""
+        if pushed and form.mirror and (not form.mirror.is_middle(frame) or frame in form.mirror.loose):
             found = f"'{form.agent.pushed_frame}'"
             raise ModelError(where, "", "a push on the middle line in a symmetric scene", found)
 

@@ -1,19 +1,16 @@
-"""Robot and people of a problem file: frames and joints resolved, populations unfolded, strengths, limits.
+"""Robot and people of a problem file: frames and joints resolved, populations unfolded, strengths.
 
-A population's table stands for one person per sex and percentile. Limits of the robot's joint torques are the
-URDF's effort limits, or what the problem file says instead.
+A population's table stands for one person per sex and percentile.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
-from fnmatch import fnmatchcase
 
 import msgspec
 
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
@@ -21,32 +18,51 @@ from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent
-from evodesign.problem.file import FrameTable, HandsTable, HumanTable, ProblemFile, SolesTable, TorqueLimits
-from evodesign.records import ProblemSource, Sense
+from evodesign.problem.file import (
+    Facing,
+    FrameTable,
+    HandsTable,
+    HumanTable,
+    ProblemFile,
+    SolesTable,
+    TorqueLimits,
+)
+from evodesign.problem.meshes import with_surfaces
+from evodesign.problem.torque_limits import torque_limits
+from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
 __all__ = [
-    "PEAK_TORQUE",
     "everyone",
     "human_agents",
     "refuse_unknown",
-    "refuse_unlimited",
-    "refuse_unlimited_peak",
     "refuse_unrated",
     "robot_agent",
-    "torque_limits",
 ]
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     """The robot of the `[robot]` table."""
     table = tables.robot
-    bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.SHAPES)
-    tree = _with_frames(bare, table.frames, ROBOT, source)
+    bare = read_urdf(source.files[table.urdf], table.urdf, table.inertia)
+    seen = with_surfaces(bare, source.files, source.path) if table.meshes else bare
+    tree = _with_frames(_turned(seen, table.facing), table.frames, ROBOT, source)
     agent = _agent(ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
     hard = table.torque_limits is TorqueLimits.HARD
     return replace(agent, torque_limits=torque_limits(tables, source, agent), limits_torques=hard)
+
+
+def _turned(tree: Tree, facing: Facing) -> Tree:
+    """The tree below a new root that looks along +x; as it is where it does so already."""
+    if facing is Facing.FORWARD:
+        return tree
+    root = f"{tree.root}_facing_x"
+    while root in tree.link_by_name:
+        root += "_"
+    place = Placement(transpose(facing.axes))
+    joint = Joint(f"{root}_fixed_joint", JointKind.FIXED, root, tree.root, place)
+    return replace(tree, links=(Link(root), *tree.links), joints=(joint, *tree.joints))
 
 
 def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...]:
@@ -90,7 +106,7 @@ def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     if table.hands is None or table.soles is None:
         lacking = "hands" if table.hands is None else "soles"
         raise InputError(source.path, f"{key}.{lacking}", "the frames of this URDF", "nothing")
-    bare = read_urdf(source.files[table.urdf], table.urdf, MassRule.FILE)
+    bare = read_urdf(source.files[table.urdf], table.urdf, InertiaRule.FILE)
     tree = _with_frames(bare, table.frames, key, source)
     return _agent(HUMAN, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
 
@@ -121,7 +137,7 @@ def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], table: str, source:
             raise InputError(source.path, f"{key}.name", "a new name", f"'{frame.name}' of '{tree.name}'")
         place = Placement.from_xyz_rpy(frame.xyz_m, frame.rpy_rad)
         joint = Joint(f"{frame.name}_fixed_joint", JointKind.FIXED, frame.link, frame.name, place)
-        tree = Tree(tree.name, (*tree.links, Link(frame.name)), (*tree.joints, joint))
+        tree = replace(tree, links=(*tree.links, Link(frame.name)), joints=(*tree.joints, joint))
     return tree
 
 
@@ -233,86 +249,3 @@ def refuse_unrated(key: str, name: str, source: ProblemSource, people: Sequence[
             wanted = "people of known strength (stature_m, mass_kg and sex, or strengths_n_m)"
             found = f"'{name}' with a person '{person.tree.name}' of unknown strength"
             raise InputError(source.path, key, wanted, found)
-
-
-LIMITS_KEY = "robot.torque_limits_n_m"
-
-PEAK_TORQUE = "peak_torque"
-"""How the names of quantities end that need a limit of every joint."""
-
-
-def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> Mapping[str, float]:
-    """The largest torque [N m] of each of the robot's moving joints that has a positive, finite one.
-
-    A key of `[robot.torque_limits_n_m]` is a joint's name, or a pattern such as `*_knee` for all joints that
-    it fits; a name counts more than a pattern.
-
-    Raises:
-        InputError: a key that no joint answers to, or a joint that answers to two patterns; limits that shall
-            hold and are not positive, or are not there.
-    """
-    given, hard = tables.robot.torque_limits_n_m, tables.robot.torque_limits is TorqueLimits.HARD
-    asked = {name: _asked_limit(name, given, source) for name in robot.joints}
-    _refuse_unanswered(given, source, robot)
-    limits: dict[str, float] = {}
-    for name, limit in asked.items():
-        effort = robot.tree.joint_by_name[name].effort if limit is None else limit
-        if hard and not effort > 0.0:
-            wanted = f"a positive effort limit of the joint '{name}', or one in {LIMITS_KEY}"
-            raise InputError(source.path, "robot.urdf", wanted, f"{effort:g}")
-        if 0.0 < effort < math.inf:
-            limits[name] = effort
-    if hard and not limits:
-        wanted = f"'none', or a joint with an effort limit in '{tables.robot.urdf}' or in {LIMITS_KEY}"
-        raise InputError(source.path, "robot.torque_limits", wanted, "'hard' and no limits")
-    return limits
-
-
-def refuse_unlimited(tables: ProblemFile, source: ProblemSource, robot: Agent) -> None:
-    """Refuse objectives that take torques relative to their limits where a joint of the robot has none.
-
-    Raises:
-        InputError: naming objective and joint.
-    """
-    asked = tables.objectives
-    for sense, names in ((Sense.MINIMISE, asked.minimise), (Sense.MAXIMISE, asked.maximise)):
-        for position, name in enumerate(names):
-            if name.endswith(PEAK_TORQUE):
-                refuse_unlimited_peak(f"objectives.{sense}[{position}]", name, source, robot)
-
-
-def refuse_unlimited_peak(key: str, name: str, source: ProblemSource, robot: Agent) -> None:
-    """Refuse a quantity that takes torques relative to their limits where a joint of the robot has none.
-
-    Args:
-        key: where the problem file names it.
-        name: of the quantity.
-        source: the problem, for messages.
-        robot: whose joints count.
-    Raises:
-        InputError: naming quantity and joint.
-    """
-    for joint in robot.joints:
-        if joint not in robot.torque_limits:
-            wanted = (
-                f"a torque limit of every joint of the robot for '{name}', in its URDF or in {LIMITS_KEY}"
-            )
-            raise InputError(source.path, key, wanted, f"none of '{joint}'")
-
-
-def _asked_limit(joint: str, given: Mapping[str, float], source: ProblemSource) -> float | None:
-    """The limit that the problem file gives a joint."""
-    if joint in given:
-        return given[joint]
-    patterns = [pattern for pattern in given if fnmatchcase(joint, pattern)]
-    if len(patterns) > 1:
-        found = f"'{joint}' in '{patterns[0]}' and '{patterns[1]}'"
-        raise InputError(source.path, LIMITS_KEY, "patterns that share no joint", found)
-    return given[patterns[0]] if patterns else None
-
-
-def _refuse_unanswered(given: Mapping[str, float], source: ProblemSource, robot: Agent) -> None:
-    for key in given:
-        if not any(joint == key or fnmatchcase(joint, key) for joint in robot.joints):
-            wanted = f"the name of a joint of '{robot.tree.name}' that moves, or a pattern of such names"
-            raise InputError(source.path, LIMITS_KEY, wanted, f"'{key}'{nearest_name(key, robot.joints)}")

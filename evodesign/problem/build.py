@@ -16,11 +16,9 @@ from evodesign.pool.base import Limits
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.agents import (
     human_agents,
     refuse_unknown,
-    refuse_unlimited,
     refuse_unrated,
     robot_agent,
 )
@@ -38,6 +36,8 @@ from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
+from evodesign.problem.symmetric import resolved_symmetry
+from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import (
     Case,
     Constraint,
@@ -72,7 +72,8 @@ class DesignProblem:
         constraints: bounds of quantities, in the file's order.
         options: of the inner solver.
         limits: of one evaluation.
-        symmetry: which postures are looked for.
+        symmetry: which postures are looked for: on, off or polish.
+        symmetry_notes: what was averaged for them, or why they are whole.
         start_portfolio: whether solves begin at the problem's start portfolio.
         search: the file's `[search]` table.
         start: genomes that a search begins with.
@@ -91,6 +92,7 @@ class DesignProblem:
     options: IpoptOptions
     limits: Limits
     symmetry: Symmetry
+    symmetry_notes: tuple[str, ...]
     start_portfolio: bool
     search: SearchTable
     start: tuple[Genome, ...]
@@ -169,7 +171,9 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = _space(tables, source, robot.tree)
-    symmetry = _symmetry(tables, source, scenes, space)
+    resolved = resolved_symmetry(tables, source, scenes, space)
+    scenes, robot = resolved.scenes, resolved.scenes[0].robot
+    people = tuple(scene.human for scene in scenes[:: len(loads)])
     start: dict[str, Genome] = {}
     if tables.search.start is not None:
         name = tables.search.start
@@ -189,33 +193,14 @@ def build_problem(source: ProblemSource) -> DesignProblem:
             iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
         ),
         limits=_limits(tables),
-        symmetry=symmetry,
+        symmetry=resolved.symmetry,
+        symmetry_notes=resolved.notes,
         start_portfolio=tables.solver.start_portfolio,
         search=tables.search,
         start=tuple(start.values()),
-        joint=joint_settings(tables, source, space, weights),
+        joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
     )
-
-
-def _symmetry(
-    tables: ProblemFile, source: ProblemSource, scenes: Sequence[Scene], space: DesignSpace
-) -> Symmetry:
-    """The kind of postures that is asked for; a scene that is not its own mirror image is refused by name."""
-    asked = tables.solver.symmetry if source.symmetry is None else source.symmetry
-    place, key = (source.path, "solver.symmetry") if source.symmetry is None else ("--symmetry", "")
-    if asked not in set(Symmetry):
-        wanted = f"one of {', '.join(Symmetry)}"
-        raise InputError(place, key, wanted, f"'{asked}'{nearest_name(asked, Symmetry)}")
-    if asked != Symmetry.OFF:
-        try:
-            space.check_mirror(scenes[0].robot.tree)
-            for scene in scenes:
-                symmetric_forms(scene)
-        except InputError as error:
-            wanted = "'off', or a scene that is its own mirror image"
-            raise InputError(place, key, wanted, f"'{asked}' ({error})") from error
-    return Symmetry(asked)
 
 
 def _ground(tables: ProblemFile) -> Ground:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import Agent
-from evodesign.problem.agents import PEAK_TORQUE, refuse_unlimited_peak, refuse_unrated
+from evodesign.problem.agents import refuse_unrated
 from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.objectives import (
     HUMAN_EFFORT,
@@ -21,6 +21,7 @@ from evodesign.problem.objectives import (
     objective_kind,
     objective_kinds,
 )
+from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
 from evodesign.records import Constraint, ProblemSource
 
 __all__ = ["constraint_key", "constraints_of", "refuse_constraints"]

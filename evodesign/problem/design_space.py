@@ -23,7 +23,8 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.load_share import share_interval
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.allocation import EffortWeights
-from evodesign.problem.file import AllocationTable, DensityTable, ProblemFile
+from evodesign.problem.design_table import AllocationTable, DensityTable
+from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 
 __all__ = [

@@ -22,6 +22,7 @@ import msgspec
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
+from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -29,11 +30,18 @@ from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.file import ProblemFile, SolverTable
-from evodesign.problem.objectives import from_outside
 from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
-from evodesign.records import Assessed, Genome, ProblemSource, RunHeader, Status
+from evodesign.records import (
+    Assessed,
+    Constraint,
+    Genome,
+    Objective,
+    ProblemSource,
+    RunHeader,
+    Status,
+)
 from evodesign.searches.base import JOINT_STARTS
 
 __all__ = [
@@ -195,7 +203,9 @@ class Remembering:
 
     def __call__(self) -> Task:
         """The function from genome to what it is worth."""
-        if any(from_outside(objective.name) for objective in self.factory.problem.objectives):
+        problem = self.factory.problem
+        quantities: tuple[Objective | Constraint, ...] = (*problem.objectives, *problem.constraints)
+        if any(is_outside(quantity.name) for quantity in quantities):
             return self.factory()
         shelf = f"evaluations/{problem_digest(self.factory.source)}"
         return functools.partial(_remembered, functools.cache(self.factory), shelf)

@@ -12,16 +12,20 @@ from typing import Annotated, TypeVar
 import msgspec
 from msgspec import Meta
 
+from evodesign.body.placement import Matrix, Vector
 from evodesign.human.anthropometry import Sex
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
 from evodesign.mechanics.scene import Grasp
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
+from evodesign.problem.design_table import DesignTable, MaterialTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
+from evodesign.tree.urdf_read import InertiaRule
 
 __all__ = [
     "DisturbanceTable",
+    "Facing",
     "HumanTable",
     "ProblemFile",
     "RobotTable",
@@ -56,6 +60,27 @@ class FrameTable(Table, frozen=True):
     rpy_rad: Point = (0.0, 0.0, 0.0)
 
 
+class Facing(StrEnum):
+    """A direction in the axes of a root link, with x forward by REP 103."""
+
+    FORWARD = "+x"
+    LEFT = "+y"
+    BACK = "-x"
+    RIGHT = "-y"
+
+    @property
+    def ahead(self) -> Vector:
+        """The direction as a unit vector."""
+        sign = 1.0 if self.value[0] == "+" else -1.0
+        return (sign, 0.0, 0.0) if self.value[1] == "x" else (0.0, sign, 0.0)
+
+    @property
+    def axes(self) -> Matrix:
+        """The axes x ahead, y to the left, z up, as columns: a rotation into the root's axes."""
+        x, y, _ = self.ahead
+        return ((x, -y, 0.0), (y, x, 0.0), (0.0, 0.0, 1.0))
+
+
 class TorqueLimits(StrEnum):
     """Whether the limits of the robot's joint torques hold in every posture."""
 
@@ -64,9 +89,18 @@ class TorqueLimits(StrEnum):
 
 
 class RobotTable(Table, frozen=True):
-    """`[robot]`: a URDF with primitive shapes, and the parts of it that matter."""
+    """`[robot]`: a URDF, and the parts of it that matter.
+
+    `inertia` says where masses come from; see `InertiaRule`. `facing` is the direction in the root's axes in
+    which the robot looks. `packages` are folders in which `package://` and `model://` are found, beside those
+    of the environment; `meshes = false` leaves out what the URDF shows as meshes.
+    """
 
     urdf: Name
+    packages: tuple[Name, ...] = ()
+    meshes: bool = True
+    facing: Facing = Facing.FORWARD
+    inertia: InertiaRule = InertiaRule.AUTO
     frames: tuple[FrameTable, ...] = ()
     hands: HandsTable = HandsTable()
     soles: SolesTable = SolesTable()
@@ -175,49 +209,6 @@ class LimitsTable(Table, frozen=True):
     push_n: NotNegative = 5.0
 
 
-class LengthTable(Table, frozen=True):
-    """`[[design.length]]`: a length multiplier shared by links."""
-
-    name: Name
-    links: Annotated[tuple[Name, ...], Meta(min_length=1)]
-    lower: Positive
-    upper: Positive
-
-
-class DensityTable(Table, frozen=True):
-    """`[[design.density]]`: a density shared by links: within bounds, or that of one of some materials."""
-
-    name: Name
-    links: Annotated[tuple[Name, ...], Meta(min_length=1)]
-    lower_kg_per_m3: Positive | None = None
-    upper_kg_per_m3: Positive | None = None
-    materials: tuple[Name, ...] | None = None
-
-
-class MaterialTable(Table, frozen=True):
-    """`[[material]]`: a material beside those of the catalogue, and where its density comes from."""
-
-    name: Name
-    density_kg_per_m3: Positive
-    source: Name
-
-
-class AllocationTable(Table, frozen=True):
-    """`[[design.allocation]]`: how a design shares the load; see `design.allocation` for the names."""
-
-    name: Name
-    lower: float
-    upper: float
-
-
-class DesignTable(Table, frozen=True):
-    """`[design]`: what may change."""
-
-    length: tuple[LengthTable, ...] = ()
-    density: tuple[DensityTable, ...] = ()
-    allocation: tuple[AllocationTable, ...] = ()
-
-
 class ObjectivesTable(Table, frozen=True):
     """`[objectives]`: names from the registry of objectives."""
 
@@ -248,7 +239,7 @@ class SearchTable(Table, frozen=True):
 class SolverTable(Table, frozen=True):
     """`[solver]`: how the inner problems are solved; limits of a solve and of a whole evaluation."""
 
-    symmetry: Symmetry = Symmetry.ON
+    symmetry: Symmetry = Symmetry.AUTO
     start_portfolio: bool = True
     compile: bool = True
     iterations: Annotated[int, Meta(ge=1)] = 300

@@ -19,7 +19,11 @@ __all__ = ["joint_settings", "joint_start"]
 
 
 def joint_settings(
-    tables: ProblemFile, source: ProblemSource, space: DesignSpace, efforts: EffortWeights
+    tables: ProblemFile,
+    source: ProblemSource,
+    space: DesignSpace,
+    efforts: EffortWeights,
+    symmetry: Symmetry,
 ) -> JointSettings:
     """Costs and limits of the joint problem.
 
@@ -28,6 +32,7 @@ def joint_settings(
         source: the problem, for messages.
         space: design parameters.
         efforts: weights of the agents' torques.
+        symmetry: of the problem's postures.
     Raises:
         InputError: preferred densities are asked for and missing, or there is no density to prefer.
     """
@@ -48,7 +53,7 @@ def joint_settings(
         ),
         enforced=Enforced(table.joint_limits, table.contact_limits, table.stance_limits, table.length_bounds),
         options=IpoptOptions(iterations=table.iterations, seconds=table.seconds, compiled=table.compile),
-        symmetric=tables.solver.symmetry is not Symmetry.OFF,
+        symmetric=symmetry is not Symmetry.OFF,
     )
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import Any
 
 import msgspec
 
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.errors import ModelError
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.scene import Agent, Payload
 from evodesign.problem.agents import everyone
@@ -103,9 +105,12 @@ def _parameter(parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
 
 
 def _link(link: Link, tree: Tree, *, grows: bool) -> dict[str, Any]:
-    """A link, and how it answers to a length multiplier: None without solids, or if not asked for."""
+    """A link, and how it answers to a length multiplier: None where it has no answer, or if not asked for."""
     solids = [_shape(solid.shape) for solid in link.solids]
-    growth = growth_of(tree, link.name) if grows and solids else None
+    growth = None
+    if grows and link.inertia.mass > 0.0:
+        with suppress(ModelError):  # a link whose joints and centre of mass are at one point
+            growth = growth_of(tree, link.name)
     return {
         "link": link.name,
         "kind": _kind(link),

@@ -1,4 +1,4 @@
-"""Things in a problem that are allowed but look like mistakes."""
+"""Things in a problem that are allowed but look like mistakes, or that were not taken as they are."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ PARALLEL = math.cos(math.radians(10.0))
 def notes(problem: DesignProblem) -> tuple[str, ...]:
     """A sentence for each thing that a careful reader of the problem would ask about.
 
-    Now: limits of a person's joints that look as if their sign were wrong. Only joints with the names of the
-    generated person are looked at, in the same T-pose (x forward, y to the left, z up; docs/person.md), and
-    whether or not the problem moves them. Limits do not depend on stature, mass or sex, so any person serves.
+    What was not taken as the URDF files say it, what was averaged to make postures symmetric or why they are
+    whole, and limits of a person's joints that look as if their sign were wrong: only joints with the names
+    of the generated person, in the same T-pose (x forward, y to the left, z up; docs/person.md), and whether
+    or not the problem moves them. Limits do not depend on stature, mass or sex, so any person serves.
     """
     people = [scene.human.tree for scene in problem.scenes]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
@@ -34,7 +35,10 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
         for joint in human.joints
         if joint.name in anatomy
     )
-    return tuple(dict.fromkeys(sentence for sentence in found if sentence))
+    trees = (problem.scene.robot.tree, *people)
+    read = (f"{tree.name}: {sentence}" for tree in trees for sentence in tree.notes)
+    wrong = (sentence for sentence in found if sentence)
+    return tuple(dict.fromkeys((*read, *problem.symmetry_notes, *wrong)))
 
 
 def _turned(person: str, joint: Joint, anatomical: Joint) -> str:

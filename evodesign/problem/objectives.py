@@ -7,13 +7,13 @@ a front may be asked to hold for everyone and not only on average. The way stand
 
 Adding one is a function here and a line in `QUANTITIES`, for a value of every case, or in `WHOLE`, for one of
 the design; the problem file then knows its name. Without touching the package, one is a `CaseQuantity` or an
-`ObjectiveKind` in a module of its own, which every process imports, and its name is `MODULE:NAME`. What does
+`ObjectiveKind` in a module of its own, which every process imports, and its name is `MODULE:NAME` (see
+`outside`). What does
 not exist (no posture, no reach) is absent, never large.
 """
 
 from __future__ import annotations
 
-import pkgutil
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,6 +26,7 @@ from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.balance import standing_height_of_mass
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene, scene_of
+from evodesign.outside import imported, is_outside
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, CaseSolution
@@ -44,7 +45,6 @@ __all__ = [
     "DesignResult",
     "ObjectiveKind",
     "aggregate",
-    "from_outside",
     "objective_kind",
     "objective_kinds",
     "objective_value",
@@ -243,11 +243,11 @@ def objective_kind(name: str) -> ObjectiveKind | None:
     """The objective of a name, such as `robot_torque`, `worst_robot_torque` or `q90_robot_torque`.
 
     Raises:
-        InputError: a name of the form `MODULE:NAME` that is no objective.
+        InputError: a name of the form `MODULE:NAME` that is no objective, or may not be imported.
     """
     way, quantity = split_name(name)
-    if from_outside(quantity):
-        found = imported(quantity)
+    if is_outside(quantity):
+        found = imported(quantity, "objectives", "")
         if isinstance(found, ObjectiveKind) and not way:
             return found
         if isinstance(found, CaseQuantity):
@@ -263,24 +263,6 @@ def split_name(name: str) -> tuple[str, str]:
     """How an objective is taken over the cases (`worst_`, `q90_` or nothing), and of which quantity."""
     match = re.fullmatch(rf"({WORST}|q[1-9]\d?_|)(.+)", name)
     return (match[1], match[2]) if match else ("", name)
-
-
-def from_outside(name: str) -> bool:
-    """Whether an objective's name says where it is to be imported from."""
-    return ":" in name
-
-
-def imported(name: str) -> object:
-    """What stands at a place such as `module:name`.
-
-    Raises:
-        InputError: nothing does.
-    """
-    try:
-        return pkgutil.resolve_name(name)
-    except (ImportError, AttributeError, ValueError) as error:
-        wanted = "MODULE:NAME of something that Python can import"
-        raise InputError("objectives", "", wanted, f"'{name}' ({error})") from error
 
 
 def objective_values(quantities: Sequence[Objective | Constraint], result: DesignResult) -> dict[str, float]:

@@ -47,7 +47,12 @@ def precomputed(
     """
     setting, known = precompute_setting(problem), Precomputed()
     tasks, portfolios, people = problem.tasks, problem.start_portfolio, problem.person_reaches
-    for stage in stages(setting, tasks, portfolios=portfolios, person_reaches=people):
+    staged = [*stages(setting, tasks, portfolios=portfolios, person_reaches=people)]
+    pieces = [piece for stage in staged for piece in stage]
+    absent = [piece for piece in pieces if cache is None or cache.read(key_of(setting, piece)) is None]
+    if absent:
+        watcher.missing(len(absent))
+    for stage in staged:
         missing = []
         for piece in stage:
             content = cache.read(key_of(setting, piece)) if cache else None
@@ -57,7 +62,9 @@ def precomputed(
             else:
                 known = found
         if missing:
-            watcher.missing(len(missing))
+            spoilt = [piece for piece in missing if piece not in absent]
+            if spoilt:
+                watcher.missing(len(spoilt))
             for piece, content in _worked_out(problem, missing, known, pool, watcher).items():
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)

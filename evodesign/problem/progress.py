@@ -9,7 +9,7 @@ class PrecomputeProgress:
     """Is shown how far the pieces are; this one does nothing with it."""
 
     def missing(self, pieces: int) -> None:
-        """So many pieces, of one stage, have to be worked out."""
+        """So many pieces have to be worked out, all stages together; more if the cache is damaged."""
 
     def done(self, piece: str) -> None:
         """One of them is."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evodesign.errors import InputError, nearest_name
+from evodesign.files import is_there
 
 __all__ = ["SHIPPED", "ShippedProblem", "problem_path", "shipped_problems"]
 
@@ -49,7 +50,7 @@ def problem_path(problem: str | os.PathLike[str]) -> Path:
         InputError: a word that is neither.
     """
     path = Path(problem)
-    if path.is_file() or path.suffix or len(path.parts) != 1:
+    if (is_there(path) and path.is_file()) or path.suffix or len(path.parts) != 1:
         return path
     known = {shipped.name: shipped.path for shipped in shipped_problems()}
     if path.name not in known:

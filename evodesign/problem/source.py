@@ -18,8 +18,9 @@ import msgspec
 import tomli_w
 
 from evodesign.errors import InputError, nearest_name, shortened
-from evodesign.files import write_folder
+from evodesign.files import is_there, write_folder
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.meshes import mesh_texts
 from evodesign.problem.shipped import SHIPPED, problem_path
 from evodesign.records import ProblemSource
 
@@ -80,6 +81,8 @@ def _source(text: str, source: str, folder: Path, symmetry: str | None) -> Probl
     files = {
         name: read_text(_named(folder, name), source, key) for key, name in named.items() if name is not None
     }
+    robot = tables.robot.urdf
+    files |= mesh_texts(tables.robot, _named(folder, robot), files[robot], folder, source)
     return ProblemSource(path=source, text=text, files=files, symmetry=symmetry)
 
 
@@ -87,7 +90,7 @@ def _named(folder: Path, name: str) -> Path:
     """A file that a problem names: from its folder, or else one of those that come with evodesign."""
     path = folder / name
     shipped = SHIPPED / name
-    return shipped if not path.exists() and shipped.is_file() else path
+    return shipped if is_there(shipped) and not is_there(path) else path
 
 
 def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:

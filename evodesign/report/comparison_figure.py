@@ -32,7 +32,9 @@ def comparison_html(comparisons: Sequence[Comparison]) -> str:
     figures = []
     for number, comparison in enumerate(comparisons):
         figure = _figure(comparison)
-        figures.append(figure.to_html(include_plotlyjs=number == 0, full_html=False))
+        figures.append(
+            figure.to_html(include_plotlyjs=number == 0, full_html=False, div_id=f"figure{number}")
+        )
     body = "\n".join(figures)
     return (
         '<!doctype html>\n<html lang="en">\n'

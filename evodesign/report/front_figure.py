@@ -55,7 +55,7 @@ def front_html(header: RunHeader, evaluations: Sequence[Evaluation]) -> str:
         legend={"orientation": "h", "y": 1.12, "x": 1.0, "xanchor": "right"},
         font={"size": 15},
     )
-    page: str = figure.to_html(include_plotlyjs=True, full_html=True)
+    page: str = figure.to_html(include_plotlyjs=True, full_html=True, div_id="front")
     return page
 
 

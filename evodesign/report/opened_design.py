@@ -39,13 +39,15 @@ class RebuiltProblem:
 
     @cached_property
     def people(self) -> Mapping[str, Agent]:
-        """Its people by what they are called; faster than the whole problem, whose robot is a URDF."""
-        from evodesign.problem.agents import human_agents  # CasADi takes its time to load
+        """Its people by what they are called; where none is a URDF, faster than the whole problem."""
+        from evodesign.problem.agents import everyone, human_agents  # CasADi takes its time to load
         from evodesign.problem.file import ProblemFile
         from evodesign.problem.source import decode_toml
 
         source = self._header.problem
         tables = decode_toml(source.text, source.path, ProblemFile)
+        if any(table.urdf is not None for _, table in everyone(tables, source)):  # may be averaged
+            return {scene.human.label: scene.human for scene in self.problem.scenes}
         return {person.label: person for person in human_agents(tables, source)}
 
 

@@ -21,7 +21,7 @@ from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.tree.frames import link_frames
-from evodesign.tree.model import Link, Tree
+from evodesign.tree.model import Link, Mesh, Tree
 
 __all__ = ["LOAD", "ContactWrench", "PlacedScene", "SceneModels", "SceneSet", "looks_of", "placed_scene"]
 
@@ -111,7 +111,7 @@ class PlacedScene:
 
     @property
     def solids(self) -> tuple[tuple[str, Shape, Placement], ...]:
-        """Everything that is seen: whose it is, its shape, and its place in the world."""
+        """Every shape that is seen: whose it is, its form, and its place in the world."""
         seen = [
             (name, shape, self.frames[name][link.name] @ place)
             for name, tree in self.models.trees.items()
@@ -120,9 +120,21 @@ class PlacedScene:
         ]
         return (*seen, (LOAD, Box(*self.models.payload.size), self.world_from_load))
 
+    @property
+    def meshes(self) -> tuple[tuple[str, Mesh, Placement], ...]:
+        """Every mesh that is seen: whose it is, its triangles, and world_from_link."""
+        return tuple(
+            (name, mesh, self.frames[name][link.name])
+            for name, tree in self.models.trees.items()
+            for link in tree.links
+            for mesh in link.shown
+        )
+
 
 def looks_of(link: Link) -> tuple[tuple[Shape, Placement], ...]:
-    """The shapes of a link, solids and looks, with their places in it."""
+    """The shapes that show a link, solids and looks, with their places in it; none where meshes show it."""
+    if link.shown:
+        return ()
     solids = [(solid.shape, solid.link_from_solid) for solid in link.solids]
     return (*solids, *((look.shape, look.link_from_look) for look in link.looks))
 

@@ -19,7 +19,6 @@ __all__ = [
     "locked",
     "make_directory",
     "name_in_path",
-    "refuse_run",
     "run_segments",
     "segment_path",
     "segments",
@@ -56,19 +55,6 @@ def segments(directory: Path) -> dict[int, Path]:
     except OSError as error:
         raise RunError(f"{directory}: cannot be read: {error.strerror}") from error
     return dict(sorted(found.items()))
-
-
-def refuse_run(directory: Path) -> None:
-    """Refuse a directory that holds a run.
-
-    Raises:
-        RunError: it does.
-    """
-    if segments(directory):
-        raise RunError(
-            f"{directory}: holds a run already; choose another directory with --run, "
-            f"or go on with: evodesign resume {directory}"
-        )
 
 
 def run_segments(directory: Path) -> dict[int, Path]:

@@ -34,6 +34,9 @@ MOST_LISTED: Final = 20
 LONGEST_REASON: Final = 200
 """Letters of what is quoted of an error."""
 
+LAST_VERSION: Final = 1000
+"""No later format will be: what claims to be one was not written by evodesign."""
+
 NOT_DECODED: Final = (msgspec.MsgspecError, ValueError, RecursionError)
 """What decoding raises: other fields or types, text that is not UTF-8 or JSON, too much of one in another."""
 
@@ -179,6 +182,8 @@ class Believer:
 
     def _check_version(self, header: bytes) -> None:
         version = msgspec.json.decode(header, type=_Version).format_version
+        if not 1 <= version <= LAST_VERSION:
+            raise ValueError(f"there is no format {version}")
         if version > FORMAT_VERSION:
             raise RunError(
                 f"{self._path}: wanted a log of format {FORMAT_VERSION} or earlier, found format {version}; "

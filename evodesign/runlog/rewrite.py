@@ -10,7 +10,8 @@ for those generations is kept in its settings as a stage.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import msgspec
@@ -18,20 +19,20 @@ from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import InputError, RunError
 from evodesign.files import replacing
-from evodesign.records import Detail, Evaluation, Front, Generation, SearchSettings, SearchStage
+from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader, SearchSettings, SearchStage
 from evodesign.runlog.channels import DETAIL, EVALUATION, FRONT, GENERATION, RUN
-from evodesign.runlog.directory import locked, make_directory, refuse_run, run_segments, segment_path, synced
+from evodesign.runlog.directory import locked, make_directory, run_segments, segment_path, synced
 from evodesign.runlog.gaps import record_gaps
 from evodesign.runlog.reader import Entry, entries
-from evodesign.runlog.run import RunLog, read_run
-from evodesign.runlog.writer import RunWriter, add_header_copy, encoded, register
+from evodesign.runlog.run import RunLog, read_run, refuse_run
+from evodesign.runlog.writer import UNFINISHED, add_header_copy, encoded, register
 
 __all__ = ["begin_branch", "merge", "recover"]
 
 CHUNK_BYTES = 65536
 """Records are compressed together in chunks of this size: about 0.5 kB per evaluation instead of 1.0 kB."""
 
-UNFINISHED = "merged.part"
+MERGING = "merged.part"
 
 
 def recover(directory: Path, to: Path) -> RunLog:
@@ -44,7 +45,7 @@ def recover(directory: Path, to: Path) -> RunLog:
     refuse_run(to)
     make_directory(to)
     with locked(to):
-        _write(segment_path(to, 0), directory, run)
+        _write(segment_path(to, 0), run.header, _once(directory, run), UNFINISHED)
         synced(to, to.parent)
     return read_run(to)
 
@@ -65,12 +66,12 @@ def merge(directory: Path, to: Path | None) -> RunLog:
         run = _undamaged(directory)
         if to.exists():
             raise RunError(f"{to}: exists already")
-        _write(to, directory, run)
+        _write(to, run.header, _once(directory, run))
         return run
     paths = run_segments(directory)
     with locked(directory):
         run = _undamaged(directory)
-        _write(segment_path(directory, 0), directory, run, UNFINISHED)
+        _write(segment_path(directory, 0), run.header, _once(directory, run), MERGING)
         try:
             synced(directory)
             for number, path in paths.items():
@@ -92,8 +93,8 @@ def _undamaged(directory: Path) -> RunLog:
     return run
 
 
-def _write(path: Path, directory: Path, run: RunLog, part: str = "") -> None:
-    """All records of a run, each once, as one segment that is on the disk when this returns.
+def _write(path: Path, header: RunHeader, records: Iterable[Entry], part: str = "") -> None:
+    """Records, with those of headers first, as one segment that is on the disk when this returns.
 
     Raises:
         RunError: the file cannot be written.
@@ -104,12 +105,14 @@ def _write(path: Path, directory: Path, run: RunLog, part: str = "") -> None:
                 file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True
             )
             writer.start(profile="", library="evodesign")
-            channels = register(writer, run.header)
-            time = 0
-            for entry in _once(directory, run):
-                time = max(time, entry.time)
-                writer.add_message(channels[entry.topic], time, encoded(entry.record), time, entry.sequence)
-            add_header_copy(writer, run.header, time)
+            channels = register(writer, header)
+            latest = 0
+            for entry in records:
+                latest = max(latest, entry.time)
+                writer.add_message(
+                    channels[entry.topic], latest, encoded(entry.record), latest, entry.sequence
+                )
+            add_header_copy(writer, header, latest)
             writer.finish()  # type: ignore[no-untyped-call]
     except OSError as error:
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
@@ -167,20 +170,28 @@ def begin_branch(old: RunLog, directory: Path, generations: int, settings: Searc
             "--population", "", f"at most {count}, the evaluations taken over", str(settings.population)
         )
     search = _with_past(old.header.search, generations, settings)
+    refuse_run(directory)
     make_directory(directory)
     header = msgspec.structs.replace(old.header, search=search)
-    with locked(directory), RunWriter(directory, header) as log:
-        for detail in old.details:
-            if detail.evaluation < count:
-                log.detail(detail)
-        for evaluation in old.evaluations[:count]:
-            log.evaluation(evaluation)
-        for generation in old.generations[:generations]:
-            log.generation(generation)
-        for front in old.fronts[:generations]:
-            log.front(front)
-        log.commit()
+    with locked(directory):
+        _write(segment_path(directory, 0), header, _beginning(old, header, generations, count), UNFINISHED)
+        synced(directory, directory.parent)
     return count
+
+
+def _beginning(old: RunLog, header: RunHeader, generations: int, count: int) -> Iterator[Entry]:
+    """The records of a branch's first generations, which were not written at the times of the old ones."""
+    now = time.time_ns()
+    yield Entry(RUN, 0, now, header)
+    for detail in old.details:
+        if detail.evaluation < count:
+            yield Entry(DETAIL, detail.evaluation, now, detail)
+    for evaluation in old.evaluations[:count]:
+        yield Entry(EVALUATION, evaluation.number, now, evaluation)
+    for generation in old.generations[:generations]:
+        yield Entry(GENERATION, generation.number, now, generation)
+    for front in old.fronts[:generations]:
+        yield Entry(FRONT, front.generation, now, front)
 
 
 def _evaluations_of(old: RunLog, generations: int) -> int:

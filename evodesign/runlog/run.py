@@ -6,8 +6,10 @@ times, names of workers, order of arrival and number of sessions do not count.
 
 from __future__ import annotations
 
+import gc
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -16,13 +18,13 @@ import msgspec
 
 from evodesign.errors import RunError
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
-from evodesign.runlog.directory import run_segments
+from evodesign.runlog.directory import run_segments, segments
 from evodesign.runlog.gaps import record_gaps, segment_gaps
 from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
 from evodesign.runlog.validity import Validity
 
-__all__ = ["RunLog", "digest", "read_run"]
+__all__ = ["RunLog", "digest", "read_run", "refuse_run"]
 
 R = TypeVar("R", bound=msgspec.Struct)
 
@@ -59,6 +61,22 @@ class RunLog:
         return bool(self.faults)
 
 
+@contextmanager
+def _without_collector() -> Iterator[None]:
+    """Within this, Python looks for no unreachable cycles.
+
+    Records make none, and to look through all of a large run again and again takes as long as to read it.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+@_without_collector()
 def read_run(directory: Path) -> RunLog:
     """Everything that can be read of a run, also of one that was killed or is still being written.
 
@@ -67,21 +85,19 @@ def read_run(directory: Path) -> RunLog:
             a later version of evodesign wrote it, or its segments come from different runs.
     """
     paths = run_segments(directory)
-    segments = [read_segment(path, last=number == max(paths)) for number, path in paths.items()]
-    headers = _headers(directory, segments)
+    read = [read_segment(path, last=number == max(paths)) for number, path in paths.items()]
+    headers = _headers(directory, read)
     strange: list[str] = []
-    segments = [_valid(segment, Validity(headers[-1]), strange) for segment in segments]
-    evaluations, contradictions = _by_number(segments)
+    read = [_valid(segment, Validity(headers[-1]), strange) for segment in read]
+    evaluations, contradictions = _by_number(read)
     generations = _first_of_each(
-        (generation.number, generation) for segment in segments for generation in segment.generations
+        (generation.number, generation) for segment in read for generation in segment.generations
     )
-    fronts = _first_of_each((front.generation, front) for segment in segments for front in segment.fronts)
-    details = _first_of_each(
-        (detail.evaluation, detail) for segment in segments for detail in segment.details
-    )
-    sessions = [session for segment in segments for session in segment.sessions]
+    fronts = _first_of_each((front.generation, front) for segment in read for front in segment.fronts)
+    details = _first_of_each((detail.evaluation, detail) for segment in read for detail in segment.details)
+    sessions = [session for segment in read for session in segment.sessions]
     faults = (
-        *(segment.note for segment in segments if segment.damaged),
+        *(segment.note for segment in read if segment.damaged),
         *strange,
         *segment_gaps(paths, sessions),
         *record_gaps(headers[-1], evaluations, generations, fronts),
@@ -94,10 +110,24 @@ def read_run(directory: Path) -> RunLog:
         generations=generations,
         fronts=fronts,
         details=details,
-        complete=all(segment.complete for segment in segments),
-        notes=tuple(dict.fromkeys((*(segment.note for segment in segments if segment.note), *faults))),
+        complete=all(segment.complete for segment in read),
+        notes=tuple(dict.fromkeys((*(segment.note for segment in read if segment.note), *faults))),
         faults=faults,
     )
+
+
+def refuse_run(directory: Path) -> None:
+    """Refuse a directory that holds a run, or what is left of one.
+
+    Raises:
+        RunError: it does. The sentence says to resume only a run that can be read.
+    """
+    if segments(directory):
+        read_run(directory)
+        raise RunError(
+            f"{directory}: holds a run already; choose another directory with --run, "
+            f"or go on with: evodesign resume {directory}"
+        )
 
 
 def _headers(directory: Path, segments: list[Segment]) -> list[RunHeader]:

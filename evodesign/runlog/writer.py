@@ -22,6 +22,7 @@ import zstandard
 from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import RunError
+from evodesign.files import begun
 from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import (
     DETAIL,
@@ -35,7 +36,8 @@ from evodesign.runlog.channels import (
     SCHEMA_ENCODING,
     described,
 )
-from evodesign.runlog.directory import make_directory, refuse_run, segment_path, segments, synced
+from evodesign.runlog.directory import make_directory, segment_path, segments, synced
+from evodesign.runlog.run import refuse_run
 from evodesign.runlog.segment_file import LARGEST_RECORD
 
 __all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "encoded", "register"]
@@ -79,10 +81,10 @@ class RunWriter:
         """Put the present segment with its header on the disk; it has its name from then on, not before."""
         self.path = segment_path(self._directory, self._segment)
         unfinished = self._directory / UNFINISHED
-        self._file = unfinished.open("wb")  # over what a killed session left
+        self._file = begun(self.path, UNFINISHED)  # in the place of what a killed session left
         try:
             self._put_header()
-            if self.path.exists():
+            if os.path.lexists(self.path):
                 raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
             unfinished.rename(self.path)
         except BaseException:

@@ -1,7 +1,8 @@
 """The searches by name; a new one is a file and a line here, and enters the conformance tests by itself.
 
 A line says in which module the class stands: a library is loaded when its search is asked for (pycma alone
-takes a second). A search outside of the package needs no line: its name is its place, such as `module:Class`.
+takes a second). A search outside of the package needs no line: its name is its place, such as `module:Class`
+(see `outside`).
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from collections.abc import Collection, Mapping
 from typing import Any, Final
 
 from evodesign.errors import InputError, nearest_name
+from evodesign.outside import imported, is_outside
 from evodesign.records import SearchSettings, choice_at, middle_of
 from evodesign.searches.base import JOINT_STARTS, AsynchronousSearch, Search
 from evodesign.searches.restarted import Restarted
@@ -60,19 +62,15 @@ def _class(algorithm: str, searches: Mapping[str, str]) -> Any:
     """The class of an algorithm: that of a line, or at a place such as `package.module:Class`.
 
     Raises:
-        InputError: there is nothing at the place.
+        InputError: there is nothing at the place, or the user has not named its module.
     """
-    try:
-        return pkgutil.resolve_name(searches.get(algorithm, algorithm))
-    except (ImportError, AttributeError, ValueError) as error:
-        if algorithm in searches:
-            raise
-        wanted = "MODULE:CLASS of something that Python can import"
-        raise InputError("search", "algorithm", wanted, f"'{algorithm}' ({error})") from error
+    if algorithm in searches:
+        return pkgutil.resolve_name(searches[algorithm])
+    return imported(algorithm, "search", "algorithm")
 
 
 def _check(settings: SearchSettings, searches: Collection[str]) -> None:
-    if settings.algorithm not in searches and ":" not in settings.algorithm:
+    if settings.algorithm not in searches and not is_outside(settings.algorithm):
         hint = nearest_name(settings.algorithm, searches)
         wanted = f"one of {', '.join(searches)}"
         raise InputError("search", "algorithm", wanted, f"'{settings.algorithm}'{hint}")

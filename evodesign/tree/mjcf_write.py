@@ -1,9 +1,11 @@
 """A tree as MJCF text: MuJoCo's own format, floating over a ground plane, with postures as keyframes.
 
-    body     <inertial> where there is mass, <geom> for each solid and look, <joint> when it moves
+    body     <inertial> where there is mass, <geom> for each solid, look and mesh, <joint> when it moves
+    asset    <mesh> for each mesh file
     key      position and quaternion of the root, then the joints in the order in which the file holds them
 
-The robot's geoms touch the ground and not each other: neighbouring shapes overlap at the joints.
+The robot's geoms touch the ground and not each other: neighbouring shapes overlap at the joints. A link of
+solids that meshes show touches with its solids, which stand in group 3; one of meshes alone with their hulls.
 
 Source: MuJoCo XML reference (compiler, body, joint, inertial, geom, keyframe).
 """
@@ -20,14 +22,15 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
+from evodesign.tree.mesh_write import NO_MESHES, MeshNames, has_hull, named_meshes
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_write import numbers_text
 
 __all__ = ["KeyPosture", "mjcf_text"]
 
 KINDS = {JointKind.REVOLUTE: "hinge", JointKind.CONTINUOUS: "hinge", JointKind.PRISMATIC: "slide"}
-TOUCHES_GROUND = {"contype": "0", "conaffinity": "1"}
-TOUCHES_NOTHING = {"contype": "0", "conaffinity": "0"}
+TOUCHES_GROUND: dict[str, str] = {"contype": "0", "conaffinity": "1"}
+TOUCHES_NOTHING: dict[str, str] = {"contype": "0", "conaffinity": "0"}
 COLOR = "0.36 0.52 0.70 1"
 
 
@@ -44,13 +47,16 @@ class KeyPosture:
     joints: Mapping[str, float]
 
 
-def mjcf_text(tree: Tree, gravity: float, postures: Mapping[str, KeyPosture]) -> str:
+def mjcf_text(
+    tree: Tree, gravity: float, postures: Mapping[str, KeyPosture], meshes: MeshNames = NO_MESHES
+) -> str:
     """The tree as indented XML.
 
     Args:
         tree: of numbers.
         gravity: [m/s^2], along -z.
         postures: keyframes by name.
+        meshes: files of the meshes that are to be seen.
     Raises:
         ModelError: MuJoCo cannot hold the tree: a link that moves has no mass, or one is called `world`.
     """
@@ -58,11 +64,16 @@ def mjcf_text(tree: Tree, gravity: float, postures: Mapping[str, KeyPosture]) ->
     model = etree.Element("mujoco", model=tree.name)
     etree.SubElement(model, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
     etree.SubElement(model, "option", gravity=numbers_text([0.0, 0.0, -gravity]))
+    if meshes:
+        asset = etree.SubElement(model, "asset")
+        for file in dict.fromkeys(meshes.values()):
+            # the volume, which a mesh need not have, is not asked for
+            etree.SubElement(asset, "mesh", name=_asset(file), file=file, inertia="shell")
     world = etree.SubElement(model, "worldbody")
     etree.SubElement(world, "light", pos="0 -2 4", dir="0 0.5 -1", directional="true")
     ground = {"contype": "1", "conaffinity": "0", "rgba": "0.9 0.9 0.9 1"}
     etree.SubElement(world, "geom", type="plane", size="3 3 0.1", **ground)
-    _add_body(world, tree, tree.root, Placement(), None)
+    _add_body(world, tree, tree.root, Placement(), None, meshes)
     if postures:
         frame = etree.SubElement(model, "keyframe")
         for name, posture in postures.items():
@@ -88,7 +99,9 @@ def _carried_mass(tree: Tree, link: str) -> float:
     return float(tree.link_by_name[link].inertia.mass) + sum(_carried_mass(tree, child) for child in welded)
 
 
-def _add_body(above: etree._Element, tree: Tree, name: str, place: Placement, joint: Joint | None) -> None:
+def _add_body(
+    above: etree._Element, tree: Tree, name: str, place: Placement, joint: Joint | None, meshes: MeshNames
+) -> None:
     link = tree.link_by_name[name]
     body = etree.SubElement(above, "body", name=name, **_pose(place))
     if joint is None:
@@ -96,9 +109,9 @@ def _add_body(above: etree._Element, tree: Tree, name: str, place: Placement, jo
     elif joint.kind is not JointKind.FIXED:
         _add_joint(body, joint)
     _add_inertial(body, link.inertia)
-    _add_geoms(body, link)
+    _add_geoms(body, link, meshes)
     for below in tree.child_joints[name]:
-        _add_body(body, tree, below.child, below.parent_from_child, below)
+        _add_body(body, tree, below.child, below.parent_from_child, below, meshes)
 
 
 def _add_joint(body: etree._Element, joint: Joint) -> None:
@@ -125,22 +138,36 @@ def _add_inertial(body: etree._Element, inertia: Inertia) -> None:
     )
 
 
-def _add_geoms(body: etree._Element, link: Link) -> None:
+def _add_geoms(body: etree._Element, link: Link, meshes: MeshNames) -> None:
+    files = named_meshes(link, meshes)
+    for mesh, file in files:
+        touch = TOUCHES_GROUND if not link.solids and has_hull(mesh) else TOUCHES_NOTHING
+        _add_geom(body, {"type": "mesh", "mesh": _asset(file)}, mesh.link_from_mesh, touch)
+    beside = {"group": "3"} if files else {}
     for solid in link.solids:
-        _add_geom(body, solid.shape, solid.link_from_solid, TOUCHES_GROUND)
-    for look in link.looks:
-        _add_geom(body, look.shape, look.link_from_look, TOUCHES_NOTHING)
+        _add_geom(body, _form(solid.shape), solid.link_from_solid, TOUCHES_GROUND | beside)
+    for look in () if files else link.looks:
+        _add_geom(body, _form(look.shape), look.link_from_look, TOUCHES_NOTHING)
 
 
-def _add_geom(body: etree._Element, shape: Shape, place: Placement, touch: Mapping[str, str]) -> None:
+def _form(shape: Shape) -> dict[str, str]:
     match shape:
         case Sphere(radius):
-            form = {"type": "sphere", "size": numbers_text([radius])}
+            return {"type": "sphere", "size": numbers_text([radius])}
         case Cylinder(radius, length):
-            form = {"type": "cylinder", "size": numbers_text([radius, length / 2.0])}
+            return {"type": "cylinder", "size": numbers_text([radius, length / 2.0])}
         case Box():
-            form = {"type": "box", "size": numbers_text([side / 2.0 for side in shape.sides])}
+            return {"type": "box", "size": numbers_text([side / 2.0 for side in shape.sides])}
+
+
+def _add_geom(
+    body: etree._Element, form: Mapping[str, str], place: Placement, touch: Mapping[str, str]
+) -> None:
     etree.SubElement(body, "geom", {**form, **_pose(place), "rgba": COLOR, **touch})
+
+
+def _asset(file: str) -> str:
+    return file.rpartition("/")[2].removesuffix(".stl")
 
 
 def _pose(place: Placement) -> dict[str, str]:

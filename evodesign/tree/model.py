@@ -7,6 +7,7 @@ names, axes, limits and the tree's form are not.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,11 +15,12 @@ from enum import StrEnum
 from functools import cached_property
 
 from evodesign.body.inertia import Inertia, total
-from evodesign.body.placement import Placement, Vector
+from evodesign.body.placement import Matrix, Placement, Scalar, Vector, dot
 from evodesign.body.shape import Shape, Solid
 from evodesign.errors import ModelError, nearest_name
+from evodesign.tree.surface import Surface
 
-__all__ = ["Joint", "JointKind", "Link", "Look", "Tree"]
+__all__ = ["Joint", "JointKind", "Link", "Look", "Mesh", "Tree"]
 
 
 class JointKind(StrEnum):
@@ -39,20 +41,59 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True)
+class Mesh:
+    """A surface that is only seen.
+
+    Args:
+        file: its name in the robot's file.
+        scale: factors along the axes of the file's coordinates.
+        link_from_mesh: the place of the scaled mesh in the link.
+        stretch: in the link's axes, what is done to the scaled and turned mesh before it is moved there.
+        surface: its triangles, in the file's coordinates; None where the file is not known.
+    """
+
+    file: str
+    scale: Vector = (1.0, 1.0, 1.0)
+    link_from_mesh: Placement = field(default_factory=Placement)
+    stretch: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    surface: Surface | None = None
+
+    @property
+    def encloses(self) -> bool:
+        """Whether its volume is known."""
+        return self.surface is not None and self.surface.volume > 0.0
+
+    @property
+    def volume(self) -> Scalar:
+        """What it encloses, scaled and stretched [m^3]; 0 where that is not known."""
+        if self.surface is None:
+            return 0.0
+        first, second, third = self.stretch
+        across = (
+            second[1] * third[2] - second[2] * third[1],
+            second[2] * third[0] - second[0] * third[2],
+            second[0] * third[1] - second[1] * third[0],
+        )
+        return self.surface.volume * abs(math.prod(self.scale)) * dot(first, across)
+
+
+@dataclass(frozen=True, slots=True)
 class Link:
     """A rigid body or a bare frame.
 
     Args:
         name: unique in the tree.
         solids: shapes of constant density that make up its mass.
-        own_inertia: inertia beside the solids, in the link's frame; kept by every design.
+        own_inertia: inertia of a link without solids, in its frame.
         looks: shapes without mass.
+        meshes: surfaces, likewise.
     """
 
     name: str
     solids: tuple[Solid, ...] = ()
     own_inertia: Inertia = field(default_factory=Inertia)
     looks: tuple[Look, ...] = ()
+    meshes: tuple[Mesh, ...] = ()
 
     @property
     def inertia(self) -> Inertia:
@@ -60,6 +101,18 @@ class Link:
         if not self.solids:
             return self.own_inertia
         return total([solid.inertia for solid in self.solids])
+
+    @property
+    def shown(self) -> tuple[Mesh, ...]:
+        """Its meshes of which the triangles are known; where there are any, shapes are not shown."""
+        return tuple(mesh for mesh in self.meshes if mesh.surface is not None)
+
+    @property
+    def volume(self) -> Scalar:
+        """Volume of its solids, or of its meshes if all enclose one, or of shapes only seen [m^3]."""
+        if not self.solids and self.meshes and all(mesh.encloses for mesh in self.meshes):
+            return sum(mesh.volume for mesh in self.meshes)
+        return sum(part.shape.volume for part in self.solids or self.looks)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +150,7 @@ class Tree:
         name: of the robot or person.
         links: in any order; the constructor's caller need not sort.
         joints: in any order.
+        notes: sentences on what the file says and the tree does not take as it stands.
     Raises:
         ModelError: names that repeat or miss, no root or several, or a loop.
     """
@@ -104,6 +158,7 @@ class Tree:
     name: str
     links: tuple[Link, ...]
     joints: tuple[Joint, ...]
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         _check_names(self)

@@ -18,8 +18,9 @@ its main solid's centre and a piece of length e put in: end pieces keep their si
     no chain        a link centred on its joints, or a cylinder across both directions: about its centre too
 
 Mass and inertia are those of the resized solids, so a link has one density, also when made of several solids.
-A link whose file gives its mass a mesh, or no shape, keeps its inertia and cannot change. l = 1 with the
-file's density gives the file's tree back. Multipliers and densities are numbers or symbolic expressions.
+A link without solids, whose inertia is the file's, is stretched whole (`stretch`); its density can change if
+it has shapes or watertight meshes, whose volume is known. l = 1 with the file's density gives the file's tree
+back. Multipliers and densities are numbers or symbolic expressions.
 
 Source: Sartore et al. 2022, Section III-A and IV; the rules for child joints and composites are ours
 (docs/model.md).
@@ -31,10 +32,20 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, Scalar, Vector, add, dot, rotate, scale, transpose
 from evodesign.body.shape import Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Joint, Link, Tree
+from evodesign.tree.stretch import (
+    UP,
+    main_axis,
+    scaled,
+    stretched_inertia,
+    stretched_look,
+    stretched_mesh,
+    stretched_point,
+)
 
 __all__ = ["Growth", "growth_of", "resize"]
 
@@ -48,9 +59,6 @@ MARGIN = 1.0 / 20.0
 """Of v. For stacked trunk boxes whose next joint stands a hair below the middle (2.4 mm of 134 mm in the
 reference robot): a trunk that grows lifts what it carries."""
 
-UP: Vector = (0.0, 0.0, 1.0)
-"""The chain's direction in a root link, whose frame is z up (REP 103)."""
-
 
 @dataclass(frozen=True, slots=True)
 class Growth:
@@ -63,6 +71,7 @@ class Growth:
         centre: of the main solid, in the link's frame [m].
         stretched: indices of the solids that get longer: the main one and those beside it.
         about_centre: whether it grows to both sides (a root link, or one without a chain).
+        whole: whether all its points move by the affine map of `stretch`, about its parent joint.
     """
 
     link: str
@@ -71,15 +80,29 @@ class Growth:
     centre: Vector
     stretched: frozenset[int]
     about_centre: bool
+    whole: bool = False
+
+    @property
+    def anchor(self) -> Vector:
+        """The point that stays while what is only seen gets longer, in the link's frame [m]."""
+        if self.whole or self.about_centre:
+            return self.centre
+        return add(self.centre, scale(-self.dimension / 2.0, self.axis))
 
 
 def growth_of(tree: Tree, name: str) -> Growth:
-    """The direction and dimension in which a link grows, read off the placement of its solids.
+    """The direction and dimension in which a link grows, read off its solids, or off its joints.
 
     Raises:
-        ModelError: the link is missing, or its mass is not that of spheres, cylinders and boxes.
+        ModelError: the link is missing, or has no mass or no direction to grow in.
     """
     link = _changeable(tree, name, "length")
+    if not link.solids:
+        found = main_axis(tree, link)
+        if found is None:
+            wanted = "a link with a joint or a centre of mass away from its parent joint"
+            raise ModelError(tree.name, f"length of link {name}", wanted, "none")
+        return Growth(name, *found, (0.0, 0.0, 0.0), frozenset(), about_centre=False, whole=True)
     is_root = name not in tree.parent_joint
     for chain in [UP] if is_root else _chains(tree, link):
         main = max(link.solids, key=lambda solid: _span(solid, chain))
@@ -93,14 +116,16 @@ def growth_of(tree: Tree, name: str) -> Growth:
 def _changeable(tree: Tree, name: str, what: str) -> Link:
     """The link of a name, if a design can change it."""
     link = tree.link(name, f"{what} parameter")
-    if link.solids:
-        return link
-    if link.looks:
-        found = "a shape that is only seen, without mass" if link.inertia.mass == 0.0 else "a shape only seen"
-    else:
-        found = "none" if link.inertia.mass == 0.0 else "a link with a mesh or without any shape"
-    wanted = "a link with mass, in the shape of spheres, cylinders or boxes"
-    raise ModelError(tree.name, f"{what} of link {name}", wanted, found)
+    if link.inertia.mass == 0.0:
+        found = "a shape that is only seen, without mass" if link.looks or link.meshes else "none"
+        raise ModelError(tree.name, f"{what} of link {name}", "a link with mass", found)
+    if what == "density" and not link.volume:
+        wanted = (
+            "a link in the shape of spheres, cylinders, boxes or watertight meshes, whose volume is known"
+        )
+        found = "a mesh without volume (not watertight)" if link.meshes else "no shape"
+        raise ModelError(tree.name, f"{what} of link {name}", wanted, found)
+    return link
 
 
 def _chains(tree: Tree, link: Link) -> Iterator[Vector]:
@@ -177,8 +202,11 @@ def _resized_link(
 ) -> Link:
     if link.name not in lengths and link.name not in densities:
         return link
-    solids = link.solids
+    solids, inertia, looks, meshes = link.solids, link.own_inertia, link.looks, link.meshes
     if link.name in densities:
+        if not solids:
+            lighter = densities[link.name] * link.volume / inertia.mass
+            inertia = Inertia(lighter * inertia.mass, inertia.center, scaled(lighter, inertia.about_center))
         solids = tuple(replace(solid, density=densities[link.name]) for solid in solids)
     if link.name in lengths:
         growth, factor = growths[link.name], lengths[link.name]
@@ -188,7 +216,11 @@ def _resized_link(
             else _carried(solid, growth, factor)
             for number, solid in enumerate(solids)
         )
-    return replace(link, solids=solids)
+        if growth.whole:
+            inertia = stretched_inertia(inertia, growth.axis, factor)
+        looks = tuple(stretched_look(look, growth.axis, factor, growth.anchor) for look in looks)
+        meshes = tuple(stretched_mesh(mesh, growth.axis, factor, growth.anchor) for mesh in meshes)
+    return replace(link, solids=solids, own_inertia=inertia, looks=looks, meshes=meshes)
 
 
 def _stretched(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
@@ -211,6 +243,10 @@ def _moved_joint(joint: Joint, growths: Mapping[str, Growth], lengths: Mapping[s
     if joint.parent not in lengths:
         return joint
     growth = growths[joint.parent]
+    if growth.whole:
+        place = joint.parent_from_child
+        moved = stretched_point(place.translation, growth.axis, lengths[joint.parent])
+        return replace(joint, parent_from_child=Placement(place.rotation, moved))
     share = _share(_beyond(joint.parent_from_child.translation, growth.centre, growth.axis), growth)
     if share == 0.0:
         return joint

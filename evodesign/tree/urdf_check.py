@@ -2,8 +2,9 @@
 
 What passes holds nothing but links and joints, and of these only what a tree is made of: places, masses,
 shapes, axes and limits, all figures finite and within bounds, and no part twice. Colours, sensors, simulator
-tags, and the axes and limits of fixed joints are stripped. Nothing is fetched: documents with a DTD (and so
-entities) are refused, and a mesh's file is never opened.
+tags, and the axes and limits of fixed joints are stripped; shapes of a size of zero or of an unknown kind
+too, with a note. Nothing is fetched: documents with a DTD (and so entities) are refused, and a mesh's file is
+not opened here.
 
 Source: wiki.ros.org/urdf/XML (link, joint).
 """
@@ -57,33 +58,36 @@ ATTRIBUTES: Mapping[str, Mapping[str, Figures]] = {
     "box": {"size": Figures(3, SIZE.low, SIZE.high)},
     "cylinder": {"radius": SIZE, "length": SIZE},
     "sphere": {"radius": SIZE},
+    "mesh": {"scale": Figures(3, -1e3, 1e3, required=False)},
+    "mimic": {"multiplier": OPTIONAL, "offset": OPTIONAL},
     "axis": {"xyz": AXIS},
     "limit": {"lower": OPTIONAL, "upper": OPTIONAL, "effort": NOT_NEGATIVE, "velocity": NOT_NEGATIVE},
 }
 PRIMITIVES = ("box", "cylinder", "sphere")
 SHORTEST_AXIS = 1e-6
 """An <axis> of fewer than this length has no direction."""
-LONGEST_NAME, LONGEST_TAG = 200, 100_000
-"""Letters of a name, and between the beginnings of two elements."""
+LONGEST_NAME, LONGEST_FILE_NAME, LONGEST_TAG = 200, 1_000, 100_000
+"""Letters of a name, of a path, and between the beginnings of two elements."""
 MOST_LINKS, MOST_ELEMENTS = 5_000, 100_000
 """A robot of 100 links has 1,500 elements."""
 
 
-def checked_urdf(text: str, source: str) -> etree._Element:
+def checked_urdf(text: str, source: str, notes: list[str]) -> etree._Element:
     """The <robot> element of a URDF, with only such elements left as were checked.
 
     Args:
         text: the URDF.
         source: the file's name, for messages.
+        notes: takes a sentence for each shape that is left out.
     Returns:
         Links and joints in file order, their numbers as the shortest text that reads back to the same
-        double. A mesh may stand where a shape does; its own attributes are not looked at.
+        double. A mesh may stand where a shape does.
     Raises:
         ModelError: the text is not XML or not a URDF; says where and why. Whether the links form a tree is
             for `model.Tree` to say.
     """
     root = _parsed(text, source)
-    _check(root, source)
+    _check(root, source, notes)
     return root
 
 
@@ -111,7 +115,7 @@ def _parsed(text: str, source: str) -> etree._Element:
     return root
 
 
-def _check(root: etree._Element, source: str) -> None:
+def _check(root: etree._Element, source: str, notes: list[str]) -> None:
     """Refuse what cannot be read, and strip what is not, so that only checked elements remain."""
     if root.tag != "robot":
         raise ModelError(source, "", "<robot> as the outermost element", f"<{root.tag}>")
@@ -122,12 +126,20 @@ def _check(root: etree._Element, source: str) -> None:
     _strip(root, ("link", "joint"))
     for element in root:
         _check_name(element, source)
-        check = _check_link if element.tag == "link" else _check_joint
-        check(element, source)
+        if element.tag == "link":
+            _check_link(element, source, notes)
+        else:
+            _check_joint(element, source)
         for part in element.iter(*ATTRIBUTES):
             _check_figures(part, source)
+    joints = {joint.get("name") for joint in root.findall("joint")}
     for joint in root.findall("joint"):
         _check_motion(joint, source)
+        for mimic in joint.findall("mimic"):
+            followed = mimic.get("joint", "")
+            if followed not in joints or followed == joint.get("name"):
+                wanted = "the name of another joint"
+                raise ModelError(source, f"{_key(mimic)}.joint", wanted, _quoted(followed))
 
 
 def _check_name(element: etree._Element, source: str) -> None:
@@ -148,7 +160,7 @@ def _check_once(element: etree._Element, tags: Iterable[str], source: str) -> No
             raise ModelError(source, f"{_key(element)}.{tag}", f"one <{tag}>", str(found))
 
 
-def _check_link(link: etree._Element, source: str) -> None:
+def _check_link(link: etree._Element, source: str, notes: list[str]) -> None:
     _strip(link, ("inertial", "visual", "collision"))
     _check_once(link, ("inertial",), source)
     for inertial in link.findall("inertial"):
@@ -159,12 +171,34 @@ def _check_link(link: etree._Element, source: str) -> None:
         _strip(inertial, ("origin", "mass", "inertia"))
     for look in [*link.findall("visual"), *link.findall("collision")]:
         _check_once(look, ("origin", "geometry"), source)
-        shapes = [shape.tag for geometry in look.findall("geometry") for shape in geometry]
-        if len(shapes) != 1 or shapes[0] not in (*PRIMITIVES, "mesh"):
-            found = shortened(", ".join(f"<{shape}>" for shape in shapes)) or "nothing"
+        shapes = [shape for geometry in look.findall("geometry") for shape in geometry]
+        if len(shapes) != 1:
+            found = shortened(", ".join(f"<{shape.tag}>" for shape in shapes)) or "nothing"
             wanted = "one <box>, <cylinder>, <sphere> or <mesh>"
             raise ModelError(source, f"{_key(look)}.geometry", wanted, found)
+        fault = _fault(shapes[0])
+        if fault:
+            notes.append(f"link {link.get('name')}: a {look.tag} is left out, {fault}")
+            link.remove(look)
+            continue
+        if shapes[0].tag == "mesh":
+            _check_file(shapes[0], source)
         _strip(look, ("origin", "geometry"))
+
+
+def _fault(shape: etree._Element) -> str:
+    """Why a shape cannot be used though the file can be; nothing if it can."""
+    if shape.tag not in (*PRIMITIVES, "mesh"):
+        return f"whose <{shortened(str(shape.tag))}> is no box, cylinder, sphere or mesh"
+    sizes = [number for name in ("size", "radius", "length") for number in _numbers(shape.get(name, ""))]
+    return "whose size is zero" if 0.0 in sizes else ""
+
+
+def _check_file(mesh: etree._Element, source: str) -> None:
+    name = mesh.get("filename", "")
+    if not name or not name.isprintable() or len(name) > LONGEST_FILE_NAME:
+        wanted = f"the name of a file, of at most {LONGEST_FILE_NAME} letters"
+        raise ModelError(source, f"{_key(mesh)}.filename", wanted, _quoted(name) if name else "nothing")
 
 
 def _check_joint(joint: etree._Element, source: str) -> None:
@@ -172,17 +206,15 @@ def _check_joint(joint: etree._Element, source: str) -> None:
     if kind not in list(JointKind):
         found = _quoted(kind) if kind else "nothing"
         raise ModelError(source, f"{_key(joint)}.type", "fixed, revolute, continuous or prismatic", found)
-    mimic = joint.find("mimic")
-    if mimic is not None:
-        found = f"a copy of joint {_quoted(mimic.get('joint', ''))}"
-        raise ModelError(source, f"{_key(joint)}.mimic", "a joint that moves by itself", found)
     for role in ("parent", "child"):
         element = joint.find(role)
         if element is None or not element.get("link"):
             raise ModelError(source, f"{_key(joint)}.{role}", "the name of a link", "nothing")
-    moves = kind != JointKind.FIXED
-    _check_once(joint, ("origin", "parent", "child", *(("axis", "limit") if moves else ())), source)
-    _strip(joint, ("origin", "parent", "child", "axis", "limit") if moves else ("origin", "parent", "child"))
+    parts: tuple[str, ...] = ("origin", "parent", "child")
+    if kind != JointKind.FIXED:
+        parts += ("axis", "limit", "mimic")
+    _check_once(joint, parts, source)
+    _strip(joint, parts)
 
 
 def _check_figures(element: etree._Element, source: str) -> None:

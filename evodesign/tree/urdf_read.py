@@ -1,18 +1,17 @@
 """A tree from URDF text.
 
-`urdf_check` vets the XML first; yourdfpy then reads what was checked and nothing else (links, joints,
-primitive shapes).
+`urdf_check` vets the XML first; here its elements become links and joints.
 
-    shape of a link    its visuals; its collisions if there is no visual or a mesh among them; none if that is
-                       so with the collisions too
-    robot's link       with a shape and mass: solids of one density, mass / volume
-                       with mass alone: the file's centre of mass and tensor, kept by every design
+    shape of a link    its visuals; its collisions if there is none; no shape if there is a mesh among them
+    robot's link       with a shape and mass: solids of one density, mass / volume (`InertiaRule.SHAPES`)
+                       with a mesh, or no shape: the file's mass, centre of mass and tensor
                        with a shape alone: only seen
-    person's link      the file's centre of mass and tensor; its shape is only seen
+    person's link      the file's centre of mass and tensor (`InertiaRule.FILE`); its shape is only seen
+    mimic joint        locked where its formula puts it while the joint that it follows is at zero
 
-So a mesh beside primitive shapes rules these out, because they are not the whole body. Mesh files are not
-opened. A tensor is kept only if some body could have it: none of its principal moments is larger than the sum
-of the others.
+What a file says and the tree does not take as it stands is told in `Tree.notes`: locked joints, shapes that
+were left out, and tensors that no body has (a principal moment is larger than the sum of the others). Such a
+tensor is kept: holding a load asks for mass and centre of mass alone.
 
 Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III (tensors that bodies have).
 """
@@ -20,66 +19,71 @@ Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
-from io import BytesIO
-from typing import Any
 
 import numpy as np
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, Vector
+from evodesign.body.placement import Placement, Vector, scale
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
-from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
+from evodesign.tree.frames import parent_from_child
+from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.urdf_check import checked_urdf
 from evodesign.tree.urdf_write import UNLIMITED
 
-__all__ = ["MassRule", "read_urdf"]
+__all__ = ["InertiaRule", "read_urdf"]
 
 LEAST_MASS = 1e-9
 """A link below a microgram [kg] has no mass: some files give their frames a tiny one."""
 
-ROUNDED = 0.01
-"""Share of the largest principal moment by which a file's figures may miss the triangle inequality."""
+ROUNDED, NO_MOMENT = 0.01, 1e-12
+"""Share of the largest principal moment by which a file's figures may miss the triangle inequality, and a
+moment [kg m^2] that counts as zero: some files give their links a mass and no tensor."""
 
+LISTED = 3
+"""Names that a note lists before it counts the others."""
 
 LONGEST_CHAIN = 200
 """Joints from the root to a link; what is computed along a chain recurs."""
 
 
-class MassRule(StrEnum):
+class InertiaRule(StrEnum):
     """Where a link's centre of mass and inertia come from.
 
-    SHAPES (robots): a link with primitive shapes and mass is made of solids of one density, mass / volume;
-    the file's tensor gives way. FILE (persons): as the file says, and shapes are only seen.
+    SHAPES: a link with primitive shapes and mass is made of solids of one density, mass / volume; the file's
+    tensor gives way, and collision shapes stand in for visual meshes. FILE: as the file says, and shapes are
+    only seen. AUTO: FILE for links with a mesh, SHAPES for the others.
     """
 
+    AUTO = "auto"
     SHAPES = "shapes"
     FILE = "file"
 
 
-def read_urdf(text: str, source: str, masses: MassRule) -> Tree:
+def read_urdf(text: str, source: str, rule: InertiaRule) -> Tree:
     """The tree that a URDF describes.
 
     Args:
         text: the URDF.
         source: the file's name, for messages.
-        masses: whether inertia follows from the shapes (robots) or from the file (persons).
+        rule: whether inertia follows from the shapes or from the file.
     Returns:
         A tree whose axes are of unit length, otherwise as given; limits that the file leaves out, or gives
         as the largest double, are infinite.
     Raises:
         ModelError: the text is not XML, not a URDF, or not a usable tree; says where and why.
     """
-    robot = _loaded(checked_urdf(text, source), source)
-    links = tuple(_link(link, masses) for link in robot.links)
-    joints = tuple(_joint(joint) for joint in robot.joints)
-    for link in links:
-        _refuse_impossible(link, source)
+    notes: list[str] = []
+    robot = checked_urdf(text, source, notes)
+    links = tuple(_link(element, rule) for element in robot.findall("link"))
+    notes += _strange(robot, links)
+    joints = tuple(map(_joint, robot.findall("joint")))
     try:
-        tree = Tree(robot.name, links, joints)
+        tree = Tree(robot.get("name", ""), links, joints, tuple(notes))
     except ModelError as error:
         raise ModelError(source, error.key, error.wanted, error.found) from error
     depth = {tree.root: 0}
@@ -91,98 +95,129 @@ def read_urdf(text: str, source: str, masses: MassRule) -> Tree:
     return tree
 
 
-def _loaded(root: etree._Element, source: str) -> Any:
-    """The Robot record that yourdfpy makes of the checked elements, without what a mesh rules out."""
-    import yourdfpy  # here, because it loads trimesh: half a second that only a read of a robot should pay
+@dataclass(frozen=True, slots=True)
+class Shapes:
+    """The shapes of a link under one role."""
 
-    for role in ("visual", "collision"):
-        for look in root.xpath(f"link[{role}/geometry/mesh]/{role}"):
-            look.getparent().remove(look)
-    file = BytesIO(etree.tostring(root))
-    try:
-        return yourdfpy.URDF.load(file, build_scene_graph=False, load_meshes=False).robot
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        # It has no error type of its own; the checks above should leave it nothing to stumble over.
-        raise ModelError(
-            source, "", "a URDF that yourdfpy reads", f"{type(error).__name__}: {error}"
-        ) from error
+    primitives: tuple[Look, ...]
+    meshes: tuple[Mesh, ...]
 
 
-def _link(link: Any, masses: MassRule) -> Link:
-    shapes = _shapes(link.visuals) or _shapes(link.collisions)
-    inertia = _inertia(link.inertial)
-    if masses is MassRule.SHAPES and shapes and inertia.mass > 0.0:
-        density = inertia.mass / sum(shape.volume for shape, _ in shapes)
-        return Link(link.name, solids=tuple(Solid(shape, place, density) for shape, place in shapes))
-    return Link(link.name, own_inertia=inertia, looks=tuple(Look(shape, place) for shape, place in shapes))
+def _link(link: etree._Element, rule: InertiaRule) -> Link:
+    seen, touched = (_shapes(link.findall(role)) for role in ("visual", "collision"))
+    shapes = () if seen.meshes else seen.primitives
+    if not shapes and (rule is not InertiaRule.AUTO or not seen.meshes):
+        shapes = () if touched.meshes else touched.primitives
+    inertia, name = _inertia(link.find("inertial")), link.get("name", "")
+    if rule is not InertiaRule.FILE and shapes and inertia.mass > 0.0:
+        density = inertia.mass / sum(look.shape.volume for look in shapes)
+        solids = tuple(Solid(look.shape, look.link_from_look, density) for look in shapes)
+        return Link(name, solids=solids, meshes=seen.meshes)
+    return Link(name, own_inertia=inertia, looks=shapes, meshes=seen.meshes)
 
 
-def _shapes(looks: Iterable[Any]) -> list[tuple[Shape, Placement]]:
-    return [(_shape(look.geometry), _placement(look.origin)) for look in looks]
-
-
-def _shape(geometry: Any) -> Shape:
-    if geometry.sphere is not None:
-        return Sphere(geometry.sphere.radius)
-    if geometry.cylinder is not None:
-        return Cylinder(geometry.cylinder.radius, geometry.cylinder.length)
-    return Box(*(float(side) for side in geometry.box.size))
-
-
-def _inertia(inertial: Any) -> Inertia:
-    """Inertia in the link's frame; a link without mass has none."""
-    if inertial is None or inertial.mass < LEAST_MASS:
-        return Inertia()
-    rows = [_vector(row) for row in inertial.inertia]
-    here = Inertia(inertial.mass, about_center=(rows[0], rows[1], rows[2]))
-    return here.moved(_placement(inertial.origin))
-
-
-def _refuse_impossible(link: Link, source: str) -> None:
-    """Refuse a kept tensor that no body has."""
-    moments = [float(moment) for moment in np.linalg.eigvalsh(np.array(link.own_inertia.about_center))]
-    if moments[0] + moments[1] < (1.0 - ROUNDED) * moments[2]:
-        wanted = "principal moments of which none is larger than the sum of the others"
-        found = ", ".join(f"{moment:.4g}" for moment in moments)
-        raise ModelError(source, f"link {link.name}.inertial.inertia", wanted, found)
-
-
-def _placement(matrix: Any) -> Placement:
-    """Placement from a 4 x 4 matrix; the identity when an <origin> is left out."""
-    if matrix is None:
-        return Placement()
-    rows = [_vector(row) for row in matrix[:3, :3]]
-    return Placement((rows[0], rows[1], rows[2]), _vector(matrix[:3, 3]))
-
-
-def _joint(joint: Any) -> Joint:
-    kind = JointKind(joint.type)
-    placement = _placement(joint.origin)
-    if kind is JointKind.FIXED:
-        return Joint(joint.name, kind, joint.parent, joint.child, placement)
-    limit = joint.limit  # None for a continuous joint alone: the check asks the others for one
-    ends = (-math.inf, math.inf) if kind is JointKind.CONTINUOUS else (limit.lower, limit.upper)
-    effort, velocity = (None, None) if limit is None else (limit.effort, limit.velocity)
-    length = math.hypot(*joint.axis)
-    return Joint(
-        name=joint.name,
-        kind=kind,
-        parent=joint.parent,
-        child=joint.child,
-        parent_from_child=placement,
-        axis=_vector(joint.axis / length),
-        lower=_limit(ends[0]),
-        upper=_limit(ends[1]),
-        effort=_limit(effort),
-        velocity=_limit(velocity),
+def _shapes(looks: list[etree._Element]) -> Shapes:
+    found = [(look.find("geometry")[0], _placement(look.find("origin"))) for look in looks]
+    return Shapes(
+        tuple(Look(_shape(shape), place) for shape, place in found if shape.tag != "mesh"),
+        tuple(
+            Mesh(shape.get("filename"), _vector(shape, "scale", (1.0, 1.0, 1.0)), place)
+            for shape, place in found
+            if shape.tag == "mesh"
+        ),
     )
 
 
-def _limit(value: float | None) -> float:
-    if value is None:
-        return math.inf
+def _shape(shape: etree._Element) -> Shape:
+    if shape.tag == "sphere":
+        return Sphere(_number(shape, "radius"))
+    if shape.tag == "cylinder":
+        return Cylinder(_number(shape, "radius"), _number(shape, "length"))
+    return Box(*_vector(shape, "size", ()))
+
+
+def _inertia(inertial: etree._Element | None) -> Inertia:
+    """Inertia in the link's frame; a link without mass has none."""
+    mass = 0.0 if inertial is None else _number(inertial.find("mass"), "value")
+    if inertial is None or mass < LEAST_MASS:
+        return Inertia()
+    xx, xy, xz, yy, yz, zz = (
+        _number(inertial.find("inertia"), name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
+    here = Inertia(mass, about_center=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+    return here.moved(_placement(inertial.find("origin")))
+
+
+def _strange(robot: etree._Element, links: Iterable[Link]) -> Iterator[str]:
+    """Sentences for joints that are locked, and for kept tensors that no body has."""
+    locked = [joint.get("name", "") for joint in robot.findall("joint") if joint.find("mimic") is not None]
+    if locked:
+        yield f"locked where they are while the joints that they mimic are at zero: {_listed(locked)}"
+    impossible = [link.name for link in links if _is_impossible(link.own_inertia)]
+    if impossible:
+        yield (
+            "no body has the inertia tensor (a principal moment is larger than the sum of the others; "
+            f"postures ask for mass and centre of mass alone): {_listed(impossible)}"
+        )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The first names, and how many there are beside them."""
+    more = len(names) - LISTED
+    return ", ".join(names[:LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def _is_impossible(inertia: Inertia) -> bool:
+    if inertia.mass == 0.0:
+        return False
+    moments = [float(moment) for moment in np.linalg.eigvalsh(np.array(inertia.about_center))]
+    return moments[2] > NO_MOMENT and moments[0] + moments[1] < (1.0 - ROUNDED) * moments[2]
+
+
+def _joint(joint: etree._Element) -> Joint:
+    name, kind = joint.get("name", ""), JointKind(joint.get("type"))
+    parent, child = (joint.find(role).get("link") for role in ("parent", "child"))
+    place = _placement(joint.find("origin"))
+    if kind is JointKind.FIXED:
+        return Joint(name, kind, parent, child, place)
+    given = _vector(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
+    axis = scale(1.0 / math.hypot(*given), given)
+    mimic = joint.find("mimic")
+    if mimic is not None:
+        moving = Joint(name, kind, parent, child, place, axis)
+        return Joint(name, JointKind.FIXED, parent, child, parent_from_child(moving, _offset(mimic)))
+    limit = joint.find("limit")  # None for a continuous joint alone: the check asks the others for one
+    ends = (-math.inf, math.inf)
+    if kind is not JointKind.CONTINUOUS:
+        ends = _limit(_number(limit, "lower")), _limit(_number(limit, "upper"))
+    effort, velocity = (
+        math.inf if limit is None or limit.get(key) is None else _limit(_number(limit, key))
+        for key in ("effort", "velocity")
+    )
+    return Joint(name, kind, parent, child, place, axis, *ends, effort, velocity)
+
+
+def _offset(mimic: etree._Element) -> float:
+    """Where a mimic joint is while the joint that it follows is at zero [rad or m]."""
+    return _number(mimic, "offset") if mimic.get("offset") else 0.0
+
+
+def _placement(origin: etree._Element | None) -> Placement:
+    """The placement of an <origin>; the identity when it is left out."""
+    nowhere = (0.0, 0.0, 0.0)
+    return Placement.from_xyz_rpy(_vector(origin, "xyz", nowhere), _vector(origin, "rpy", nowhere))
+
+
+def _limit(value: float) -> float:
     return math.copysign(math.inf, value) if abs(value) >= UNLIMITED else value
 
 
-def _vector(numbers: Any) -> Vector:
-    return (float(numbers[0]), float(numbers[1]), float(numbers[2]))
+def _number(element: etree._Element, name: str) -> float:
+    return float(element.get(name, ""))
+
+
+def _vector(element: etree._Element | None, name: str, otherwise: tuple[float, ...]) -> Vector:
+    """Three numbers of an attribute, or others when element or attribute are left out."""
+    text = None if element is None else element.get(name)
+    x, y, z = otherwise if text is None else map(float, text.split())
+    return (x, y, z)

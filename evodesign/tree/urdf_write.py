@@ -1,12 +1,13 @@
 """A tree as URDF text: what a viewer, a simulator or another library can open.
 
     link    <inertial> at the centre of mass, in the link's axes, when there is mass
-            <visual> and <collision> for each solid, <visual> alone for a look
+            <visual> and <collision> for each solid, <visual> alone for a look; <visual> for each mesh with a
+            file, and then none for shapes
     joint   <origin>, <parent>, <child>; <axis> and <limit> when it moves
 
 The text is a function of the tree: names in its order, numbers as the shortest text that reads back to the
 same double. `read_urdf` gives the tree back as long as URDF can tell: solids of one link share a density, and
-a link with an inertia of its own beside looks is a person's (`MassRule.FILE`).
+a link with an inertia of its own beside looks is a person's (`InertiaRule.FILE`).
 
 Source: wiki.ros.org/urdf/XML (link, joint).
 """
@@ -22,6 +23,7 @@ from lxml import etree
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, Scalar, rpy_from_matrix
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.tree.mesh_write import NO_MESHES, MeshNames, named_meshes
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
 __all__ = ["UNLIMITED", "numbers_text", "urdf_text"]
@@ -31,29 +33,38 @@ UNLIMITED = sys.float_info.max
 `inf`; the largest double passes urdfdom, MuJoCo and yourdfpy, and is no joint's limit."""
 
 
-def urdf_text(tree: Tree) -> str:
+def urdf_text(tree: Tree, meshes: MeshNames = NO_MESHES) -> str:
     """The tree as indented XML.
 
+    Args:
+        tree: of numbers.
+        meshes: files of the meshes that are to be seen.
     Raises:
         TypeError: the tree holds an expression where URDF needs a number.
         ValueError: it holds a number that is not finite (beside a limit).
     """
     robot = etree.Element("robot", name=tree.name)
     for link in tree.links:
-        _add_link(robot, link)
+        _add_link(robot, link, meshes)
     for joint in tree.joints:
         _add_joint(robot, joint)
     text: bytes = etree.tostring(robot, pretty_print=True, xml_declaration=True, encoding="utf-8")
     return text.decode("utf-8")
 
 
-def _add_link(robot: etree._Element, link: Link) -> None:
+def _add_link(robot: etree._Element, link: Link, meshes: MeshNames) -> None:
     element = etree.SubElement(robot, "link", name=link.name)
     _add_inertial(element, link.inertia)
-    for solid in link.solids:
-        _add_shape(element, "visual", solid.shape, solid.link_from_solid)
-    for look in link.looks:
-        _add_shape(element, "visual", look.shape, look.link_from_look)
+    files = named_meshes(link, meshes)
+    for mesh, file in files:
+        visual = etree.SubElement(element, "visual")
+        _add_origin(visual, mesh.link_from_mesh)
+        etree.SubElement(etree.SubElement(visual, "geometry"), "mesh", filename=file)
+    if not files:
+        for solid in link.solids:
+            _add_shape(element, "visual", solid.shape, solid.link_from_solid)
+        for look in link.looks:
+            _add_shape(element, "visual", look.shape, look.link_from_look)
     for solid in link.solids:
         _add_shape(element, "collision", solid.shape, solid.link_from_solid)
 

@@ -39,6 +39,8 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Objective, Parameter, Sense, Status
 
+pytestmark = pytest.mark.slow
+
 Make = Callable[[int], Any]
 
 

@@ -20,6 +20,8 @@ from evodesign.problem.source import copy_source, read_source
 from evodesign.records import Generation
 from evodesign.runlog.directory import segments
 
+pytestmark = pytest.mark.slow
+
 POPULATION, BUDGET, SEED = 4, 12, 3
 SIZES: dict[str, Any] = {"population": POPULATION, "evaluations": BUDGET, "seed": SEED}
 COMMAND = [sys.executable, "-m", "evodesign"]

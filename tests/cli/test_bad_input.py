@@ -134,7 +134,7 @@ def test_hand_frame_missing_from_the_urdf_names_key_and_nearest(place: Path) -> 
     [
         (lambda p: ("search", p / "missing.toml"), ["missing.toml", "an existing file"]),
         (lambda p: ("evaluate", p / "missing.toml"), ["missing.toml", "an existing file"]),
-        (lambda p: ("search", p / PROBLEM, "--run", p), ["problems", "run already", "resume"]),
+        (lambda p: ("search", p / PROBLEM, "--run", p), ["problems", "000.mcap cannot be read", "--run"]),
         (lambda p: ("resume", p / "robots"), ["robots", "is not a run"]),
         (lambda p: ("resume", p / "nowhere"), ["nowhere", "no such run"]),
         (lambda p: ("front", p / PROBLEM), [PROBLEM, "found a file"]),

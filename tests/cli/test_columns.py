@@ -36,6 +36,8 @@ from evodesign.runlog.run import read_run
 from tests.report.scenes import random_detail
 from tests.report.several import problem_of_several, write_several
 
+pytestmark = pytest.mark.slow
+
 NARROW, WIDE = 80, 300
 GOLDEN = Path(__file__).parents[1] / "golden"
 SMALL_BASELINE = """
@@ -130,6 +132,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
         ("check", "problems/three_people_three_loads.toml"),
     ),
     "problems": (("problems",), ("problems", "icub-lifting", "--to", "own")),
+    "init": (("init", "problems/robots/icub_shapes.urdf", "--to", "guessed.toml"),),
     "starts": (("starts", "small.toml"),),
     "verify": (("verify", "run"),),
     "recover": (("recover", "run"),),

@@ -31,7 +31,7 @@ from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, RunHeader
 from evodesign.report.export.design import ExportedDesign, design_json
-from evodesign.report.export.folder import readme_text
+from evodesign.report.export.readme import readme_text
 from evodesign.report.live.state import FollowedRun
 from evodesign.report.opened_design import open_design
 from evodesign.report.page import page_content
@@ -39,6 +39,8 @@ from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import essence
+
+pytestmark = pytest.mark.slow
 
 HEAVIEST, LOWEST = 65.0, 1.35
 BOUNDS = f"\n[constraints]\nmass_kg = {{ upper = {HEAVIEST} }}\nreach_height_m = {{ lower = {LOWEST} }}\n"

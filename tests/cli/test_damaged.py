@@ -68,6 +68,7 @@ def test_a_comparison_with_a_damaged_run_ends_with_exit_code_four(run: Path, tmp
     assert call("compare", other, run, "--damaged").returncode == 0
 
 
+@pytest.mark.slow
 def test_the_page_of_a_damaged_run_says_what_is_missing(run: Path, repository: Path, tmp_path: Path) -> None:
     """With the robots of a golden run, of which some bytes are changed."""
     golden = shutil.copytree(repository / "tests/golden/lifting/format-2", tmp_path / "golden")

@@ -45,6 +45,7 @@ def cold(quick: Path) -> tuple[dict, str]:
     return evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")})
 
 
+@pytest.mark.slow
 def test_cache_does_not_change_an_answer(quick: Path, cold: tuple[dict, str]) -> None:
     warm, second = evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")})
     assert "ready 1/1: the person's part at 1 m" in cold[1]
@@ -60,6 +61,7 @@ def test_compiler_does_not_change_an_answer(quick: Path, cold: tuple[dict, str],
     assert not list((tmp_path / "without").glob("functions/*"))
 
 
+@pytest.mark.slow
 def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
     answers = {}
     for symmetry in ("on", "polish"):
@@ -75,15 +77,25 @@ def test_unknown_symmetry_is_refused(quick: Path) -> None:
     command = [*COMMAND, "evaluate", str(quick), "--symmetry", "polsh"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
-    assert "--symmetry: wanted one of on, off, polish, found 'polsh'; did you mean 'polish'?" in done.stderr
+    assert (
+        "--symmetry: wanted one of auto, on, off, polish, found 'polsh'; did you mean 'polish'?"
+        in done.stderr
+    )
 
 
-def test_asymmetric_robot_is_refused_with_what_to_write(quick: Path, tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_asymmetric_design_is_solved_whole_with_a_note_and_refused_where_symmetry_is_asked_for(
+    quick: Path, tmp_path: Path
+) -> None:
     text = quick.read_text().replace('links = ["l_upper_arm", "r_upper_arm"]', 'links = ["l_upper_arm"]', 1)
     (tmp_path / "lame.toml").write_text(text)
     done = subprocess.run(
         [*COMMAND, "check", str(tmp_path / "lame.toml")], capture_output=True, text=True, check=False
     )
-    assert done.returncode == 2
-    assert "solver.symmetry: wanted 'off'" in done.stderr
+    assert done.returncode == 0
+    assert "note: postures are solved whole, not symmetric: " in done.stderr
     assert "'l_upper_arm' without 'r_upper_arm'" in done.stderr
+    command = [*COMMAND, "evaluate", str(tmp_path / "lame.toml"), "--symmetry", "on"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "--symmetry: wanted 'auto', 'off', or a scene that is its own mirror image" in done.stderr

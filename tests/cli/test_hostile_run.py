@@ -105,6 +105,7 @@ def test_what_is_no_regular_file_is_refused_by_every_command(
         assert (code, kind in errors, errors.count("\n")) == (2, True, 1), f"{name}: {errors}"
 
 
+@pytest.mark.slow
 def test_a_lock_that_is_a_pipe_or_a_link_holds_nobody_up(work: Path) -> None:
     sound_copy(work, 0)
     os.mkfifo(work / "run/lock")

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -134,3 +135,27 @@ def test_an_interrupt_that_a_library_swallows_is_raised_again() -> None:
         interrupts.interrupt()
     with pytest.raises(KeyboardInterrupt):
         interrupts.check()
+
+
+def test_an_interrupt_waits_for_the_module_that_is_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A library in C++ may abort the process where an exception comes out of its first instructions."""
+    (tmp_path / "slowly_loaded.py").write_text(
+        "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(0.1)\nWHOLE = True\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        Interrupts().work()
+        with pytest.raises(KeyboardInterrupt):
+            _load_and_wait("slowly_loaded")
+    finally:
+        signal.signal(signal.SIGINT, before)
+        sys.unraisablehook = sys.__unraisablehook__
+    assert sys.modules.pop("slowly_loaded").WHOLE
+
+
+def _load_and_wait(module: str) -> None:
+    __import__(module)
+    time.sleep(5.0)

@@ -11,6 +11,8 @@ import pytest
 
 from evodesign.posture.precompute.precomputed import Precomputed
 
+pytestmark = pytest.mark.slow
+
 
 def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-c", "from evodesign.__main__ import main; main()", *map(str, arguments)]

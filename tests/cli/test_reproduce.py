@@ -16,6 +16,8 @@ from evodesign.problem.progress import PrecomputeProgress
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 
+pytestmark = pytest.mark.slow
+
 QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\ncompile = false\n"
 """Nothing is worked out beforehand; solves take longer, of which there are few."""
 

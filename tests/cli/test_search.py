@@ -66,6 +66,7 @@ def test_search_prints_its_front_and_where_the_run_lies(whole: tuple[Path, str, 
     assert f"{BUDGET}/{BUDGET} evaluations" in lines[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [("--pool", "serial"), ("--pool", "joblib", "--jobs", "1")])
 def test_evaluations_do_not_depend_on_the_workers(
     workers: tuple[str, ...], whole: tuple[Path, str, str], repository: Path, tmp_path: Path
@@ -76,7 +77,10 @@ def test_evaluations_do_not_depend_on_the_workers(
 
 @pytest.mark.parametrize(
     ("stop", "code"),
-    [(signal.SIGKILL, -9), (signal.SIGINT, 3), pytest.param(signal.SIGTERM, 3, marks=pytest.mark.slow)],
+    [
+        (signal.SIGKILL, -9),
+        *(pytest.param(stop, 3, marks=pytest.mark.slow) for stop in (signal.SIGINT, signal.SIGTERM)),
+    ],
 )
 def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     stop: signal.Signals, code: int, whole: tuple[Path, str, str], repository: Path, tmp_path: Path
@@ -103,6 +107,7 @@ def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     assert remembered(run) == remembered(whole[0])
 
 
+@pytest.mark.slow
 def test_larger_budget_continues_the_same_search(
     whole: tuple[Path, str, str], repository: Path, tmp_path: Path
 ) -> None:
@@ -112,6 +117,7 @@ def test_larger_budget_continues_the_same_search(
     assert remembered(run) == remembered(whole[0])
 
 
+@pytest.mark.slow
 def test_a_branch_begins_with_the_past_and_is_verified_like_any_run(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:
@@ -126,6 +132,7 @@ def test_a_branch_begins_with_the_past_and_is_verified_like_any_run(
     assert (found["sound"], found["evaluations"], found["segments"]) == (True, 14, 2)
 
 
+@pytest.mark.slow
 def test_a_run_of_other_versions_is_refused_unless_accepted(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:

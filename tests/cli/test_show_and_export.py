@@ -34,6 +34,8 @@ from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import hold_json, random_detail
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
 
+pytestmark = pytest.mark.slow
+
 
 def write_run(
     place: Path, header: RunHeader, evaluations: Sequence[Evaluation], details: Sequence[Detail]

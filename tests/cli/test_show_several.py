@@ -16,6 +16,8 @@ from evodesign.runlog.run import RunLog
 from tests.cli.test_show_and_export import cells
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def several(problem: DesignProblem) -> DesignProblem:

@@ -16,6 +16,8 @@ from evodesign.runlog.run import RunLog, read_run
 from tests.faults.kills import uninterrupted
 from tests.runlog.toys import OrderedPool, ToyTask, essence
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -11,6 +11,8 @@ import pytest
 import evodesign
 from evodesign.posture.precompute.precomputed import Precomputed
 
+pytestmark = pytest.mark.slow
+
 REPOSITORY = Path(__file__).parents[2]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 GENERATED = "api.md"

@@ -16,6 +16,8 @@ import pytest
 from evodesign.posture.precompute.precomputed import Precomputed
 from tests.docs.notebooks import NOTEBOOKS, executed
 
+pytestmark = pytest.mark.slow
+
 ABSOLUTE = re.compile(r"(?<![\w.:/<])/[\w.-]+/[\w.-]+|\b[A-Z]:\\\\")
 """A place on somebody's machine."""
 

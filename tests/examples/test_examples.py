@@ -13,6 +13,8 @@ import pytest
 from evodesign.api.run import open_run
 from evodesign.posture.precompute.precomputed import Precomputed
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 

@@ -28,7 +28,24 @@ class Synthetic:
         return task
 
 
-def synthetic_header(budget: int, seed: int, algorithm: str = "nsga2", population: int = 16) -> RunHeader:
+@dataclass(frozen=True)
+class Size:
+    """Of a synthetic run: evaluations, seconds of each, jobs; and how it is searched and evaluated."""
+
+    budget: int
+    seconds: float
+    jobs: int
+    pool: str = "joblib"
+    algorithm: str = "nsga2"
+    asynchronous: bool = False
+
+    def header(self, seed: int) -> RunHeader:
+        return synthetic_header(self.budget, seed, self.algorithm, asynchronous=self.asynchronous)
+
+
+def synthetic_header(
+    budget: int, seed: int, algorithm: str = "nsga2", population: int = 16, asynchronous: bool = False
+) -> RunHeader:
     header = toy_header(population=population, budget=budget, seed=seed, dimension=4)
-    search = msgspec.structs.replace(header.search, algorithm=algorithm)
+    search = msgspec.structs.replace(header.search, algorithm=algorithm, asynchronous=asynchronous)
     return msgspec.structs.replace(header, search=search)

@@ -23,8 +23,8 @@ from evodesign.evolve import Silent, resume, start
 from evodesign.runlog.directory import locked
 from evodesign.runlog.run import read_run
 from tests.cli.test_bad_input import evodesign
-from tests.faults.kills import Session, Size, uninterrupted
-from tests.faults.synthetic import synthetic_header
+from tests.faults.kills import Session, uninterrupted
+from tests.faults.synthetic import Size, synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence
 
 HEADER = synthetic_header(budget=64, seed=5)
@@ -123,6 +123,22 @@ def test_a_full_disk_leaves_a_run_to_be_resumed_without_a_further_segment(tmp_pa
             assert not list(disk.glob("run/*.part"))
 
 
+@pytest.mark.parametrize("content", [b"", b"not a log"])
+def test_what_holds_no_header_is_refused_by_search_as_by_resume_and_gone_when_that_was_heeded(
+    content: bytes, tmp_path: Path
+) -> None:
+    """Older versions left an empty segment on a full disk."""
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run/000.mcap").write_bytes(content)
+    with pytest.raises(RunError, match="remove the directory, or choose another one with --run") as resumed:
+        resume(tmp_path / "run", ToyTask, OrderedPool(), Silent(), None)
+    with pytest.raises(RunError, match="remove the directory, or choose another one with --run") as started:
+        start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
+    assert str(started.value) == str(resumed.value)
+    shutil.rmtree(tmp_path / "run")
+    assert start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent()).complete
+
+
 def test_a_report_on_a_full_disk_leaves_the_old_page(tmp_path: Path) -> None:
     start(tmp_path / "run", HEADER, ToyTask(HEADER), OrderedPool(), Silent())
     with small_disk(tmp_path, kilobytes=256) as disk:
@@ -158,9 +174,9 @@ def test_a_directory_that_cannot_be_written_is_refused_in_a_sentence(public_fold
 
 
 def test_a_second_process_is_refused_and_a_crash_leaves_no_lock(tmp_path: Path) -> None:
-    session = Session(tmp_path / "run", 5, Size(64, 0.05, 1))
+    session = Session(tmp_path / "run", 5, Size(64, 0.05, 1, "serial"))
     try:
-        assert session.first_report.wait(60.0)
+        assert session.wait_for(1)
         with pytest.raises(RunError, match="run: another evodesign is writing this run"):
             resume(tmp_path / "run", ToyTask, OrderedPool(), Silent(), None)
         assert len(read_run(tmp_path / "run").evaluations) >= 1, "others may read meanwhile"
@@ -176,7 +192,7 @@ def test_a_killed_search_with_workers_leaves_no_lock(tmp_path: Path) -> None:
     """Workers outlive a killed parent for a moment; they must not hold its lock."""
     session = Session(tmp_path / "run", 5, Size(640, 0.01, 2))
     try:
-        assert session.first_report.wait(60.0)
+        assert session.wait_for(1)
         session.kill()
         with locked(tmp_path / "run"):
             pass

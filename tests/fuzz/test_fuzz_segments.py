@@ -2,190 +2,37 @@
 
 from __future__ import annotations
 
-import json
-import random
 from pathlib import Path
-from typing import Any
 
-import msgspec
 import pytest
 
-from evodesign.analysis.audit import audit, losses
-from evodesign.analysis.front import front
-from evodesign.errors import EvodesignError, RunError
-from evodesign.evolve import replay, start
-from evodesign.records import Evaluation
-from evodesign.runlog.channels import RECORDS, RUN
+from evodesign.errors import RunError
+from evodesign.runlog.channels import RUN
 from evodesign.runlog.follow import Follower
-from evodesign.runlog.reader import entries
 from evodesign.runlog.rewrite import recover
 from evodesign.runlog.run import RunLog, read_run
-from evodesign.runlog.session_log import Silent
-from tests.faults.synthetic import synthetic_header
+from tests.fuzz.segment_cases import Message, examine, messages_of, sound_run, spoilt
 from tests.runlog import crafted
-from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 QUICK_CASES, CASES = 100, 1_500
-
-HEADER = synthetic_header(budget=24, seed=4, population=12)
-STRANGE: tuple[Any, ...] = (
-    *(None, True, "", "x", "\x1b[2J", "\u202e", "a" * 5000, [], {}, [[]], {"a": 1}, -1, 0, 1, 2, 0.5, -0.0),
-    *(
-        1e308,
-        -1e308,
-        1e-320,
-        2**31,
-        2**53 + 1,
-        2**63,
-        2**64,
-        10**30,
-        "minimise",
-        "cma-es",
-        "random",
-        "solved",
-    ),
-)
+CORPUS = sorted((Path(__file__).parent / "corpus/segments").iterdir())
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunLog:
-    directory = tmp_path_factory.mktemp("fuzz") / "run"
-    return start(directory, HEADER, ToyTask(HEADER), OrderedPool(shuffled(1)), Silent())
+    return sound_run(tmp_path_factory.mktemp("fuzz") / "run")
 
 
 @pytest.fixture(scope="module")
-def messages(run: RunLog) -> list[tuple[str, Any, int]]:
-    """Topic, JSON and number of every message of a sound run."""
-    return [
-        (entry.topic, msgspec.to_builtins(entry.record), entry.sequence)
-        for entry in entries(run.directory / "000.mcap")
-    ]
-
-
-def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    """Where something stands in a JSON value."""
-    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    return [path, *(place for key, each in inner for place in places(each, (*path, key)))]
-
-
-def with_a_strange_value(value: Any, chance: random.Random) -> Any:
-    value = json.loads(json.dumps(value))
-    path = chance.choice(places(value))
-    if not path:
-        return chance.choice(STRANGE)
-    parent = value
-    for key in path[:-1]:
-        parent = parent[key]
-    key = path[-1]
-    way = chance.randrange(4)
-    if way == 0 and isinstance(parent, dict):
-        del parent[key]
-    elif way == 1 and isinstance(parent, dict):
-        parent[chance.choice(["", "stranger", "number", "robot"])] = parent[key]
-    elif way == 2 and isinstance(parent, list):
-        parent.insert(key, parent[key])
-    else:
-        parent[key] = chance.choice(STRANGE)
-    return value
-
-
-def with_changed_bytes(data: bytes, chance: random.Random) -> bytes:
-    changed = bytearray(data)
-    for _ in range(chance.randrange(1, 6)):
-        place = chance.randrange(len(changed))
-        changed[place : place + chance.randrange(3)] = chance.randbytes(chance.randrange(3))
-    return bytes(changed) or b"\0"
-
-
-def spoilt_part(part: bytes, message: tuple[str, Any, int], first: bool, chance: random.Random) -> bytes:
-    """A chunk's records with another value, topic or other bytes, or twice."""
-    topic, value, number = message
-    described = crafted.channels() if first else b""
-    match chance.choices(range(5), weights=(6, 2, 3, 1, 1))[0]:
-        case 0:
-            return described + crafted.told(topic, with_a_strange_value(value, chance), number)
-        case 1:
-            data = with_changed_bytes(msgspec.json.encode(value), chance)
-            return described + crafted.message(topic, data, number)
-        case 2:
-            return with_changed_bytes(part, chance)
-        case 3:
-            return described + crafted.told(chance.choice([*RECORDS]), value, number)
-    return part * 2
-
-
-def spoilt(messages: list[tuple[str, Any, int]], chance: random.Random) -> bytes:
-    """A segment with one to three victims; a message that is only left out is the only one."""
-    parts = [crafted.told(topic, value, number) for topic, value, number in messages]
-    parts[0] = crafted.channels() + parts[0]
-    if chance.randrange(8) == 0:
-        del parts[chance.randrange(1, len(parts))]
-        return crafted.segment(map(crafted.chunk, parts))
-    for _ in range(chance.randrange(1, 4)):
-        victim = chance.randrange(len(parts))
-        parts[victim] = spoilt_part(parts[victim], messages[victim], victim == 0, chance)
-    return crafted.segment(map(crafted.chunk, parts))
-
-
-def examine(folder: Path, content: bytes, written: RunLog) -> bool:
-    """Use a run with this segment in every way; whether it was read.
-
-    Raises:
-        AssertionError: a changed front without a note, or a difference between the ways.
-    """
-    directory = folder / "spoilt"
-    directory.mkdir()
-    (directory / "000.mcap").write_bytes(content)
-    Follower(directory).look()
-    try:
-        run = read_run(directory)
-    except RunError as error:
-        refusal = str(error)
-    else:
-        refusal = ""
-    if refusal:
-        assert "000.mcap" in refusal
-        assert refusal.isprintable()
-        return False
-    assert all(note.isprintable() for note in run.notes)
-    found = {each.number: each for each in run.evaluations}
-    assert run.damaged or {each.number for each in written.evaluations} <= found.keys()
-    losses(run)
-    faults = audit(run)
-    try:
-        replay(run)
-    except EvodesignError as error:
-        faults.append(str(error))
-    assert run.notes or faults or not _changed(run, written)
-    assert recover(directory, folder / "recovered").evaluations == run.evaluations
-    return True
-
-
-def _changed(run: RunLog, written: RunLog) -> bool:
-    """Whether designs of the front or their results differ, beside times and workers."""
-    return _essence(run) != _essence(written)
-
-
-def _essence(run: RunLog) -> list[Evaluation]:
-    members = front(run.header.objectives, run.evaluations)
-    return [
-        msgspec.structs.replace(
-            each,
-            seconds=0.0,
-            worker="",
-            assessment=msgspec.structs.replace(
-                each.assessment, reason="", reach=None, cases=(), status="solved"
-            ),
-        )
-        for each in members
-    ]
+def messages(run: RunLog) -> list[Message]:
+    return messages_of(run)
 
 
 @pytest.mark.parametrize(
     "numbers", [range(QUICK_CASES), pytest.param(range(QUICK_CASES, CASES), marks=pytest.mark.slow)], ids=str
 )
 def test_whatever_a_segment_holds_it_is_read_or_refused(
-    numbers: range, run: RunLog, messages: list[tuple[str, Any, int]], tmp_path: Path
+    numbers: range, run: RunLog, messages: list[Message], tmp_path: Path
 ) -> None:
     assert messages[0][0] == RUN
     read = 0
@@ -193,7 +40,34 @@ def test_whatever_a_segment_holds_it_is_read_or_refused(
         folder = tmp_path / f"{number}"
         folder.mkdir()
         try:
-            read += examine(folder, spoilt(messages, random.Random(number)), run)
+            read += examine(folder, spoilt(messages, number), run)
         except Exception as error:
             raise AssertionError(f"case {number}: {type(error).__name__}: {error}") from error
     assert read > len(numbers) / 2, "not all damage takes the header"
+
+
+@pytest.mark.parametrize("path", CORPUS, ids=[path.stem for path in CORPUS])
+def test_what_was_found_once_stays_mended(path: Path, run: RunLog, tmp_path: Path) -> None:
+    examine(tmp_path, path.read_bytes(), run)
+
+
+@pytest.mark.parametrize("version", [-1, 0, 0.5, 3, 1000, 1001, 2**63, 10**30])
+@pytest.mark.parametrize("place", [0, 1, 20])
+def test_a_header_of_another_format_is_taken_alike_by_all_that_reads(
+    version: float, place: int, run: RunLog, messages: list[Message], tmp_path: Path
+) -> None:
+    """Beside a sound header or in its place: later formats are refused, impossible ones are no records."""
+    topic, header, number = messages[0]
+    strange = (topic, {**header, "format_version": version}, number)
+    told = [strange, *messages[1:]] if place == 0 else [*messages[:place], strange, *messages[place:]]
+    parts = [crafted.told(*each) for each in told]
+    parts[0] = crafted.channels() + parts[0]
+    content = crafted.segment(map(crafted.chunk, parts))
+    assert examine(tmp_path, content, run) == (place > 0 and version not in (3, 1000))
+    if version in (3, 1000):
+        with pytest.raises(RunError, match=f"found format {version}; read it with a later evodesign"):
+            Follower(tmp_path / "spoilt").look()
+        with pytest.raises(RunError, match="later evodesign"):
+            recover(tmp_path / "spoilt", tmp_path / "recovered")
+    elif place > 0:
+        assert "are no records (/run: " in " ".join(read_run(tmp_path / "spoilt").notes)

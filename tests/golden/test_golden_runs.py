@@ -19,6 +19,8 @@ from evodesign.runlog.rewrite import merge, recover
 from evodesign.runlog.run import RunLog, digest, read_run
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
+pytestmark = pytest.mark.slow
+
 FOLDER = Path(__file__).parent
 VERSIONS = range(1, FORMAT_VERSION + 1)
 DIGEST = "0f0f30b2b942b4a73f189ccebe3fd05e92fdbd5821fa3e5a7fa29c8acdb4268b"

@@ -18,6 +18,8 @@ from tests.pool.cluster import Cluster
 from tests.pool.faulty import HANGS, KILLS, NOT_A_NUMBER, Faulty, Slow, fault, results
 from tests.runlog.toys import essence, toy_header
 
+pytestmark = pytest.mark.slow
+
 REASONS = {
     KILLS: "the worker process died (signal 9), also when retried alone",
     HANGS: "no result after 2 s, so the worker process was ended",

@@ -37,6 +37,7 @@ def holds(problem: DesignProblem, height: float) -> bool:
     return person.value(height) is not None
 
 
+@pytest.mark.slow
 def test_the_person_holds_the_load_up_to_there_and_no_further(
     problem: DesignProblem, reach: PersonReach
 ) -> None:

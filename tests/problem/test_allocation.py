@@ -189,6 +189,7 @@ def test_objectives_move_with_allocations_as_differences_say(shared: DesignProbl
     assert found["reach_height"]["allocation.effort_ratio"] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_polishing_moves_allocations(shared: DesignProblem) -> None:
     begun = (*shared.space.unscaled(shared.scene.robot.tree)[:-2], 0.45, 0.1)
     aim = aim_of(shared, {"robot_torque": 1.0}, "")

@@ -190,6 +190,7 @@ def test_a_constrained_quantity_has_a_gradient(evaluator: Evaluator) -> None:
         assert found[parameter.name] == pytest.approx((ends[1] - ends[0]) / (2.0 * step), rel=1e-4, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_polishing_stays_within_bounds_that_it_would_leave(evaluator: Evaluator) -> None:
     problem = evaluator.problem
     genome = problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))

@@ -31,7 +31,7 @@ class Counting:
 
     @property
     def problem(self) -> SimpleNamespace:
-        return SimpleNamespace(objectives=())
+        return SimpleNamespace(objectives=(), constraints=())
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         return self.assess

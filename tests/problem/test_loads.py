@@ -11,11 +11,13 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.pieces import Subject, key_of, stages
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
+from evodesign.problem.notes import notes
 from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.sensitivities import Sensitivities
@@ -86,7 +88,6 @@ def test_efforts_may_count_on_average(problem: DesignProblem) -> None:
         ('at = "chest"', r"disturbance\[0\].at: wanted"),
         ("push = [1.0, 0.0, 0.0]", "did you mean 'push_n'"),
         ('name = "a"\n[[disturbance]]\nname = "a"', r"disturbance\[1\].name: wanted a unique name"),
-        ("push_n = [0.0, 1.0, 0.0]", "solver.symmetry: wanted 'off'.*disturbance 'disturbance_1'"),
     ],
 )
 def test_impossible_disturbances_are_refused_in_one_sentence(
@@ -95,6 +96,18 @@ def test_impossible_disturbances_are_refused_in_one_sentence(
     with pytest.raises(InputError, match=words) as caught:
         build_problem(source_with(problem, f"[[disturbance]]\n{table}\n"))
     assert "\n" not in str(caught.value)
+
+
+def test_a_push_to_the_side_is_solved_whole_or_refused_where_symmetry_is_asked_for(
+    problem: DesignProblem,
+) -> None:
+    source = source_with(problem, "[[disturbance]]\npush_n = [0.0, 1.0, 0.0]\n")
+    built = build_problem(source)
+    assert built.symmetry is Symmetry.OFF
+    (note,) = notes(built)
+    assert note.startswith("postures are solved whole, not symmetric: disturbance 'disturbance_1'")
+    with pytest.raises(InputError, match=r"--symmetry: wanted 'auto', 'off'.*disturbance 'disturbance_1'"):
+        build_problem(msgspec.structs.replace(source, symmetry="on"))
 
 
 def test_a_way_to_count_efforts_that_does_not_exist_is_refused(problem: DesignProblem) -> None:
@@ -157,6 +170,7 @@ def test_the_result_shows_torques_and_wrenches_of_every_case(
     assert "heavier: load.force_balance" in told["residuals"]
 
 
+@pytest.mark.slow
 def test_gradients_are_differences_of_disturbed_evaluations(
     shaken: DesignProblem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:

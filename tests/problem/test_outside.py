@@ -38,6 +38,7 @@ class Middle:
 def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (tmp_path / "of_mine.py").write_text(MODULE)
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("EVODESIGN_MODULES", "of_mine, of_nobody")
     yield
     sys.modules.pop("of_mine", None)
 
@@ -77,7 +78,7 @@ def test_names_of_the_package_mean_what_they_did() -> None:
         ),
         ("of_mine:weight", "found 'of_mine:weight' (module 'of_mine' has no attribute 'weight')"),
         ("of_mine:number", "wanted a CaseQuantity or an ObjectiveKind, found 'of_mine:number', which is int"),
-        (":", "wanted MODULE:NAME of something that Python can import, found ':'"),
+        (":", "wanted a module that the environment variable EVODESIGN_MODULES names, found ':'"),
     ],
 )
 def test_wrong_places_are_refused_in_one_sentence(problem: DesignProblem, name: str, words: str) -> None:
@@ -108,5 +109,25 @@ def test_searches_from_outside(asynchronous: bool) -> None:
     settings = SearchSettings(algorithm="of_mine:Middle", dimension=2, objectives=1, population=4, seed=1)
     assert make(settings).ask() == [(0.5, 0.5)]
     for wrong in ("of_nobody:Middle", "of_mine:Centre"):
-        with pytest.raises(InputError, match=f"algorithm: wanted MODULE:CLASS .*, found '{wrong}'"):
+        with pytest.raises(InputError, match=f"algorithm: wanted MODULE:NAME .*, found '{wrong}'"):
             make(msgspec.structs.replace(settings, algorithm=wrong))
+
+
+def test_nothing_is_imported_that_the_user_has_not_named(
+    problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A name may stand in a run that somebody has sent."""
+    from evodesign.searches.registry import make_search
+
+    settings = SearchSettings(algorithm="of_mine:Middle", dimension=2, objectives=1, population=4, seed=1)
+    for allowed in (None, "", "of_min", "of_mine.more", "of_mine:load"):
+        if allowed is None:
+            monkeypatch.delenv("EVODESIGN_MODULES")
+        else:
+            monkeypatch.setenv("EVODESIGN_MODULES", allowed)
+        for ask in (lambda: asking(problem, "of_mine:load"), lambda: make_search(settings)):
+            with pytest.raises(InputError, match=r"to let its code run, set EVODESIGN_MODULES=of_mine$"):
+                ask()
+    assert "of_mine" not in sys.modules
+    with pytest.raises(InputError, match="wanted a module that the environment variable"):
+        make_search(msgspec.structs.replace(settings, algorithm="subprocess:Popen"))

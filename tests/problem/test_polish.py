@@ -16,6 +16,8 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.polish import Step, aim_of, polish
 from evodesign.records import Genome, Hold
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def unscaled(problem: DesignProblem) -> Genome:

@@ -64,6 +64,7 @@ def found(derivative: DesignDerivative) -> Mapping[str, ObjectiveSensitivity]:
     return derivative.sensitivities()
 
 
+@pytest.mark.slow
 def test_gradients_are_differences_of_what_a_search_sees(
     benchmark_module: ModuleType, problem: DesignProblem, known: Precomputed
 ) -> None:

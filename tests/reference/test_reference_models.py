@@ -18,7 +18,7 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.notes import notes
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.resize import resize
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from evodesign.tree.urdf_write import urdf_text
 from tests.oracles.pinocchio_model import carried_inertia, floating_model
 from tests.tree.test_icub_robot import reference_text
@@ -106,6 +106,7 @@ def test_robot_and_person_load_with_their_figures(reference: DesignProblem) -> N
     assert any("jLeftHip_roty" in note for note in notes(reference)), "hip flexion looks turned"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("lengths", "highest"), [((1.0,) * 8, 1.27), (PAPER_START, 1.51)])
 def test_reach_is_the_known_one(
     lengths: tuple[float, ...], highest: float, edges: Evaluator, handles: Evaluator
@@ -133,7 +134,7 @@ def test_every_required_height_is_held_within_the_checks_tolerance(handles: Eval
 def test_resized_robot_is_the_same_in_pinocchio_and_mujoco_and_read_again(reference: DesignProblem) -> None:
     tree = reference.space.resized(reference.scene.robot.tree, of_lengths(reference, PAPER_START))
     text = urdf_text(tree)
-    assert_same_tree(read_urdf(text, "written.urdf", MassRule.SHAPES), tree)
+    assert_same_tree(read_urdf(text, "written.urdf", InertiaRule.SHAPES), tree)
     model = floating_model(text)
     for name, inertia in carried_inertia(tree).items():
         found = model.inertias[model.getJointId(name)]
@@ -150,7 +151,7 @@ def test_unit_lengths_and_own_densities_are_the_published_robot(reference: Desig
 
 
 def test_the_person_written_and_read_is_the_published_one(reference: DesignProblem) -> None:
-    tree = read_urdf(reference_text(PERSON), PERSON, MassRule.FILE)
-    assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", MassRule.FILE), tree)
+    tree = read_urdf(reference_text(PERSON), PERSON, InertiaRule.FILE)
+    assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", InertiaRule.FILE), tree)
     assert pin.computeTotalMass(floating_model(urdf_text(tree))) == pytest.approx(72.70, abs=5e-3)
     assert len(reference.scene.human.tree.links) == len(tree.links) + 4, "two palms, two soles"

@@ -33,7 +33,7 @@ from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.model import Look, Tree
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from tests.human.test_body import placements
 from tests.tree.test_icub_robot import reference_text
 
@@ -96,7 +96,7 @@ class Figures:
 @functools.cache
 def bodies() -> tuple[Tree, Tree]:
     """The generated person and the published one."""
-    return human_tree(PERSON), read_urdf(reference_text(PUBLISHED), PUBLISHED, MassRule.FILE)
+    return human_tree(PERSON), read_urdf(reference_text(PUBLISHED), PUBLISHED, InertiaRule.FILE)
 
 
 def half_extent(look: Look, direction: Sequence[float]) -> float:

@@ -214,6 +214,25 @@ def test_a_branch_with_nothing_changed_repeats_the_old_run(tmp_path: Path) -> No
     assert essence(resume(tmp_path / "new", ToyTask, OrderedPool(), Silent(), 60)) == essence(old)
 
 
+@pytest.mark.parametrize("stop", [KeyboardInterrupt, OSError(28, "No space left on device")])
+def test_a_branch_that_is_broken_off_leaves_no_run_and_can_be_begun_again(
+    stop: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    old = write(tmp_path / "old", 60)
+
+    def broken_off(*arguments: object) -> None:
+        raise stop
+
+    with monkeypatch.context() as patch:
+        patch.setattr("evodesign.runlog.rewrite.add_header_copy", broken_off)
+        with pytest.raises((KeyboardInterrupt, RunError)):
+            begin_branch(old, tmp_path / "new", 3, old.header.search)
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["lock"]
+    assert begin_branch(old, tmp_path / "new", 3, old.header.search) == 30
+    with pytest.raises(RunError, match="holds a run already"):
+        begin_branch(old, tmp_path / "new", 3, old.header.search)
+
+
 def test_a_branch_needs_a_past(tmp_path: Path) -> None:
     old = write(tmp_path / "old", 35)
     with pytest.raises(InputError, match=r"--branch-from: wanted at most 3, the whole generations.*found 4"):

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import subprocess
 import sys
 from pathlib import Path
@@ -144,3 +145,20 @@ def test_a_long_session_goes_on_in_a_further_segment(tmp_path: Path, monkeypatch
     run = read_run(tmp_path / "run")
     assert list(run.evaluations) == evaluations
     assert (run.complete, run.notes) == (True, ())
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_the_collector_of_cycles_is_as_it_was_when_a_run_was_read_or_refused(
+    enabled: bool, tmp_path: Path
+) -> None:
+    with RunWriter(tmp_path / "run", HEADER):
+        pass
+    was_enabled = gc.isenabled()
+    try:
+        (gc.enable if enabled else gc.disable)()
+        read_run(tmp_path / "run")
+        with pytest.raises(RunError):
+            read_run(tmp_path / "none")
+        assert gc.isenabled() == enabled
+    finally:
+        (gc.enable if was_enabled else gc.disable)()

@@ -23,7 +23,7 @@ from evodesign.errors import ModelError
 from evodesign.tree.kinematics import Pose, forward
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.resize import growth_of, resize
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from evodesign.tree.urdf_write import urdf_text
 from problems.robots.write_icub import URDF
 from tests.oracles.pinocchio_model import floating_model
@@ -80,7 +80,7 @@ CHANGING = ("pelvis", "mast", "lift", "wheel")
 
 @pytest.fixture(scope="module")
 def walker() -> Tree:
-    return read_urdf(WALKER, "walker.urdf", MassRule.SHAPES)
+    return read_urdf(WALKER, "walker.urdf", InertiaRule.SHAPES)
 
 
 @pytest.fixture(scope="module", params=["walker", "icub_shapes.urdf", "robot_reference.urdf"])
@@ -90,7 +90,7 @@ def robot(request: pytest.FixtureRequest) -> Tree:
     text = {"walker": lambda: WALKER, URDF.name: lambda: URDF.read_text(encoding="utf-8")}.get(
         name, lambda: reference_text(name)
     )()
-    return read_urdf(text, name, MassRule.SHAPES)
+    return read_urdf(text, name, InertiaRule.SHAPES)
 
 
 def poses(tree: Tree, positions: Mapping[str, float]) -> dict[str, Pose]:
@@ -155,14 +155,6 @@ def test_a_mesh_keeps_the_inertia_that_pinocchio_reads(walker: Tree) -> None:
     assert np.allclose(claw.about_center, found.inertia, atol=1e-15)
 
 
-def test_a_copying_joint_is_refused_by_name() -> None:
-    copied = WALKER.replace(
-        '<axis xyz="0 -1 0"/>', '<axis xyz="0 -1 0"/><mimic joint="turn" multiplier="2"/>'
-    )
-    with pytest.raises(ModelError, match=r"walker\.urdf: joint roll\.mimic: .* found a copy of joint 'turn'"):
-        read_urdf(copied, "walker.urdf", MassRule.SHAPES)
-
-
 # Resizing
 
 
@@ -177,9 +169,9 @@ def test_growth_directions_follow_from_the_placement_of_the_shapes(walker: Tree)
     assert growths["lift"].axis == pytest.approx(slanted)
 
 
-@pytest.mark.parametrize("name", ["claw", "camera", "tool"])
-def test_what_has_no_solid_cannot_get_longer(walker: Tree, name: str) -> None:
-    with pytest.raises(ModelError, match=f"length of link {name}: wanted a link with mass, in the shape of"):
+@pytest.mark.parametrize("name", ["camera", "tool"])
+def test_what_has_no_mass_cannot_get_longer(walker: Tree, name: str) -> None:
+    with pytest.raises(ModelError, match=f"length of link {name}: wanted a link with mass, found"):
         growth_of(walker, name)
 
 
@@ -218,7 +210,7 @@ def test_every_design_is_physical(robot: Tree) -> None:
 
 def test_a_resized_robot_written_and_read_is_the_same_robot(robot: Tree) -> None:
     for design in designs(robot, 5):
-        assert_same_tree(read_urdf(urdf_text(design), "written.urdf", MassRule.SHAPES), design)
+        assert_same_tree(read_urdf(urdf_text(design), "written.urdf", InertiaRule.SHAPES), design)
 
 
 def test_mujoco_and_pinocchio_find_the_resized_robot(walker: Tree) -> None:

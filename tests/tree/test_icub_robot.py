@@ -13,7 +13,7 @@ from lxml import etree
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.tree.model import JointKind, Tree
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from evodesign.tree.urdf_write import UNLIMITED, urdf_text
 from problems.robots.write_icub import TABLE, URDF, read_table, robot
 from tests.machine import leave_out
@@ -41,7 +41,7 @@ def text() -> str:
 
 @pytest.fixture(scope="module")
 def icub(text) -> Tree:
-    return read_urdf(text, URDF.name, MassRule.SHAPES)
+    return read_urdf(text, URDF.name, InertiaRule.SHAPES)
 
 
 def reference_text(name: str) -> str:
@@ -53,7 +53,7 @@ def reference_text(name: str) -> str:
 
 @pytest.fixture(scope="module")
 def reference() -> Tree:
-    return read_urdf(reference_text("robot_reference.urdf"), "robot_reference.urdf", MassRule.SHAPES)
+    return read_urdf(reference_text("robot_reference.urdf"), "robot_reference.urdf", InertiaRule.SHAPES)
 
 
 def other_side(name: str) -> str:
@@ -248,7 +248,7 @@ def test_the_published_robot_reads_with_its_shapes(reference):
 
 
 def test_the_published_person_reads_with_the_inertia_of_the_file():
-    person = read_urdf(reference_text("human_subject04_48dof.urdf"), "person.urdf", MassRule.FILE)
+    person = read_urdf(reference_text("human_subject04_48dof.urdf"), "person.urdf", InertiaRule.FILE)
     assert (len(person.links), len(person.actuated)) == (49, 48)
     assert total_mass(person) == pytest.approx(72.70, abs=0.005)
     assert not any(link.solids for link in person.links)

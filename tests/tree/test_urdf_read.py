@@ -5,14 +5,14 @@ import math
 import time
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from lxml import etree
 
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.errors import ModelError
-from evodesign.tree.model import JointKind, Tree
-from evodesign.tree.resize import growth_of
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.model import JointKind, Mesh, Tree
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from tests.oracles.pinocchio_model import floating_model
 
 TENSOR = '<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/>'
@@ -41,11 +41,11 @@ ARM = f"""<?xml version="1.0" encoding="ISO-8859-1"?>
 ONE_LINK = '<robot name="r"><link name="body">{}</link></robot>'
 
 
-def read(text: str, masses: MassRule = MassRule.SHAPES) -> Tree:
+def read(text: str, masses: InertiaRule = InertiaRule.SHAPES) -> Tree:
     return read_urdf(text, "arm.urdf", masses)
 
 
-def one_link(inside: str, masses: MassRule = MassRule.SHAPES):
+def one_link(inside: str, masses: InertiaRule = InertiaRule.SHAPES):
     return read(ONE_LINK.format(inside), masses).links[0]
 
 
@@ -110,7 +110,7 @@ def test_the_same_shape_seen_and_touched_counts_once():
 
 def test_a_person_keeps_the_inertia_of_the_file():
     turned = f'<inertial><origin xyz="0 1 0.4" rpy="0.3 0.2 0.5"/><mass value="12"/>{TENSOR}</inertial>'
-    body = one_link(turned + BOX, MassRule.FILE)
+    body = one_link(turned + BOX, InertiaRule.FILE)
     assert not body.solids
     assert [item.shape for item in body.looks] == [Box(0.1, 0.2, 0.3)]
     found = floating_model(ONE_LINK.format(turned)).inertias[1]
@@ -138,7 +138,8 @@ def test_several_shapes_share_one_density_and_keep_the_mass():
     assert body.inertia.mass == pytest.approx(3.0, rel=1e-14)
 
 
-MESH, ROD = '<mesh filename="nowhere/a.stl" scale="x"/>', '<cylinder radius="0.1" length="0.5"/>'
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+MESH, ROD = '<mesh filename="nowhere/a.stl" scale="1 -1 2"/>', '<cylinder radius="0.1" length="0.5"/>'
 
 
 @pytest.mark.parametrize("seen", [look(MESH), look(MESH) + look('<sphere radius="0.2"/>')])
@@ -160,11 +161,14 @@ def test_visual_shapes_do_not_mind_a_mesh_that_is_touched():
     assert [solid.shape for solid in body.solids] == [Cylinder(0.1, 0.5)]
 
 
-def test_a_length_parameter_of_a_mesh_is_refused_with_the_reason():
-    tree = read(ONE_LINK.format(inertial(3.0) + look(MESH)))
-    with pytest.raises(ModelError, match="found a link with a mesh or without any shape") as caught:
-        growth_of(tree, "body")
-    assert caught.value.key == "length of link body"
+def test_meshes_are_looked_at_and_rule_out_what_is_touched_where_nothing_else_is_asked_for():
+    inside = inertial(3.0) + look(MESH) + look(ROD, "collision")
+    body = one_link(inside, InertiaRule.AUTO)
+    assert (body.solids, body.looks) == ((), ())
+    assert body.meshes == (Mesh("nowhere/a.stl", (1.0, -1.0, 2.0)),)
+    assert body.inertia.about_center[0][0] == 0.01
+    assert one_link(inside, InertiaRule.SHAPES).meshes == body.meshes
+    assert one_link(inertial(3.0) + look(ROD), InertiaRule.AUTO).solids, "no mesh, so it is its shapes"
 
 
 def test_a_link_below_a_microgram_has_no_mass():
@@ -172,25 +176,74 @@ def test_a_link_below_a_microgram_has_no_mass():
     assert not one_link(inertial(1e-10) + look(ROD)).solids
 
 
-def test_a_tensor_that_no_body_has_is_refused_where_it_would_be_kept():
+def notes(inside: str, rule: InertiaRule = InertiaRule.SHAPES) -> list[str]:
+    return [note.split(": ")[1] for note in read(ONE_LINK.format(inside), rule).notes]
+
+
+def test_a_tensor_that_no_body_has_is_noted_where_it_is_kept():
     thin = inertial(3.0).replace('izz="0.03"', 'izz="0.04"')
-    with pytest.raises(ModelError, match="none is larger than the sum") as caught:
-        one_link(thin)
-    assert (caught.value.key, caught.value.found) == ("link body.inertial.inertia", "0.01, 0.02, 0.04")
-    assert one_link(thin + look(ROD)).solids, "the shape tells the inertia"
-    assert one_link(thin.replace('izz="0.04"', 'izz="0.0302"')).inertia.mass == 3.0, "rounded figures"
-    with pytest.raises(ModelError, match="none is larger than the sum"):
-        one_link(inertial(3.0).replace('ixy="0"', 'ixy="0.1"'))
-    with pytest.raises(ModelError, match="none is larger than the sum"):
-        one_link(thin + look(ROD), MassRule.FILE)
+    assert (
+        read(ONE_LINK.format(thin)).notes[0].startswith("no body has the inertia tensor (a principal moment")
+    )
+    assert notes(thin) == notes(inertial(3.0).replace('ixy="0"', 'ixy="0.1"')) == ["body"]
+    assert one_link(thin).inertia.about_center[2][2] == 0.04
+    assert notes(thin + look(ROD)) == [], "the shape tells the inertia"
+    assert notes(thin + look(ROD), InertiaRule.FILE) == ["body"]
+    assert notes(thin.replace('izz="0.04"', 'izz="0.0302"')) == [], "rounded figures"
+    assert notes(inertial(3.0).replace("0.01", "0").replace("0.02", "0").replace("0.03", "0")) == []
 
 
+def test_many_of_a_kind_are_one_note():
+    thin = inertial(3.0).replace('izz="0.03"', 'izz="0.04"')
+    links = "".join(f'<link name="part_{i}">{thin}</link>' for i in range(5))
+    joints = "".join(
+        f'<joint name="j{i}" type="fixed"><parent link="part_0"/><child link="part_{i}"/></joint>'
+        for i in range(1, 5)
+    )
+    (note,) = read(f'<robot name="r">{links}{joints}</robot>').notes
+    assert note.endswith("alone): part_0, part_1, part_2 and 2 more")
+
+
+@pytest.mark.parametrize(("shape", "why"), [
+    ('<box size="0.1 0 0.3"/>', "whose size is zero"),
+    ('<sphere radius="0"/>', "whose size is zero"),
+    ('<capsule radius="1" length="2"/>', "whose <capsule> is no box, cylinder, sphere or mesh"),
+])  # fmt: skip
+def test_a_shape_that_cannot_be_used_is_left_out_with_a_note(shape, why):
+    tree = read(ONE_LINK.format(inertial(3.0) + look(shape) + look(ROD)))
+    assert tree.notes == (f"link body: a visual is left out, {why}",)
+    assert [solid.shape for solid in tree.links[0].solids] == [Cylinder(0.1, 0.5)]
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+@pytest.mark.parametrize(("figures", "offset"), [('multiplier="-2" offset="0.3"', 0.3), ("", 0.0)])
+def test_a_mimic_joint_is_locked_where_pinocchio_puts_it(kind, figures, offset):
+    text = ARM.replace('<joint name="weld" type="fixed">', '<joint name="weld" type="revolute">')
+    text = text.replace(
+        '<axis xyz="nan nan nan"/><limit lower="3" upper="inf"/>', '<axis xyz="0 0 1"/>' + LIMIT
+    )
+    text = text.replace('<joint name="shoulder" type="revolute">', f'<joint name="shoulder" type="{kind}">')
+    tree = read(text.replace('<dynamics damping="a lot"/>', f'<mimic joint="weld" {figures}/>'))
+    assert tree.notes == ("locked where they are while the joints that they mimic are at zero: shoulder",)
+    assert tree.actuated == ("weld",)
+    model = pin.buildModelFromXML(text.replace('<dynamics damping="a lot"/>', ""))
+    data, positions = model.createData(), pin.neutral(model)
+    positions[model.joints[model.getJointId("shoulder")].idx_q] = offset
+    pin.framesForwardKinematics(model, data, positions)
+    found, place = data.oMf[model.getFrameId("upper")], tree.joint_by_name["shoulder"].parent_from_child
+    assert np.allclose(place.rotation, found.rotation, atol=1e-15)
+    assert np.allclose(place.translation, found.translation, atol=1e-15)
+
+
+DAMPING = '<dynamics damping="a lot"/>'
 FAULTS = [
     ("0.1 0.2 0.3", "0.1 0.2", "link chest.visual.box.size", "3 finite numbers", "'0.1 0.2'"),
     ("0.1 0.2 0.3", "0.1 -0.2 0.3", "link chest.visual.box.size", "3 finite numbers", "'0.1 -0.2 0.3'"),
-    ("0.1 0.2 0.3", "0.1 0 0.3", "link chest.visual.box.size", "from 1e-06 to 1000", "'0.1 0 0.3'"),
+    ("0.1 0.2 0.3", "0.1 1e-9 0.3", "link chest.visual.box.size", "from 1e-06 to 1000", "'0.1 1e-9 0.3'"),
     ('size="0.1 0.2 0.3"', "", "link chest.visual.box.size", "3 finite numbers", "nothing"),
-    ("<box ", "<capsule ", "link chest.visual.geometry", "<cylinder>", "<capsule>"),
+    ("<box ", '<box size="1 1 1"/><sphere ', "link chest.visual.geometry", "<cylinder>", "<box>, <sphere>"),
+    ("<box ", "<mesh ", "link chest.visual.mesh.filename", "the name of a file", "nothing"),
+    ("<box ", '<mesh filename="a" scale="1" ', "link chest.visual.mesh.scale", "3 finite numbers", "'1'"),
     ('<box size="0.1 0.2 0.3"/>', "", "link chest.visual.geometry", "one <box>", "nothing"),
     ('value="12.0"', 'value="-12.0"', "link chest.inertial.mass.value", "from 0", "'-12.0'"),
     ('value="12.0"', 'value="heavy"', "link chest.inertial.mass.value", "a finite number", "'heavy'"),
@@ -208,7 +261,8 @@ FAULTS = [
     ('velocity="3"', 'velocity="inf"', "joint shoulder.limit.velocity", "a finite number", "'inf'"),
     ('type="revolute"', 'type="floating"', "joint shoulder.type", "continuous or prismatic", "'floating'"),
     ('type="revolute"', "", "joint shoulder.type", "continuous or prismatic", "nothing"),
-    ('<dynamics damping="a lot"/>', '<mimic joint="weld"/>', "joint shoulder.mimic", "itself", "'weld'"),
+    (DAMPING, '<mimic joint="elbow"/>', "joint shoulder.mimic.joint", "name", "'elbow'"),
+    (DAMPING, '<mimic joint="shoulder"/>', "joint shoulder.mimic.joint", "name", "'shoulder'"),
     ('<parent link="chest"/>', "", "joint shoulder.parent", "the name of a link", "nothing"),
     ('<child link="upper"/>', "<child/>", "joint shoulder.child", "the name of a link", "nothing"),
     ('<child link="upper"/>', '<child link="uper"/>', "joint shoulder.child", "link", "did you mean 'upper'"),

@@ -17,7 +17,7 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Solid, Sphere
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
-from evodesign.tree.urdf_read import MassRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from evodesign.tree.urdf_write import UNLIMITED, urdf_text
 from tests.oracles.pinocchio_model import carried_inertia, carriers, floating_model
 
@@ -139,13 +139,13 @@ def assert_same_tree(found: Tree, wanted: Tree):
 @settings(max_examples=60, deadline=None)
 @given(trees(robot_links))
 def test_a_robot_written_and_read_is_the_same_robot(tree):
-    assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", MassRule.SHAPES), tree)
+    assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", InertiaRule.SHAPES), tree)
 
 
 @settings(max_examples=40, deadline=None)
 @given(trees(person_links))
 def test_a_person_written_and_read_is_the_same_person(tree):
-    assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", MassRule.FILE), tree)
+    assert_same_tree(read_urdf(urdf_text(tree), "written.urdf", InertiaRule.FILE), tree)
 
 
 @settings(max_examples=20, deadline=None)
@@ -300,13 +300,13 @@ def test_inertial_is_at_the_centre_in_the_axes_of_the_link():
 def test_an_unlimited_effort_is_the_largest_double_and_reads_as_infinite():
     (limit,) = xml(pendulum()).xpath("joint/limit")
     assert float(limit.get("effort")) == np.finfo(float).max
-    joint = read_urdf(urdf_text(pendulum()), "p", MassRule.SHAPES).joint_by_name["hinge"]
+    joint = read_urdf(urdf_text(pendulum()), "p", InertiaRule.SHAPES).joint_by_name["hinge"]
     assert joint.effort == joint.velocity == INFINITE
 
 
 def test_an_unlimited_slide_reads_as_unlimited():
     tree = pendulum(kind=JointKind.PRISMATIC, lower=-INFINITE, upper=INFINITE)
-    joint = read_urdf(urdf_text(tree), "p", MassRule.SHAPES).joint_by_name["hinge"]
+    joint = read_urdf(urdf_text(tree), "p", InertiaRule.SHAPES).joint_by_name["hinge"]
     assert (joint.lower, joint.upper) == (-INFINITE, INFINITE)
 
 

@@ -12,11 +12,13 @@ from evodesign.cli.output import markup, printable, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.inertia_rules import RuleDifference
 from evodesign.problem.model_json import model_json
+from evodesign.problem.preflight import Finding
 from evodesign.records import Constraint
 from evodesign.violations import bounds_text
 
-__all__ = ["model_tables"]
+__all__ = ["findings_table", "model_tables", "rules_table"]
 
 CAPTION = (
     "sizes [m]: box x, y, z; cylinder radius, length; sphere radius; density [kg/m^3]\n"
@@ -34,6 +36,25 @@ def model_tables(problem: DesignProblem) -> tuple[FittedTable | Table, ...]:
         _parameters_table(shown["parameters"]),
         *([_materials_table(shown["materials"])] if "materials" in shown else []),
     )
+
+
+def rules_table(differences: Iterable[RuleDifference]) -> FittedTable:
+    """Where shapes and file disagree about a link's inertia."""
+    columns = [*names("link", "taken"), *numbers("apart [mm]", "moments taken", "and otherwise")]
+    caption = 'apart: the centres of mass by [robot] inertia = "shapes" and "file"; principal moments [g m^2]'
+    table = titled("links whose shapes and inertia disagree", columns, caption=caption)
+    for each in differences:
+        moments = (", ".join(f"{1e3 * moment:.3g}" for moment in one) for one in each.moments_kg_m2)
+        table.add_row(markup(each.link), str(each.taken), f"{1e3 * each.center_m:.1f}", *moments)
+    return table
+
+
+def findings_table(findings: Iterable[Finding]) -> FittedTable:
+    """What was tried before anything long begins."""
+    table = titled("tried with the robot of the file", names("item", "found"))
+    for finding in findings:
+        table.add_row(markup(finding.item), markup(finding.found or "fails"))
+    return table
 
 
 def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> FittedTable:

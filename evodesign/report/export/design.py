@@ -44,6 +44,7 @@ class ExportedDesign:
         evaluation: the design.
         scene_set: robot of the design, people and loads.
         cases: postures of those that were solved, in the problem's order.
+        notes: on what is not as in the problem's files, such as a robot that was averaged.
     """
 
     run: str
@@ -51,6 +52,7 @@ class ExportedDesign:
     evaluation: Evaluation
     scene_set: SceneSet
     cases: tuple[CaseDetail, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def people(self) -> dict[str, tuple[str, Tree]]:

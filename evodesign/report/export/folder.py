@@ -1,4 +1,4 @@
-"""Writing the folder of a design, with a README: what each file is and how to open it.
+"""Writing the folder of a design: all of its files, and a README about them.
 
 File names are fixed, whatever the names in problem and robot are. Everything is made before anything is
 written, and only into a folder that is empty or new.
@@ -7,166 +7,27 @@ written, and only into a folder that is empty or new.
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
 import msgspec
 
-from evodesign.errors import InputError, ModelError, on_one_line
+from evodesign.errors import InputError, ModelError
 from evodesign.files import write_folder
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.progress import SILENT, PrecomputeProgress
-from evodesign.records import Constraint, Objective, materials_of
 from evodesign.report.export.design import ExportedDesign, design_json, postures_csv, wrenches_csv
+from evodesign.report.export.readme import MESHES, readme_text
 from evodesign.report.opened_design import open_design
 from evodesign.report.replay.layout import layout_text
-from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
-from evodesign.report.replay.recording import SECONDS_PER_CASE, several, time_scale, timed, write_replay
+from evodesign.report.replay.recording import time_scale, write_replay
 from evodesign.runlog.run import RunLog
+from evodesign.tree.mesh_write import mesh_files
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.urdf_write import urdf_text
-from evodesign.violations import bounds_text, reason_of_infeasibility
 
-__all__ = ["FILES", "Exported", "export_design", "export_logged", "readme_text", "refuse_full"]
-
-FILES: Final[Mapping[str, str]] = {
-    "robot.urdf": """\
-The robot of this design, made of spheres, cylinders and boxes; it needs no other file. Any URDF viewer opens
-it, `yourdfpy robot.urdf`, and in Python
-`pinocchio.buildModelFromUrdf("robot.urdf", pinocchio.JointModelFreeFlyer())`. MuJoCo opens it, too, but
-fixes its root: take the next file there.""",
-    "robot.xml": """\
-The same robot for MuJoCo, floating over a ground plane, with a keyframe per load height:
-`python -m mujoco.viewer --mjcf=robot.xml`, there Simulation, Key, Load key. Nothing drives the joints and
-there is no load, so pause it first.""",
-    "human.urdf": """\
-The person, for kinematics and viewing; MuJoCo refuses links that move and have no mass.""",
-    "postures.csv": """\
-Coordinates of the root links, joint positions and joint torques of robot and person, one joint per row.""",
-    "wrenches.csv": """\
-Force and moment on each hand (about the grasp point, in the agent's own frame) and foot (about the sole's
-origin, in the sole's frame).""",
-    "postures.json": """\
-All that is known of this design: parameters, objectives, reach, outcome and postures by height.""",
-    "replay.mcap": """\
-The postures as a recording, heights as time: ten seconds per metre, so a load at 1.2 m is at 12 s, and the
-last posture stays a second. Open it in Foxglove or Lichtblick with "Open local file". `/tf` holds all frames,
-`/scene/...` shapes and arrows, `/joint_states/...` positions, and torques as efforts; both URDF files are
-attached.""",
-    "layout.json": """\
-Panels for the recording. In Foxglove or Lichtblick: the layout menu, "Import from file".""",
-}
-"""What each file is."""
-
-HEIGHTS_AS_TIME: Final = "heights as time: ten seconds per metre, so a load at 1.2 m is at 12 s"
-CASES_AS_TIME: Final = f"one case after the other, {SECONDS_PER_CASE} seconds each"
-
-FRAMES: Final = """\
-SI units throughout. World: origin on the ground under the load, x from the robot towards the person, z up. An
-agent's own frame is the world turned about z so that it looks along +x at the load. Roll, pitch and yaw are
-those of URDF. Joints that are not listed stand at zero.
-"""
-
-
-def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[str, str]) -> str:
-    """The README as Markdown.
-
-    Args:
-        design: what was exported.
-        files: names of the files that were written, of `FILES`.
-        left_out: why a file is missing, by its name.
-    """
-    evaluation = design.evaluation
-    objectives = (_objective(each, evaluation.assessment.objectives) for each in design.header.objectives)
-    bounds = (_constraint(each, evaluation.assessment.constrained) for each in design.header.constrained)
-    materials = materials_of(design.header.parameters, evaluation.assessment.design)
-    made_of = (f"- {_code(name)}: {_code(material)}" for name, material in materials.items())
-    missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
-    texts = _texts(design)
-    parts = [
-        f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
-        f"From the run {_code(design.run)}, generation {evaluation.generation}; {_outcome(design)}.",
-        "\n".join((*objectives, *bounds, *made_of)),
-        "## Files",
-        "\n".join((*(f"- `{name}`: {_indented(texts[name])}" for name in files), *missing)),
-        *_cases(design),
-        "## Frames and units",
-        FRAMES + _scales(),
-    ]
-    return "\n\n".join(parts) + "\n"
-
-
-def _texts(design: ExportedDesign) -> dict[str, str]:
-    """What each file is, also where there are several people or loads."""
-    texts = dict(FILES)
-    if len(design.people) > 1:
-        for name, (label, _) in design.people.items():
-            texts[name] = f"The person {_code(label)}, for kinematics and viewing."
-    if several(design.cases):
-        texts["robot.xml"] = FILES["robot.xml"].replace("per load height", "per case")
-        replay = FILES["replay.mcap"].replace(HEIGHTS_AS_TIME, CASES_AS_TIME)
-        texts["replay.mcap"] = replay.replace("both URDF files", "all URDF files")
-    return texts
-
-
-def _cases(design: ExportedDesign) -> tuple[str, ...]:
-    """The cases that were solved with their times in the recording, of several people or loads."""
-    if not several(design.cases):
-        return ()
-    files = {label: name for name, (label, _) in design.people.items()}
-    rows = [
-        f"| {time / 1e9:g} s | {_cell(case.person)} | `{files[case.person]}` "
-        f"| {_cell(case.payload)} | {case.task} |"
-        for time, case in ((time, detail.case) for time, detail in timed(design.cases))
-    ]
-    heads = ("| time in the recording | person | file | load | height |", "|---|---|---|---|---|")
-    return ("## Cases", "\n".join((*heads, *rows)))
-
-
-def _cell(name: str) -> str:
-    """A name in a table; a dash where there is only one."""
-    return _code(name).replace("|", "\\|") if name else "-"
-
-
-def _scales() -> str:
-    ground, load = (1.0 / METRES_PER_NEWTON[by_ground] for by_ground in (True, False))
-    moment = 1.0 / METRES_PER_NEWTON_METRE
-    return (
-        f"In the recording 1 m of arrow is {ground:g} N from the ground (orange, at the centre of\n"
-        f"pressure), {load:g} N from the load (violet), {moment:g} N m of moment (green)."
-    )
-
-
-def _outcome(design: ExportedDesign) -> str:
-    evaluation = design.evaluation
-    if evaluation.feasible:
-        return "it is feasible"
-    why = reason_of_infeasibility(design.header.constrained, evaluation.assessment)
-    return f"it is not feasible: {_code(why)}"
-
-
-def _objective(objective: Objective, values: Mapping[str, float]) -> str:
-    value = values.get(objective.name)
-    shown = "none" if value is None else f"{value!r} {objective.unit}"
-    return f"- {_code(objective.name)} ({objective.sense}): {shown}"
-
-
-def _constraint(constraint: Constraint, values: Mapping[str, float]) -> str:
-    value = values.get(constraint.name)
-    shown = "none" if value is None else f"{value!r} {constraint.unit}"
-    return f"- {_code(constraint.name)} ({bounds_text(constraint)}): {shown}"
-
-
-def _indented(text: str) -> str:
-    return text.replace("\n", "\n  ")
-
-
-def _code(text: str) -> str:
-    """A name as a code span on one line, which Markdown shows letter by letter."""
-    return f"`{on_one_line(text).replace('`', chr(39))}`"
+__all__ = ["Exported", "export_design", "export_logged", "refuse_full"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +76,8 @@ def export_logged(
     """
     opened = open_design(run, number, jobs, progress)
     name = run.directory.resolve().name
-    design = ExportedDesign(name, run.header, opened.evaluation, opened.scene_set(), opened.cases)
+    notes = opened.rebuilt.problem.symmetry_notes
+    design = ExportedDesign(name, run.header, opened.evaluation, opened.scene_set(), opened.cases, notes)
     return export_design(design, directory, on_front=opened.on_front)
 
 
@@ -245,14 +107,16 @@ def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, byte
     """Bytes of each file by name, and why others are missing."""
     scene_set, cases = design.scene_set, design.cases
     people = {name: urdf_text(tree) for name, (_, tree) in design.people.items()}
-    urdfs = {"robot.urdf": urdf_text(scene_set.robot), **people}
+    names, meshes = mesh_files(scene_set.robot, MESHES)
+    urdfs = {"robot.urdf": urdf_text(scene_set.robot, names), **people}
     told = design_json(design.header, design.evaluation, cases, on_front=on_front)
     contents = {"robot.urdf": urdfs["robot.urdf"].encode()}
     left_out = {}
     try:
-        contents["robot.xml"] = mjcf_text(scene_set.robot, GRAVITY, _keys(design)).encode()
+        contents["robot.xml"] = mjcf_text(scene_set.robot, GRAVITY, _keys(design), names).encode()
     except ModelError as error:
         left_out["robot.xml"] = str(error)
+    contents.update(meshes)
     contents.update({name: text.encode() for name, text in people.items()})
     contents["postures.json"] = msgspec.json.format(msgspec.json.encode(told), indent=2) + b"\n"
     if not cases:

@@ -73,7 +73,7 @@ def write_figure(figure: Figure, directory: Path, stem: str) -> tuple[Path, Path
                 "ignore", message="Glyph", category=UserWarning
             )  # a name in other letters
             with replacing(svg) as file:
-                figure.savefig(file, format="svg", metadata={"Date": None})
+                figure.savefig(file, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None})
             with replacing(png) as file:
                 figure.savefig(file, format="png", dpi=DOTS_PER_INCH)
     except OSError as error:

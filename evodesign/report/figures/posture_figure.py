@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,12 +29,16 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement, Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.report.figures.mesh_faces import in_world, seen_triangles
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, new_figure
 from evodesign.report.scene_models import ContactWrench, PlacedScene
 
 __all__ = ["Camera", "Face", "faces_of", "posture_figure"]
 
 Array = NDArray[np.float64]
+
+Painted = tuple[float, Array, tuple[float, float, float]]
+"""Nearness, outline and colour of a face as it is seen."""
 
 AROUND = 18
 """Faces around a cylinder or a ball."""
@@ -214,18 +218,31 @@ def _paint(axes: Axes, stage: PlacedScene, view: Camera) -> None:
     ground = view.seen(np.array([(x, y, 0.0) for x, y in FLOOR]))[:, :2]
     axes.add_collection(PolyCollection([ground], facecolors="#eef0f2", edgecolors="#c6cbd1", linewidths=0.6))
     light = np.array([-0.35, 0.55, 0.76]) @ view.axes
-    seen = []
+    seen = [*_painted_solids(stage, view, light), *_painted_meshes(stage, view, light)]
+    seen.sort(key=lambda item: item[0])
+    colors = [color for _, _, color in seen]
+    polygons = [outline for _, outline, _ in seen]
+    painted = PolyCollection(polygons, facecolors=colors, edgecolors=colors, linewidths=0.25)
+    painted.set_rasterized(bool(stage.meshes))  # tens of thousands of triangles
+    axes.add_collection(painted)
+
+
+def _painted_solids(stage: PlacedScene, view: Camera, light: Array) -> Iterator[Painted]:
     for name, shape, place in stage.solids:
         for face in faces_of(shape, place):
             if float(face.normal @ view.axes[2]) > 0.0:
                 corners = view.seen(face.corners)
-                seen.append(
-                    (float(corners[:, 2].mean()), corners[:, :2], _shade(name, float(face.normal @ light)))
-                )
-    seen.sort(key=lambda item: item[0])
-    colors = [color for _, _, color in seen]
-    polygons = [outline for _, outline, _ in seen]
-    axes.add_collection(PolyCollection(polygons, facecolors=colors, edgecolors=colors, linewidths=0.25))
+                color = _shade(name, float(face.normal @ light))
+                yield float(corners[:, 2].mean()), corners[:, :2], color
+
+
+def _painted_meshes(stage: PlacedScene, view: Camera, light: Array) -> Iterator[Painted]:
+    towards = view.axes[2]
+    for name, mesh, world_from_link in stage.meshes:
+        corners, normals = seen_triangles(mesh, world_from_link, towards)
+        drawn = view.seen(corners.reshape(-1, 3)).reshape(-1, 3, 3)
+        colors = [_shade(name, slope) for slope in (normals @ light).tolist()]
+        yield from zip(drawn[:, :, 2].mean(axis=1).tolist(), drawn[:, :, :2], colors, strict=True)
 
 
 def _shade(name: str, slope: float) -> tuple[float, float, float]:
@@ -255,6 +272,7 @@ def _limits(stages: Sequence[PlacedScene], view: Camera) -> tuple[Array, Array]:
     points = [np.array([(x, y, 0.0) for x, y in FLOOR])]
     for stage in stages:
         points += [face.corners for _, shape, place in stage.solids for face in faces_of(shape, place)]
+        points += [in_world(mesh, place) for _, mesh, place in stage.meshes]
     seen = view.seen(np.vstack(points))[:, :2]
     return seen.min(axis=0) - 0.03, seen.max(axis=0) + 0.03
 

@@ -170,13 +170,14 @@ class LiveRun:
             self._others = [each for each in self._others if each.number % self._every == 0]
 
 
-def state_of(live_state: LiveState, *, ended: bool, now: float) -> dict[str, Any]:
+def state_of(live_state: LiveState, *, ended: bool, now: float, notes: Sequence[str] = ()) -> dict[str, Any]:
     """The JSON object of a live run's state.
 
     Args:
         live_state: of the search.
         ended: whether the last session closed its log.
         now: seconds since 1970.
+        notes: sentences on what cannot be read of the log, or is missing.
     """
     header = live_state.header
     objectives = header.objectives
@@ -188,6 +189,7 @@ def state_of(live_state: LiveState, *, ended: bool, now: float) -> dict[str, Any
         "population": header.search.population,
         "seed": header.search.seed,
         "state": word(live_state, ended=ended, now=now),
+        "notes": list(notes),
         "done": live_state.done,
         "budget": header.budget,
         "feasible": live_state.feasible,
@@ -270,4 +272,5 @@ class FollowedRun:
 
     def state(self) -> dict[str, Any]:
         """Where the search stands now, as the JSON object of the page."""
-        return state_of(self.look(), ended=self.ended, now=time.time())
+        live_state = self.look()
+        return state_of(live_state, ended=self.ended, now=time.time(), notes=self.notes)

@@ -1,7 +1,8 @@
 """Robot, people and loads as the page's scripts draw them.
 
 The page gets the trees and the logged joint positions; it computes the link poses itself, by the same
-formula as `tree.kinematics`. A design's robot is told by what differs from the unscaled one.
+formula as `tree.kinematics`. A design's robot is told by what differs from the unscaled one. The triangles of
+meshes are told once: what differs between links and designs is how they are placed, scaled and stretched.
 """
 
 from __future__ import annotations
@@ -12,8 +13,20 @@ from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import DesignProblem
-from evodesign.report.page.content import Bodies, JointBody, LinkBody, LoadBody, ShapeBody, TreeBody
-from evodesign.tree.model import Joint, Link, Tree
+from evodesign.report.page.content import (
+    Bodies,
+    JointBody,
+    LinkBody,
+    LoadBody,
+    MeshBody,
+    ShapeBody,
+    SurfaceBody,
+    TreeBody,
+)
+from evodesign.report.scene_models import looks_of
+from evodesign.tree.mesh_write import link_from_vertex
+from evodesign.tree.model import Joint, Link, Mesh, Tree
+from evodesign.tree.surface import Surface
 
 __all__ = ["agent_body", "bodies", "changes"]
 
@@ -33,6 +46,7 @@ def bodies(problem: DesignProblem) -> Bodies:
             for name, load in payloads.items()
         },
         changing=tuple(sorted(changing)),
+        surfaces=tuple(_surface(surface) for surface in _surfaces(robot.tree)),
     )
 
 
@@ -42,20 +56,20 @@ def changes(
     """Links and joints of a design's robot that differ from the unscaled one's, by index in the tree."""
     before = problem.scene.robot.tree
     after = problem.space.resized(before, values)
-    position = _positions(after)
+    position, surfaces = _positions(after), _surfaces(after)
     links = enumerate(zip(before.links, after.links, strict=True))
     joints = enumerate(zip(before.joints, after.joints, strict=True))
     return (
-        {index: _link(new) for index, (old, new) in links if new is not old},
+        {index: _link(new, surfaces) for index, (old, new) in links if new is not old},
         {index: _joint(new, position) for index, (old, new) in joints if new is not old},
     )
 
 
 def agent_body(agent: Agent) -> TreeBody:
-    """An agent's tree with its solids and looks, and which links are its soles."""
-    position = _positions(agent.tree)
+    """An agent's tree with what shows its links, and which links are its soles."""
+    position, surfaces = _positions(agent.tree), _surfaces(agent.tree)
     return TreeBody(
-        links=tuple(_link(link) for link in agent.tree.links),
+        links=tuple(_link(link, surfaces) for link in agent.tree.links),
         joints=tuple(_joint(joint, position) for joint in agent.tree.joints),
         soles={side: position[name] for side, name in agent.soles.items()},
     )
@@ -65,10 +79,29 @@ def _positions(tree: Tree) -> Mapping[str, int]:
     return {link.name: index for index, link in enumerate(tree.links)}
 
 
-def _link(link: Link) -> LinkBody:
-    solids = [_shape(solid.shape, solid.link_from_solid) for solid in link.solids]
-    looks = [_shape(look.shape, look.link_from_look) for look in link.looks]
-    return LinkBody(name=link.name, mass_kg=float(link.inertia.mass), shapes=(*solids, *looks))
+def _surfaces(tree: Tree) -> Mapping[Surface, int]:
+    """The surfaces of a tree, each with its index; a design has those of the unscaled robot."""
+    seen = dict.fromkeys(mesh.surface for link in tree.links for mesh in link.shown)
+    return {surface: index for index, surface in enumerate(seen) if surface is not None}
+
+
+def _link(link: Link, surfaces: Mapping[Surface, int]) -> LinkBody:
+    return LinkBody(
+        name=link.name,
+        mass_kg=float(link.inertia.mass),
+        shapes=tuple(_shape(shape, place) for shape, place in looks_of(link)),
+        meshes=tuple(_mesh(mesh, surfaces) for mesh in link.shown),
+    )
+
+
+def _mesh(mesh: Mesh, surfaces: Mapping[Surface, int]) -> MeshBody:
+    linear, position = link_from_vertex(mesh)
+    index = -1 if mesh.surface is None else surfaces[mesh.surface]
+    return MeshBody(surface=index, linear=linear, position=position)
+
+
+def _surface(surface: Surface) -> SurfaceBody:
+    return SurfaceBody(low=surface.low, step=surface.step, points=surface.points, triangles=surface.triangles)
 
 
 def _shape(shape: Shape, place: Placement) -> ShapeBody:

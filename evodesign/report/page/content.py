@@ -19,8 +19,10 @@ __all__ = [
     "LinkBody",
     "LoadBody",
     "Mark",
+    "MeshBody",
     "Points",
     "ShapeBody",
+    "SurfaceBody",
     "TreeBody",
 ]
 
@@ -97,12 +99,43 @@ class ShapeBody(Part, frozen=True):
     position: tuple[float, ...]
 
 
-class LinkBody(Part, frozen=True):
-    """A link's mass [kg] and shapes."""
+class SurfaceBody(Part, frozen=True):
+    """Triangles that meshes of links share, in the coordinates of their file; see `tree.surface`.
+
+    Attributes:
+        low: least coordinates of the vertices.
+        step: what one of `points` stands for, along each axis.
+        points: x, y, z of each vertex in steps, as base64 of 16-bit numbers.
+        triangles: three vertices each, likewise.
+    """
+
+    low: tuple[float, ...]
+    step: tuple[float, ...]
+    points: str
+    triangles: str
+
+
+class MeshBody(Part, frozen=True):
+    """A surface in a link's frame.
+
+    Attributes:
+        surface: its index among the robot's.
+        linear: nine numbers, rows of the map from the surface's coordinates: scale, rotation and stretch.
+        position: of the surface's origin in the link's frame [m].
+    """
+
+    surface: int
+    linear: tuple[float, ...]
+    position: tuple[float, ...]
+
+
+class LinkBody(Part, frozen=True, omit_defaults=True):
+    """A link's mass [kg], and the shapes or meshes that show it."""
 
     name: str
     mass_kg: float
     shapes: tuple[ShapeBody, ...]
+    meshes: tuple[MeshBody, ...] = ()
 
 
 class JointBody(Part, frozen=True):
@@ -143,6 +176,7 @@ class Bodies(Part, frozen=True):
     """The robot, people and loads by name, and which robot links some parameter changes.
 
     Attributes:
+        surfaces: of the robot's meshes, whatever the design.
         people: by the name that the log gives them, which is empty where there is one.
         payloads: likewise.
         changing: indices of robot links.
@@ -152,6 +186,7 @@ class Bodies(Part, frozen=True):
     people: dict[str, TreeBody]
     payloads: dict[str, LoadBody]
     changing: tuple[int, ...]
+    surfaces: tuple[SurfaceBody, ...] = ()
 
 
 class DesignContent(Part, frozen=True):

@@ -34,6 +34,7 @@ SCRIPTS = (
     "matrices.js",
     "kinematics.js",
     "meshes.js",
+    "surfaces.js",
     "shaders.js",
     "viewer.js",
     "steering.js",

@@ -13,8 +13,9 @@ from typing import Any, Final
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import CaseDetail
-from evodesign.report.replay.messages import TOPICS, WORLD, frame_id
+from evodesign.report.replay.messages import WORLD, frame_id
 from evodesign.report.replay.recording import several, time_scale
+from evodesign.report.replay.surfaces import topics_of
 from evodesign.report.scene_models import LOAD, SceneSet
 from evodesign.report.subset import ranked_joints
 
@@ -86,7 +87,7 @@ def _scene(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> dict[str, Any]:
         "followTf": WORLD,
         "scene": {"backgroundColor": "#f4f5f6", "labelScaleFactor": letters},
         "transforms": {f"frame:{frame}": {"visible": False} for frame in (WORLD, *frames)},
-        "topics": {topic: {"visible": True} for topic in TOPICS if topic.startswith("/scene/")},
+        "topics": {topic: {"visible": True} for topic in topics_of(scene_set) if topic.startswith("/scene/")},
         "layers": {"ground": GRID},
         "publish": {},
         "imageMode": {},

@@ -46,9 +46,11 @@ __all__ = [
     "add_arrow",
     "add_shape",
     "add_text",
+    "color_of",
     "frame_id",
     "messages",
     "orientation",
+    "pose_of",
     "vector",
 ]
 
@@ -192,7 +194,7 @@ def orientation(rotation: Matrix) -> Any:
 
 def add_shape(entity: SceneEntity, shape: Shape, place: Placement, color: str) -> None:
     """Add a shape, placed in the entity's frame."""
-    pose, paint = _pose(place), _color(color)
+    pose, paint = pose_of(place), color_of(color)
     match shape:
         case Sphere(radius):
             entity.spheres.append(SpherePrimitive(pose=pose, size=vector((2.0 * radius,) * 3), color=paint))
@@ -211,12 +213,12 @@ def add_arrow(entity: SceneEntity, tail: Vector, way: Vector, color: str) -> Non
         return
     head = min(HEAD, length / 3.0)
     arrow = ArrowPrimitive(
-        pose=_pose(Placement(_towards(scale(1.0 / length, way)), tail)),
+        pose=pose_of(Placement(_towards(scale(1.0 / length, way)), tail)),
         shaft_length=length - head,
         shaft_diameter=SHAFT,
         head_length=head,
         head_diameter=HEAD,
-        color=_color(color),
+        color=color_of(color),
     )
     entity.arrows.append(arrow)
 
@@ -224,10 +226,10 @@ def add_arrow(entity: SceneEntity, tail: Vector, way: Vector, color: str) -> Non
 def add_text(entity: SceneEntity, place: Vector, text: str) -> None:
     """Add words that face the viewer, at a point of the entity's frame."""
     words = TextPrimitive(
-        pose=_pose(Placement(translation=place)),
+        pose=pose_of(Placement(translation=place)),
         billboard=True,
         font_size=LETTERS,
-        color=_color("text"),
+        color=color_of("text"),
         text=text,
     )
     entity.texts.append(words)
@@ -246,10 +248,12 @@ def _cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def _pose(place: Placement) -> Any:
+def pose_of(place: Placement) -> Any:
+    """A placement as a message."""
     return Pose(position=vector(place.translation), orientation=orientation(place.rotation))
 
 
-def _color(name: str) -> Any:
+def color_of(name: str) -> Any:
+    """A colour of `COLORS` as a message."""
     red, green, blue, opacity = COLORS[name]
     return Color(r=red, g=green, b=blue, a=opacity)

@@ -19,7 +19,8 @@ from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.writer import CompressionType, Writer
 
 from evodesign.records import CaseDetail
-from evodesign.report.replay.messages import TOPICS, messages
+from evodesign.report.replay.messages import messages
+from evodesign.report.replay.surfaces import MESHES, mesh_message, topics_of
 from evodesign.report.scene_models import SceneSet
 
 __all__ = [
@@ -90,11 +91,12 @@ def write_replay(
     writer.add_metadata("evodesign", dict(about))
     for name, text in attachments.items():
         writer.add_attachment(0, 0, name, "application/xml", text.encode())
-    channels = _channels(writer)
+    channels = _channels(writer, topics_of(scene_set))
     shown = timed(cases)
     held = [(time + HOLD, last) for time, last in shown[-1:]]
     for sequence, (time, detail) in enumerate((*shown, *held)):
-        for topic, message in messages(scene_set.placed_scene(detail), detail, time):
+        once = [(MESHES, mesh_message(scene_set, time))] if sequence == 0 and MESHES in channels else []
+        for topic, message in (*once, *messages(scene_set.placed_scene(detail), detail, time)):
             writer.add_message(
                 channel_id=channels[topic],
                 log_time=time,
@@ -105,17 +107,17 @@ def write_replay(
     writer.finish()  # type: ignore[no-untyped-call]
 
 
-def _channels(writer: Writer) -> dict[str, int]:
+def _channels(writer: Writer, topics: Mapping[str, Any]) -> dict[str, int]:
     """A channel per topic, and a schema per class of messages, by its well-known name."""
     schemas = {
         kind.DESCRIPTOR.full_name: writer.register_schema(
             name=kind.DESCRIPTOR.full_name, encoding="protobuf", data=descriptor_set(kind)
         )
-        for kind in dict.fromkeys(TOPICS.values())
+        for kind in dict.fromkeys(topics.values())
     }
     return {
         topic: writer.register_channel(topic, "protobuf", schemas[kind.DESCRIPTOR.full_name])
-        for topic, kind in TOPICS.items()
+        for topic, kind in topics.items()
     }
 
 

@@ -6,10 +6,14 @@ import math
 
 import numpy as np
 import pytest
+import trimesh
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.report.figures.mesh_faces import seen_triangles
 from evodesign.report.figures.posture_figure import AROUND, Camera, Face, faces_of
+from evodesign.tree.model import Mesh
+from evodesign.tree.surface import surface_of
 
 PLACE = Placement.from_xyz_rpy((0.3, -0.2, 0.9), (0.4, -0.7, 1.9))
 
@@ -52,3 +56,31 @@ def test_camera_keeps_lengths() -> None:
     axes = Camera(0.3, 0.8).axes
     assert np.allclose(axes @ axes.T, np.eye(3))
     assert np.linalg.det(axes) == pytest.approx(1.0)
+
+
+def ball(*, watertight: bool) -> Mesh:
+    found = trimesh.creation.icosphere(3, 0.2)
+    return Mesh(
+        "ball.stl",
+        scale=(1.0, -1.0, 1.0),
+        link_from_mesh=Placement(translation=(0.1, 0.0, 0.0)),
+        surface=surface_of(found.vertices, found.faces, found.volume if watertight else 0.0),
+    )
+
+
+def test_a_camera_sees_the_near_half_of_a_closed_mesh_and_all_of_an_open_one() -> None:
+    towards = Camera().axes[2]
+    centre = PLACE.apply((0.1, 0.0, 0.0))
+    corners, normals = seen_triangles(ball(watertight=True), PLACE, towards)
+    outward = corners.mean(axis=1) - np.array(centre)
+    assert ((outward * normals).sum(axis=1) > 0.19).all()
+    assert ((normals @ towards) > 0.0).all()
+    both, _ = seen_triangles(ball(watertight=False), PLACE, towards)
+    assert len(both) == pytest.approx(2 * len(corners), rel=0.02)
+    flat = view_area(corners, towards)
+    assert flat == pytest.approx(math.pi * 0.2**2, rel=0.02), "its silhouette is a disc"
+
+
+def view_area(corners: np.ndarray, towards: np.ndarray) -> float:
+    crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return 0.5 * float((crossed @ towards).sum())

@@ -14,15 +14,18 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.errors import InputError, RunError
+from evodesign.evolve import Silent, resume, start
 from evodesign.report.live.server import ADDRESS, LiveServer
-from evodesign.report.live.state import LiveRun, state_of
+from evodesign.report.live.state import FollowedRun, LiveRun, state_of
+from tests.faults.synthetic import synthetic_header
 from tests.machine import chromium
-from tests.runlog.toys import toy_evaluations, toy_generation, toy_header
+from tests.runlog.toys import OrderedPool, ToyTask, toy_evaluations, toy_generation, toy_header
 
 NAME = "<script>alert(1)</script>"
 HEADER = msgspec.structs.replace(toy_header(budget=100), problem_name=NAME)
 RUN = toy_evaluations(HEADER, 40)
 CHROMIUM = chromium()
+LIVE = synthetic_header(budget=10, seed=4, population=10)
 
 
 def state(*, ended: bool = False, now: float = 45.0, count: int = len(RUN)) -> dict[str, object]:
@@ -30,7 +33,7 @@ def state(*, ended: bool = False, now: float = 45.0, count: int = len(RUN)) -> d
     records = [HEADER, *RUN[:count], toy_generation(0, 4), toy_generation(1, 8)]
     watched.learn([(record, float(second)) for second, record in enumerate(records)])
     assert watched.state is not None
-    return state_of(watched.state, ended=ended, now=now)
+    return state_of(watched.state, ended=ended, now=now, notes=["missing: <b>all</b>"])
 
 
 @pytest.fixture
@@ -74,6 +77,19 @@ def test_state_in_a_word(ended: bool, now: float, count: int, word: str) -> None
 def test_nothing_evaluated_yet_has_a_state() -> None:
     found = state(count=0)
     assert (found["done"], found["front"], found["knees"], found["per_second"]) == (0, [], [], None)
+
+
+def test_what_a_run_has_lost_is_part_of_its_state(tmp_path: Path) -> None:
+    start(tmp_path / "run", LIVE, ToyTask(LIVE), OrderedPool(), Silent())
+    assert FollowedRun(tmp_path / "run").state()["notes"] == []
+    resume(tmp_path / "run", ToyTask, OrderedPool(), Silent(), 20)
+    resume(tmp_path / "run", ToyTask, OrderedPool(), Silent(), 30)
+    followed = FollowedRun(tmp_path / "run")
+    assert followed.state()["notes"] == []
+    (tmp_path / "run/001.mcap").unlink()
+    notes = FollowedRun(tmp_path / "run").state()["notes"]
+    assert "segment 1 of the run is missing" in notes
+    assert "missing evaluations: 10 to 19" in notes
 
 
 def test_server_answers_two_paths(server: LiveServer) -> None:
@@ -127,4 +143,5 @@ def test_browser_shows_names_as_text(server: LiveServer, tmp_path: Path) -> None
     page = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
     assert "40 of 100 evaluations" in page
+    assert "<li>missing: &lt;b&gt;all&lt;/b&gt;</li>" in page
     assert page.count('class="front"') >= len(front(HEADER.objectives, RUN))

@@ -17,6 +17,7 @@ from evodesign.runlog.run import RunLog
 STEP = 1e-3
 
 
+@pytest.mark.slow
 def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
     problem: DesignProblem, evaluator: Evaluator, tmp_path: Path
 ) -> None:

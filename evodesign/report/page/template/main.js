@@ -19,4 +19,7 @@ if (firstShown) select(firstShown.number, { announce: false });
 else if (points.number.length) select(points.number[0], { announce: false });
 
 // For whoever wants to script the page, and for its tests.
-window.evodesign = { content, state, select, brush, clearFilter, linkPoses, treeOf, showCase, shownCase, postureAt };
+window.evodesign = {
+  ...{ content, state, select, brush, clearFilter, linkPoses, treeOf, showCase, shownCase, postureAt },
+  ...{ sceneItems, verticesOf },
+};

@@ -6,7 +6,7 @@ const NEWTONS_PER_METRE = 1000;
 const sceneItems = (design, agents, at, height = at.height) => {
   const items = [];
   const solid = (mesh, rotation, position, size, tint, over = false) =>
-    items.push({ mesh, model: placed(rotation, position, size), size, tint, over });
+    items.push({ mesh, model: placed(rotation, position, size), tint, over });
   const neutral = rgb("faint");
   const tints = {
     robot: [rgb("accent"), mixed(rgb("accent"), rgb("surface"), 0.52)],
@@ -17,8 +17,16 @@ const sceneItems = (design, agents, at, height = at.height) => {
     const poses = linkPoses(agent, tree, posture);
     tree.links.forEach((link, index) => {
       const tint = tints[agent][agent === "robot" && !content.bodies.changing.includes(index) ? 1 : 0];
+      const { rotation, position } = poses[index];
+      for (const mesh of link.meshes ?? [])
+        solid(
+          surfaceName(mesh.surface),
+          times(rotation, mesh.linear),
+          plus(position, turned(rotation, mesh.position)),
+          [1, 1, 1],
+          tint,
+        );
       for (const shape of link.shapes) {
-        const { rotation, position } = poses[index];
         solid(
           shape.kind,
           times(rotation, shape.rotation),

@@ -2,11 +2,11 @@
 
 const VERTEX = `#version 300 es
 in vec3 at; in vec3 normal;
-uniform mat4 model, camera; uniform vec3 scale;
+uniform mat4 model, camera;
 out vec3 outward; out vec3 place;
 void main() {
   vec4 world = model * vec4(at, 1.0);
-  outward = mat3(model) * (normal / (scale * scale));
+  outward = transpose(inverse(mat3(model))) * normal;
   place = world.xyz;
   gl_Position = camera * world;
 }`;
@@ -29,6 +29,7 @@ void main() {
   if (mode == 2) { result = tint; return; }
   vec3 n = normalize(outward);
   vec3 view = normalize(eye - place);
+  if (dot(n, view) < 0.0) n = -n; // a sheet seen from behind
   float sky = 0.5 + 0.5 * n.z;
   float sun = max(dot(n, light), 0.0);
   float rim = pow(1.0 - max(dot(n, view), 0.0), 3.0);

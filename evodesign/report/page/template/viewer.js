@@ -20,7 +20,7 @@ const compiled = (gl) => {
 
 const loadedMeshes = (gl, program) =>
   Object.fromEntries(
-    Object.entries(MESHES).map(([name, make]) => {
+    Object.entries({ ...MESHES, ...surfaceMeshes() }).map(([name, make]) => {
       const corners = new Float32Array(make());
       const array = gl.createVertexArray();
       gl.bindVertexArray(array);
@@ -60,7 +60,7 @@ class Viewer {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  // items: [{ mesh, model, size, tint, over }], `over`: drawn over everything else, without a shadow
+  // items: [{ mesh, model, tint, over }], `over`: drawn over everything else, without a shadow
   show(items) {
     this.items = items;
     this.draw();
@@ -97,14 +97,14 @@ class Viewer {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.disable(gl.DEPTH_TEST);
-    this.mesh("ground", placed(IDENTITY, [0, 0, 0], [2.4, 2.4, 1]), [2.4, 2.4, 1], [0, 0, 0, 0], 1);
+    this.mesh("ground", placed(IDENTITY, [0, 0, 0], [2.4, 2.4, 1]), [0, 0, 0, 0], 1);
     if (this.tilt > 0) this.shadows();
     gl.enable(gl.DEPTH_TEST);
     for (const item of this.items.filter(({ over }) => !over))
-      this.mesh(item.mesh, item.model, item.size, [...item.tint, 1], 0);
+      this.mesh(item.mesh, item.model, [...item.tint, 1], 0);
     gl.clear(gl.DEPTH_BUFFER_BIT); // arrows stand inside the legs and are seen through them
     for (const item of this.items.filter(({ over }) => over))
-      this.mesh(item.mesh, item.model, item.size, [...item.tint, 1], 0);
+      this.mesh(item.mesh, item.model, [...item.tint, 1], 0);
   }
 
   // Every solid flattened onto the ground along the light; the stencil keeps shadows from adding up.
@@ -132,16 +132,15 @@ class Viewer {
       1,
     ]);
     for (const item of this.items) {
-      if (!item.over) this.mesh(item.mesh, times4(flat, item.model), item.size, [0, 0, 0, 0.13], 2);
+      if (!item.over) this.mesh(item.mesh, times4(flat, item.model), [0, 0, 0, 0.13], 2);
     }
     gl.disable(gl.STENCIL_TEST);
   }
 
-  mesh(name, model, size, tint, mode) {
+  mesh(name, model, tint, mode) {
     const { gl } = this;
     const { array, count } = this.meshes[name];
     gl.uniformMatrix4fv(this.place("model"), false, model);
-    gl.uniform3fv(this.place("scale"), size);
     gl.uniform4fv(this.place("tint"), tint);
     gl.uniform1i(this.place("mode"), mode);
     gl.bindVertexArray(array);

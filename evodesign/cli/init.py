@@ -1,0 +1,49 @@
+"""`init`: a problem file for a robot of one's own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["init"]
+
+
+def init(
+    robot: Annotated[Path, typer.Argument(metavar="ROBOT", help="URDF of a humanoid robot.")],
+    to: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="The new problem file.", show_default="name of ROBOT, in this directory"
+        ),
+    ] = None,
+) -> None:
+    """Write a problem file for a robot, and say what was guessed and why.
+
+    Heading, hands, soles, trunk, joints and design parameters come from the robot's geometry. What cannot be
+    guessed is FILL IN in the file.
+    """
+    from evodesign.cli.output import console, print_commands, show_notes, write_text
+    from evodesign.cli.tables.guesses import guesses_table
+    from evodesign.errors import InputError
+    from evodesign.files import is_there
+    from evodesign.problem.guess.problem_text import FILL_IN, guessed_problem, inertia_rule
+    from evodesign.problem.meshes import with_meshes_beside
+    from evodesign.problem.source import read_text
+    from evodesign.tree.urdf_read import InertiaRule, read_urdf
+
+    file = to or Path(f"{robot.stem}.toml")
+    if is_there(file):
+        raise InputError("--to", "", "a new file", f"'{file}', which exists")
+    text = read_text(robot, "ROBOT", "")
+    tree = read_urdf(text, str(robot), InertiaRule.AUTO)
+    tree = read_urdf(text, str(robot), inertia_rule(tree))
+    urdf = Path(os.path.relpath(robot.resolve(), file.resolve().parent)).as_posix()
+    tree = with_meshes_beside(tree, robot, text)
+    guessed = guessed_problem(tree, urdf)
+    write_text(file, guessed.text, "--to")
+    show_notes(tree.notes)
+    console().print(guesses_table(guessed.guesses, FILL_IN))
+    print_commands(f"evodesign check {file}", f"evodesign evaluate {file}", f"evodesign search {file}")

@@ -1,0 +1,201 @@
+"""A problem file for a robot, from what its URDF says and what was guessed; each guess with its reason.
+
+What could not be guessed is `FILL IN` in the file, which no link is called, so that `check` names its key.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from evodesign.mechanics.scene import SIDES
+from evodesign.problem.file import Facing
+from evodesign.problem.guess.body_plan import BodyPlan, body_plan
+from evodesign.problem.guess.contacts import Contacts, GuessedContact, contacts, frame_xyz_rpy
+from evodesign.problem.guess.parameters import Group, LoadGuess, groups, load_guess
+from evodesign.tree.model import Tree
+from evodesign.tree.urdf_read import InertiaRule
+
+__all__ = ["FILL_IN", "Guess", "GuessedProblem", "guessed_problem", "inertia_rule"]
+
+FILL_IN = "FILL IN"
+"""Stands for what could not be guessed."""
+
+LOWER, UPPER = 0.6, 1.6
+"""Bounds of length multipliers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """What was guessed for a key, and why; `found` is nothing if it could not be."""
+
+    key: str
+    found: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class GuessedProblem:
+    """A problem file's text and what is guessed in it."""
+
+    text: str
+    guesses: tuple[Guess, ...]
+
+
+def guessed_problem(tree: Tree, urdf: str) -> GuessedProblem:
+    """A problem for a robot.
+
+    Args:
+        tree: the robot, of numbers.
+        urdf: its file's name, as the problem is to have it.
+    Raises:
+        ModelError: it has no two legs.
+    """
+    plan = body_plan(tree)
+    found = contacts(plan)
+    load = load_guess(plan, _ground(plan, found))
+    segments = groups(plan)
+    text = "\n".join(
+        (
+            *_head(tree, urdf),
+            *_robot(plan, found),
+            *_others(plan, load),
+            *(line for group in segments for line in _length(group)),
+        )
+    )
+    return GuessedProblem(text, (*_guesses(plan, found, load), *map(_guess_of_group, segments)))
+
+
+def _ground(plan: BodyPlan, found: Contacts) -> float:
+    """Height of the soles in the root's frame [m]."""
+    heights = []
+    for side in SIDES:
+        sole = found.soles[side]
+        heights.append((plan.welded.places[sole.link] @ sole.place).translation[2])
+    return sum(map(float, heights)) / len(heights)
+
+
+def _head(tree: Tree, urdf: str) -> Sequence[str]:
+    return (
+        f"# A problem for {json.dumps(tree.name)}, guessed from its URDF by `evodesign init`.",
+        "# `evodesign check` shows what the guesses mean; evodesign's README describes all keys.",
+        f"name = {json.dumps(tree.name)}",
+        "",
+        "[robot]",
+        f"urdf = {json.dumps(urdf)}",
+    )
+
+
+def inertia_rule(tree: Tree) -> InertiaRule:
+    """The rule for a whole robot: its file's, where meshes show that its shapes are not all of it."""
+    return InertiaRule.FILE if any(link.meshes for link in tree.links) else InertiaRule.AUTO
+
+
+def _robot(plan: BodyPlan, found: Contacts) -> Iterable[str]:
+    rule = inertia_rule(plan.welded.tree)
+    if rule is not InertiaRule.AUTO:
+        yield f'inertia = "{rule}"  # also of links without meshes'
+    facing = "" if plan.facing else f"  # {FILL_IN} the direction in which the robot looks: {plan.why}"
+    if plan.facing is not Facing.FORWARD:
+        yield f'facing = "{plan.facing or Facing.FORWARD}"{facing}'
+    hands = {side: found.hands[side].frame if found.hands else FILL_IN for side in SIDES}
+    marked = "" if found.hands else f"  # {FILL_IN}: {found.why_hands}"
+    yield f"hands = {_inline(hands)}{marked}"
+    soles = {side: found.soles[side].frame for side in SIDES}
+    length, width = found.sole_size
+    yield f"soles = {_inline(soles)[:-2]}, size_m = [{length:g}, {width:g}] }}  # length, width"
+    yield f"trunk = {json.dumps(_trunk_frames(plan))}  # keeps a distance from the load"
+    yield "joints = ["
+    yield from (f"    {json.dumps(name)}," for name in plan.joints)
+    yield "]"
+    contacts_made = (*found.hands.values(), *found.soles.values())
+    yield from (line for contact in contacts_made if contact.link for line in _frame(contact))
+
+
+def _inline(names: dict[str, str]) -> str:
+    return f"{{ {', '.join(f'{key} = {json.dumps(name)}' for key, name in names.items())} }}"
+
+
+def _trunk_frames(plan: BodyPlan) -> list[str]:
+    """The links with mass that hips and shoulders are joined to."""
+    ends = (plan.trunk[0], plan.trunk[-1])
+    links = plan.welded.tree.link_by_name
+    return [
+        *dict.fromkeys(max(body.links, key=lambda name: float(links[name].inertia.mass)) for body in ends)
+    ]
+
+
+def _frame(contact: GuessedContact) -> Sequence[str]:
+    xyz, rpy = frame_xyz_rpy(contact)
+    return (
+        "",
+        "[[robot.frames]]",
+        f"name = {json.dumps(contact.frame)}",
+        f"link = {json.dumps(contact.link)}",
+        f"xyz_m = {[*xyz]}",
+        f"rpy_rad = {[*rpy]}",
+    )
+
+
+def _others(plan: BodyPlan, load: LoadGuess) -> Sequence[str]:
+    return (
+        "",
+        "[human]",
+        "stature_m = 1.75",
+        "mass_kg = 75.0",
+        'sex = "male"',
+        "",
+        "[payload]",
+        f"size_m = {[*load.size]}  # depth (robot to person), width, height",
+        f"mass_kg = {load.mass}",
+        'grasp = "point"',
+        "",
+        "[task]",
+        f"heights_m = {[*load.heights]}",
+        "",
+        "[objectives]",
+        'minimise = ["robot_torque", "human_torque"]',
+        'maximise = ["reach_height"]',
+        "",
+        "[search]",
+        'algorithm = "nsga2"',
+        "population = 24",
+        "evaluations = 480",
+        "seed = 1",
+    )
+
+
+def _length(group: Group) -> Sequence[str]:
+    if not group.links:
+        return ("", f"# no [[design.length]] {group.name}: {group.why_not}")
+    return (
+        "",
+        "[[design.length]]",
+        f"name = {json.dumps(group.name)}",
+        f"links = {json.dumps(group.links)}",
+        f"lower = {LOWER}",
+        f"upper = {UPPER}",
+    )
+
+
+def _guesses(plan: BodyPlan, found: Contacts, load: LoadGuess) -> Iterable[Guess]:
+    length, width = found.sole_size
+    hands = ", ".join(contact.frame for contact in found.hands.values())
+    heights = ", ".join(f"{height:g}" for height in load.heights)
+    why = "links are meshes" if inertia_rule(plan.welded.tree) is InertiaRule.FILE else "links are shapes"
+    yield Guess("robot.inertia", inertia_rule(plan.welded.tree), why)
+    yield Guess("robot.facing", str(plan.facing or ""), plan.why)
+    yield Guess("robot.hands", hands, found.why_hands)
+    yield Guess("robot.soles", f"{length:g} x {width:g} m", found.why_soles)
+    yield Guess("robot.trunk", ", ".join(_trunk_frames(plan)), "what hips and shoulders are joined to")
+    yield Guess("robot.joints", f"{len(plan.joints)} joints", "those between hands and feet")
+    yield Guess(
+        "payload", f"{load.mass:g} kg, {load.size[1]:g} m wide", "a twentieth of the mass; the shoulders"
+    )
+    yield Guess("task.heights_m", heights, "from the hips to the shoulders")
+
+
+def _guess_of_group(group: Group) -> Guess:
+    why = f"{group.length:.3g} m long" if group.links else group.why_not
+    return Guess(f"design.length {group.name}", ", ".join(group.links), why)

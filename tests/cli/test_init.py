@@ -1,0 +1,170 @@
+"""`init`: a problem file for a robot, that every other command takes as it stands."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+import trimesh
+
+from evodesign.cli.main import main
+from evodesign.tree.urdf_write import urdf_text
+from tests.problem.guess.humanoid import Build, humanoid
+from tests.robots import HUMANOIDS, NO_HUMANOID
+
+QUICK = "\n[solver]\nstart_portfolio = false\ncompile = false\n"
+
+
+def run(*arguments: object) -> int:
+    """Exit code of a command in this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sys.argv", ["evodesign", *map(str, arguments)])
+        with pytest.raises(SystemExit) as left:
+            main()
+    return int(left.value.code or 0)
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    file = tmp_path / "models" / "humanoid.urdf"
+    file.parent.mkdir()
+    file.write_text(urdf_text(humanoid(Build(yaw=3.141592653589793))))
+    return file
+
+
+@pytest.mark.slow
+def test_a_new_robot_is_checked_and_evaluated_as_it_stands(
+    robot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.toml"
+    assert run("init", robot, "--to", file) == 0
+    shown = capsys.readouterr().out
+    for words in (
+        "robot.facing",
+        "-x",
+        "knees and names of the sides and feet say so",
+        f"evodesign check {file}",
+    ):
+        assert words in shown
+    tables = tomllib.loads(file.read_text())
+    assert tables["robot"]["urdf"] == "models/humanoid.urdf"
+    assert tables["robot"]["facing"] == "-x"
+    assert [group["name"] for group in tables["design"]["length"]] == [
+        *("upper_arm", "forearm", "thigh", "shank", "trunk")
+    ]
+    assert run("check", file) == 0
+    file.write_text(file.read_text() + QUICK)
+    capsys.readouterr()
+    assert run("evaluate", file, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {height["status"] for height in found["heights"]} == {"solved"}
+
+
+def test_the_file_is_named_after_the_robot_and_never_written_over(
+    robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run("init", robot) == 0
+    written = (tmp_path / "humanoid.toml").read_text()
+    assert run("init", robot) == 2
+    assert "--to: wanted a new file, found 'humanoid.toml', which exists" in capsys.readouterr().err
+    assert (tmp_path / "humanoid.toml").read_text() == written
+
+
+def test_what_cannot_be_guessed_is_marked_and_named_by_check(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot, file = tmp_path / "walker.urdf", tmp_path / "walker.toml"
+    robot.write_text(urdf_text(humanoid(Build(arms=False))))
+    assert run("init", robot, "--to", file) == 0
+    assert 'hands = { left = "FILL IN", right = "FILL IN" }  # FILL IN: no two arms' in file.read_text()
+    assert "FILL IN" in capsys.readouterr().out
+    assert run("check", file) == 2
+    error = capsys.readouterr().err
+    assert "robot.hands.left: wanted the name of a link of 'humanoid', found 'FILL IN'" in error
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("<robot", "wanted a URDF file, found text that is not XML"),
+        (urdf_text(humanoid(Build(horse=True))), "wanted two legs, found four or more"),
+    ],
+    ids=["no XML", "a horse"],
+)
+def test_a_file_of_which_no_problem_can_be_made_is_refused_in_a_sentence(
+    text: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "robot.urdf").write_text(text)
+    assert run("init", tmp_path / "robot.urdf", "--to", tmp_path / "new.toml") == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "new.toml").exists()
+
+
+@pytest.mark.needs_robots
+def test_a_robot_on_wheels_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("init", NO_HUMANOID, "--to", tmp_path / "new.toml") == 2
+    assert (
+        "tiago: wanted two legs, mirror images of each other, of at least 3 joints" in capsys.readouterr().err
+    )
+
+
+@pytest.mark.needs_robots
+@pytest.mark.parametrize("name", HUMANOIDS)
+def test_a_public_humanoid_is_guessed_whole(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "new.toml"
+    assert run("init", HUMANOIDS[name], "--to", file) == 0
+    assert "FILL IN" not in file.read_text() + capsys.readouterr().out
+    assert len(tomllib.loads(file.read_text())["design"]["length"]) == 5
+    assert run("check", file) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.needs_robots
+@pytest.mark.parametrize("name", HUMANOIDS)
+def test_a_public_humanoid_holds_the_load_without_editing(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same with portfolios of starts, which take minutes, is measured in `benchmarks.public_robots`."""
+    file = tmp_path / "new.toml"
+    assert run("init", HUMANOIDS[name], "--to", file) == 0
+    file.write_text(file.read_text() + QUICK)
+    capsys.readouterr()
+    assert run("evaluate", file, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {height["status"] for height in found["heights"]} == {"solved"}
+    assert found["violation"] == 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.needs_robots
+def test_a_public_humanoid_is_searched_without_editing(tmp_path: Path) -> None:
+    file, folder = tmp_path / "new.toml", tmp_path / "run"
+    assert run("init", HUMANOIDS["g1"], "--to", file) == 0
+    file.write_text(file.read_text() + QUICK)
+    sizes = ("--evaluations", 6, "--population", 3, "--jobs", 2)
+    assert run("search", file, "--run", folder, *sizes) == 0
+    assert run("verify", folder) == 0
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_soles_lie_under_the_meshes_of_the_feet_where_these_are_found(
+    robot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], there: bool
+) -> None:
+    if there:
+        trimesh.creation.box((0.2, 0.07, 0.04)).export(robot.parent / "foot.stl")
+    links = re.split("(?=<link )", robot.read_text())
+    shod = [re.sub("<box [^>]*>", '<mesh filename="foot.stl"/>', link) for link in links]
+    robot.write_text(
+        "".join(new if 'foot">' in link else link for link, new in zip(links, shod, strict=True))
+    )
+    assert run("init", robot, "--to", tmp_path / "mine.toml") == 0
+    size = tomllib.loads((tmp_path / "mine.toml").read_text())["robot"]["soles"]["size_m"]
+    assert (size == pytest.approx([0.2, 0.07], abs=1e-3)) is there
+    assert ("wanted the mesh 'foot.stl'" in " ".join(capsys.readouterr().err.split())) is not there
+    assert run("check", tmp_path / "mine.toml") == (0 if there else 2)
