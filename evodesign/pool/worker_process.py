@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from typing import Any, Generic
 
+from joblib.externals.loky.backend import resource_tracker as loky_resource_tracker
 from joblib.externals.loky.process_executor import (
     BrokenProcessPool,
     ProcessPoolExecutor,
@@ -100,6 +101,7 @@ class WorkerProcess(Generic[A, R]):
 
     def _submit(self, index: int, argument: A) -> Future[Finished[R]]:
         if self._executor is None:
+            _begin_resource_trackers()
             self._executor = ProcessPoolExecutor(
                 max_workers=1,
                 initializer=start_worker,
@@ -126,10 +128,27 @@ class WorkerProcess(Generic[A, R]):
         return Finished(index, None, failure, False, self._seconds, self._name, out_of_time=True)
 
 
+def _begin_resource_trackers() -> None:
+    """Begin the processes that remove what this one leaves behind, without a word on what that was.
+
+    Loky begins them otherwise, and they let interrupts in when they have begun. What is left is what a second
+    Ctrl-C, or a kill, gave no time to remove.
+    """
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (before, "ignore:resource_tracker")))
+    try:
+        resource_tracker.ensure_running()
+        loky_resource_tracker.ensure_running()
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
+
+
 @contextmanager
 def _interrupts_held_off() -> Iterator[None]:
     """Processes and threads begun within this never see Ctrl-C, not even before `start_worker`."""
-    resource_tracker.ensure_running()  # loky begins it otherwise, and it lets interrupts in when it has begun
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
         yield

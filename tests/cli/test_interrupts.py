@@ -51,6 +51,7 @@ def interrupted(arguments: Sequence[str | Path], delays: Sequence[float]) -> sub
 def check(done: subprocess.CompletedProcess[str], run: Path) -> None:
     assert "Traceback" not in done.stderr, done.stderr
     assert "Error" not in done.stderr, done.stderr
+    assert "resource_tracker" not in done.stderr, done.stderr
     if segments(run):
         assert done.returncode in (0, 3), done.stderr
         assert done.returncode == 0 or f"evodesign resume {run}" in done.stderr
