@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_posture import PaperPostures
-from evodesign.nlp.solver import IpoptOptions
+from evodesign.nlp.solver import SolverOptions
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
@@ -39,7 +39,7 @@ __all__ = ["BOUNDED", "TOLERANCE", "Figures", "measure", "measure_ours", "reachi
 
 PROBLEM = Path(__file__).parent.parent / "problems" / "icub_lifting.toml"
 
-BOUNDED = IpoptOptions(iterations=300, seconds=300.0)
+BOUNDED = SolverOptions(iterations=300, seconds=300.0)
 """Limits of one solve of the paper's program."""
 
 TOLERANCE = 1e-4
@@ -70,7 +70,7 @@ class Figures:
 
 
 def measure(
-    problem: DesignProblem, designs: Sequence[Sequence[float]], height: float, options: IpoptOptions = BOUNDED
+    problem: DesignProblem, designs: Sequence[Sequence[float]], height: float, options: SolverOptions = BOUNDED
 ) -> Figures:
     """What the paper's formulation costs.
 
@@ -145,7 +145,7 @@ def main() -> None:
             f"only {len(designs)} of {options.designs} designs that reach {options.height:g} m were found"
         )
     sys.stderr.write("solving the paper's formulation\n")
-    limits = IpoptOptions(iterations=options.iterations, seconds=options.seconds)
+    limits = SolverOptions(iterations=options.iterations, seconds=options.seconds)
     rows = {"the paper's formulation": measure(problem, designs, options.height, limits)}
     for name, chosen in (("compiled", compiled), ("not compiled", plain)):
         whole = replace(chosen, symmetry=Symmetry.OFF)

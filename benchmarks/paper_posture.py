@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.nlp.solver import SolverOptions, RawSolution, Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import AgentPosture, Instant
@@ -61,7 +61,7 @@ class PaperProgram:
 class PaperPostures:
     """The paper's program, ready to be solved."""
 
-    def __init__(self, problem: DesignProblem, options: IpoptOptions) -> None:
+    def __init__(self, problem: DesignProblem, options: SolverOptions) -> None:
         self._scene, self._space = problem.scene, problem.space
         self._human = AgentModel.of(problem.scene.human, problem.scene.human.tree)
         built = paper_program(problem)

@@ -410,12 +410,14 @@ class ProblemSource(Record, frozen=True):
         text: the problem file.
         files: the files that it names, by the name that it uses.
         symmetry: of postures, if it was chosen beside the file.
+        method: of the solver, where it was settled: in a run, whose sessions all solve alike.
     """
 
     path: str
     text: str
     files: dict[str, str]
     symmetry: str | None = None
+    method: str | None = None
 
 
 class RunHeader(Record, frozen=True):

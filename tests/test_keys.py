@@ -202,7 +202,7 @@ def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, 
         return key_of(replace(setting, scenes=(scene, *setting.scenes)), replace(piece, pair=scene.pair))
 
     seen = see_every_field_count(whole, without, key)
-    assert {"Piece", "IpoptOptions", "EffortWeights", "DesignParameter", "Payload", "Tree"} <= seen
+    assert {"Piece", "SolverOptions", "EffortWeights", "DesignParameter", "Payload", "Tree"} <= seen
 
 
 def test_a_piece_is_that_of_its_scene_and_of_symmetric_postures_or_not() -> None:

@@ -16,7 +16,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,11 +27,14 @@ from evodesign.identity import code_digest, digest
 from evodesign.nlp.disk_cache import Cache, user_cache
 
 __all__ = [
+    "FUNCTION_FLAGS",
     "CompiledFunctions",
     "Compiler",
     "Library",
     "NotCompiled",
+    "built",
     "compiled_functions",
+    "compiler_and_cache",
     "find_compiler",
     "library",
 ]
@@ -39,7 +42,7 @@ __all__ = [
 Expression = Any
 
 COMPILERS = ("cc", "gcc", "clang")
-FLAGS = ("-O1", "-shared", "-fPIC", "-ffp-contract=off")
+FUNCTION_FLAGS = ("-O1", "-shared", "-fPIC", "-ffp-contract=off")
 """More optimisation does not pay; fused multiply-adds would round differently from the virtual machine."""
 
 COMPILING_LIMIT = 300.0
@@ -91,11 +94,11 @@ def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | Not
     Args:
         nlp: symbols x and p, objective f and constraints g, all SX.
     """
-    compiler = find_compiler(os.environ)
-    if isinstance(compiler, NotCompiled):
-        return compiler
+    tools = compiler_and_cache(os.environ)
+    if isinstance(tools, NotCompiled):
+        return tools
     try:
-        found = library(nlp, compiler, user_cache("functions", os.environ))
+        found = library(nlp, *tools)
     except OSError as error:
         return NotCompiled(str(error))
     if isinstance(found, NotCompiled):
@@ -104,6 +107,17 @@ def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | Not
         return CompiledFunctions(ca.external("nlp", str(found.path)), found)
     except RuntimeError as error:  # such as a directory mounted without the right to execute
         return NotCompiled(f"the compiled functions could not be loaded: {_gist(str(error))}")
+
+
+def compiler_and_cache(environment: Mapping[str, str]) -> tuple[Compiler, Cache] | NotCompiled:
+    """What libraries are made with, and where they are kept."""
+    compiler = find_compiler(environment)
+    if isinstance(compiler, NotCompiled):
+        return compiler
+    try:
+        return compiler, user_cache("functions", environment)
+    except OSError as error:
+        return NotCompiled(str(error))
 
 
 def find_compiler(environment: Mapping[str, str]) -> Compiler | NotCompiled:
@@ -125,13 +139,39 @@ def find_compiler(environment: Mapping[str, str]) -> Compiler | NotCompiled:
 def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> Library | NotCompiled:
     """The compiled functions of a nonlinear program, from the cache or, when they are not there, compiled.
 
-    The key is made of the program's own expressions, from which derivatives and C follow: finding a library
-    costs milliseconds, and neither is made again. Of several processes one compiles, the others wait for it.
-
     Raises:
         OSError: a file cannot be written.
     """
-    key = _key(nlp, compiler)
+    expressions = ca.Function("nlp", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]]).serialize()
+    return built(
+        (code_digest(__name__), expressions),
+        lambda: {"functions.c": _c_text(nlp)},
+        FUNCTION_FLAGS,
+        compiler,
+        cache,
+    )
+
+
+def built(
+    of: object, texts: Callable[[], Mapping[str, str]], flags: Sequence[str], compiler: Compiler, cache: Cache
+) -> Library | NotCompiled:
+    """A library from the cache or, when it is not there, compiled.
+
+    The key is made of what the C follows from, such as a program's own expressions: finding a library costs
+    milliseconds, and neither derivatives nor C are made again. Of several processes one compiles, the others
+    wait for it.
+
+    Args:
+        of: data that the C follows from.
+        texts: makes the C, by file name.
+        flags: of the compiler.
+        compiler: to use.
+        cache: where libraries are kept.
+    Raises:
+        OSError: a file cannot be written.
+    """
+    machine = " ".join(os.uname()[::4])  # system and processor
+    key = digest((of, tuple(flags), machine, compiler))
     path = cache.find(key)
     if path is not None:
         return Library(path, fresh=False)
@@ -141,14 +181,8 @@ def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> 
             return Library(path, fresh=False)
         if waited:  # trying again would take as long, and fail as surely, in one process after another
             return NotCompiled("another process tried to compile the same functions and failed")
-        content = _compiled(_c_text(nlp), compiler, cache.directory)
+        content = _compiled(texts(), flags, compiler, cache.directory)
         return content if isinstance(content, NotCompiled) else Library(cache.store(key, content), fresh=True)
-
-
-def _key(nlp: Mapping[str, Expression], compiler: Compiler) -> str:
-    expressions = ca.Function("nlp", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]]).serialize()
-    machine = " ".join(os.uname()[::4])  # system and processor
-    return digest((code_digest(__name__), machine, compiler, expressions))
 
 
 def _c_text(nlp: Mapping[str, Expression]) -> str:
@@ -161,12 +195,16 @@ def _c_text(nlp: Mapping[str, Expression]) -> str:
     return str(generator.dump())
 
 
-def _compiled(text: str, compiler: Compiler, directory: Path) -> bytes | NotCompiled:
-    """The library of a C text; every file on the way to it lies in the user's own directory."""
+def _compiled(
+    texts: Mapping[str, str], flags: Sequence[str], compiler: Compiler, directory: Path
+) -> bytes | NotCompiled:
+    """The library of C files; every file on the way to it lies in the user's own directory."""
     with tempfile.TemporaryDirectory(prefix=".", dir=directory) as name:
-        source, target = Path(name) / "functions.c", Path(name) / "functions.so"
-        source.write_text(text, encoding="ascii")
-        command = [*compiler.command, *FLAGS, str(source), "-o", str(target), "-lm"]
+        for file, text in texts.items():
+            (Path(name) / file).write_text(text, encoding="ascii")
+        sources = [str(Path(name) / file) for file in texts if file.endswith(".c")]
+        target = Path(name) / "library.so"
+        command = [*compiler.command, *flags, *sources, "-o", str(target), "-lm"]
         output = _run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name})
         return output if isinstance(output, NotCompiled) else target.read_bytes()
 

@@ -29,7 +29,7 @@ from evodesign.nlp.optimality import (
     moved,
 )
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
 from evodesign.records import Status
 
 __all__ = ["Limit", "Optimum", "SolutionSensitivity"]
@@ -124,7 +124,7 @@ class SolutionSensitivity:
         options: of the solver; its tolerance becomes a tighter one.
     """
 
-    def __init__(self, program: Program, options: IpoptOptions) -> None:
+    def __init__(self, program: Program, options: SolverOptions) -> None:
         self.program = program
         self._names = _names(program)
         few = replace(options, tolerance=NEAR_TOLERANCE, near=True, compiled=False)  # too few to compile for

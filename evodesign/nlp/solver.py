@@ -1,7 +1,4 @@
-"""Programs solved by IPOPT, through CasADi.
-
-Source: Waechter and Biegler, Mathematical Programming 106 (2006), 25-57.
-"""
+"""Programs made ready once, and solved by name: parameters and starts in SI units, whatever the method."""
 
 from __future__ import annotations
 
@@ -12,34 +9,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import casadi as ca
-import numpy as np
-
-from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_functions
+from evodesign.nlp.codegen import CompiledFunctions, Library, NotCompiled
+from evodesign.nlp.ipopt import Ipopt
+from evodesign.nlp.method import Method, MethodName, SolverOptions
+from evodesign.nlp.native.library import method_library, native_method
 from evodesign.nlp.program import Array, Program
 from evodesign.records import Status
 
-__all__ = ["IpoptOptions", "Multipliers", "RawSolution", "Solver", "SolverCache"]
-
-
-@dataclass(frozen=True, slots=True)
-class IpoptOptions:
-    """IPOPT's settings; the values are what measured best on posture problems (docs/benchmarks.md).
-
-    Args:
-        tolerance: of the scaled optimality error; bounds are taken as wider by as much, at most 1e-8.
-        iterations: limit.
-        seconds: limit of wall time per solve [s].
-        compiled: whether the program's functions run as machine code; results are the same, sooner.
-        near: whether solves begin at a solution, to be found again more exactly: the barrier starts small,
-            and bounds are taken as they are.
-    """
-
-    tolerance: float = 1e-8
-    iterations: int = 300
-    seconds: float = 20.0
-    compiled: bool = False
-    near: bool = False
+__all__ = ["Multipliers", "RawSolution", "Solver", "SolverCache", "SolverOptions", "available"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +36,7 @@ class Multipliers:
 
 @dataclass(frozen=True, slots=True)
 class RawSolution:
-    """What IPOPT returned.
+    """What a method returned.
 
     Args:
         values: value by variable name, SI units.
@@ -69,7 +46,7 @@ class RawSolution:
         seconds: wall time [s].
         cost: of the last iterate.
         cost_slope: derivative of the optimal cost with respect to each row of the program's `given` (envelope
-            theorem; the negative of CasADi's lam_p).
+            theorem).
         multipliers: of bounds and constraints.
     """
 
@@ -98,26 +75,20 @@ class Solver:
 
     Attributes:
         program: what is solved.
+        options: of every solve.
         functions: the machine code that evaluates it, or why CasADi's virtual machine does.
     """
 
-    def __init__(self, program: Program, options: IpoptOptions) -> None:
+    def __init__(self, program: Program, options: SolverOptions) -> None:
         self.program = program
-        self._options = options
-        self._bounds, self._limits = program.bounds, program.limits
-        problem = {"x": program.symbols, "p": program.given, "f": program.cost, "g": program.rows}
-        self.functions: CompiledFunctions | NotCompiled = (
-            compiled_functions(problem) if options.compiled else NotCompiled("compiling is switched off")
-        )
-        self._oracle = problem if isinstance(self.functions, NotCompiled) else self.functions.oracle
-        self._solve = ca.nlpsol(program.name, "ipopt", self._oracle, _casadi_options(options))
+        self.options = options
+        self.functions, self._method = _made(program, options)
 
     @cached_property
     def near(self) -> Solver:
         """The same for solves that begin close to a solution: a third of the iterations."""
         other = copy(self)
-        options = replace(self._options, near=True)
-        other._solve = ca.nlpsol(self.program.name, "ipopt", self._oracle, _casadi_options(options))
+        other.options = replace(self.options, near=True)
         return other
 
     @property
@@ -128,27 +99,39 @@ class Solver:
     def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Array]) -> RawSolution:
         """Solve for parameters, by name, from a start (variables left out begin at the program's own)."""
         began = time.perf_counter()
-        result = self._solve(
-            x0=self.program.packed(start),
-            p=self.program.packed_parameters(parameters),
-            lbx=self._bounds[0],
-            ubx=self._bounds[1],
-            lbg=self._limits[0],
-            ubg=self._limits[1],
+        ending = self._method.solve(
+            self.options, self.program.packed(start), self.program.packed_parameters(parameters)
         )
-        seconds = time.perf_counter() - began
-        stats = self._solve.stats()
-        word = str(stats["return_status"])
         return RawSolution(
-            values=self.program.unpacked(np.asarray(result["x"]).ravel()),
-            status=_STATUS.get(word, Status.NUMERICAL_FAILURE),
-            reason=word,
-            iterations=int(stats["iter_count"]),
-            seconds=seconds,
-            cost=float(result["f"]),
-            cost_slope=-np.asarray(result["lam_p"]).ravel(),
-            multipliers=Multipliers(np.asarray(result["lam_x"]).ravel(), np.asarray(result["lam_g"]).ravel()),
+            values=self.program.unpacked(ending.symbols),
+            status=_STATUS.get(ending.word, Status.NUMERICAL_FAILURE),
+            reason=ending.word,
+            iterations=ending.iterations,
+            seconds=time.perf_counter() - began,
+            cost=ending.cost,
+            cost_slope=ending.cost_slope,
+            multipliers=Multipliers(ending.bounds, ending.rows),
         )
+
+
+def _made(
+    program: Program, options: SolverOptions
+) -> tuple[CompiledFunctions | Library | NotCompiled, Method]:
+    """A program's machine code, or why there is none, and who solves it."""
+    if options.compiled and options.method is MethodName.NATIVE:
+        native = native_method(program)
+        if not isinstance(native, NotCompiled):
+            return native.functions, native
+    ipopt = Ipopt(program, options)
+    return ipopt.functions, ipopt
+
+
+def available(options: SolverOptions) -> SolverOptions:
+    """The options with the method that can be had here: IPOPT where nothing is, or can be, compiled."""
+    native = options.method is MethodName.NATIVE and options.compiled
+    if native and not isinstance(method_library(), NotCompiled):
+        return options
+    return replace(options, method=MethodName.IPOPT)
 
 
 class SolverCache:
@@ -160,9 +143,9 @@ class SolverCache:
     """
 
     def __init__(self) -> None:
-        self._solvers: dict[tuple[str, IpoptOptions], Solver] = {}
+        self._solvers: dict[tuple[str, SolverOptions], Solver] = {}
 
-    def solver(self, key: str, program: Callable[[], Program], options: IpoptOptions) -> Solver:
+    def solver(self, key: str, program: Callable[[], Program], options: SolverOptions) -> Solver:
         """The solver of a program, built when it is first asked for.
 
         Args:
@@ -173,32 +156,3 @@ class SolverCache:
         if (key, options) not in self._solvers:
             self._solvers[key, options] = Solver(program(), options)
         return self._solvers[key, options]
-
-
-def _casadi_options(options: IpoptOptions) -> dict[str, Any]:
-    return {
-        "print_time": False,
-        "error_on_fail": False,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "tol": options.tolerance,
-            "bound_relax_factor": min(options.tolerance, 1e-8),
-            "max_iter": options.iterations,
-            "max_wall_time": options.seconds,
-            "fast_step_computation": "yes",
-            "nlp_scaling_method": "none",
-            **(_NEAR if options.near else {}),
-        },
-    }
-
-
-_NEAR = {
-    "mu_init": 1e-8,
-    "bound_push": 1e-9,
-    "bound_frac": 1e-9,
-    "slack_bound_push": 1e-9,
-    "slack_bound_frac": 1e-9,
-    "bound_mult_init_method": "mu-based",
-    "bound_relax_factor": 0.0,
-}

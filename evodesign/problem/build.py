@@ -11,7 +11,8 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene, StanceLimits, scene_of
-from evodesign.nlp.solver import IpoptOptions
+from evodesign.nlp.method import MethodName, SolverOptions
+from evodesign.nlp.solver import available
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
@@ -89,7 +90,7 @@ class DesignProblem:
     weights: EffortWeights
     objectives: tuple[Objective, ...]
     constraints: tuple[Constraint, ...]
-    options: IpoptOptions
+    options: SolverOptions
     limits: Limits
     symmetry: Symmetry
     symmetry_notes: tuple[str, ...]
@@ -180,18 +181,23 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         designs = read_designs(source.files[name], name, space, robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
     weights = effort_weights(tables)
+    options = SolverOptions(
+        iterations=tables.solver.iterations,
+        seconds=tables.solver.seconds,
+        compiled=tables.solver.compile,
+        method=tables.solver.method if source.method is None else MethodName(source.method),
+    )
+    options = available(options)
     return DesignProblem(
         name=tables.name,
-        source=source,
+        source=msgspec.structs.replace(source, method=options.method),
         scenes=scenes,
         space=space,
         tasks=_tasks(tables, source),
         weights=weights,
         objectives=_objectives(tables, source, scenes),
         constraints=constraints_of(tables, source, robot, people),
-        options=IpoptOptions(
-            iterations=tables.solver.iterations, seconds=tables.solver.seconds, compiled=tables.solver.compile
-        ),
+        options=options,
         limits=_limits(tables),
         symmetry=resolved.symmetry,
         symmetry_notes=resolved.notes,

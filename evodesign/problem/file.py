@@ -17,6 +17,7 @@ from evodesign.human.anthropometry import Sex
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
 from evodesign.mechanics.scene import Grasp
+from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
 from evodesign.problem.design_table import DesignTable, MaterialTable
@@ -241,6 +242,7 @@ class SolverTable(Table, frozen=True):
 
     symmetry: Symmetry = Symmetry.AUTO
     start_portfolio: bool = True
+    method: MethodName = MethodName.NATIVE
     compile: bool = True
     iterations: Annotated[int, Meta(ge=1)] = 300
     seconds: Positive = 20.0

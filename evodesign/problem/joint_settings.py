@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
-from evodesign.nlp.solver import IpoptOptions
+from evodesign.nlp.solver import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.limit_groups import Enforced
@@ -52,7 +52,7 @@ def joint_settings(
             preferred,
         ),
         enforced=Enforced(table.joint_limits, table.contact_limits, table.stance_limits, table.length_bounds),
-        options=IpoptOptions(iterations=table.iterations, seconds=table.seconds, compiled=table.compile),
+        options=SolverOptions(iterations=table.iterations, seconds=table.seconds, compiled=table.compile),
         symmetric=symmetry is not Symmetry.OFF,
     )
 

@@ -8,6 +8,8 @@ Format 1 told a case by a height and the names of person and load, and called al
     policy.NAME                                        allocation.NAME
     [[design.policy]], [solver] seeds                  [[design.allocation]], [solver] start_portfolio
 
+Headers of either format may lack the method that solved: it was IPOPT then.
+
 A message tells its format itself, a header by its number and another one by its heights, so it can be read
 whatever became of its segment's header.
 """
@@ -22,6 +24,9 @@ import msgspec
 from evodesign.runlog.channels import RECORDS, RUN
 
 __all__ = ["record_of", "upgraded"]
+
+IPOPT: Final = "ipopt"
+"""Who solved before runs told."""
 
 RENAMED_KEYS: Final = {
     re.compile(r"\bseeds(?=[ \t]*=[ \t]*(true|false)\b)"): "start_portfolio",
@@ -47,7 +52,7 @@ def record_of(topic: str, data: bytes) -> msgspec.Struct:
 
 
 def upgraded(message: Any) -> Any:
-    """A decoded message as this format has it; what is none of format 1 stays as it is.
+    """A decoded message as this format has it; what needs no change stays as it is.
 
     A header keeps the number of its format, which tells what was read.
     """
@@ -58,8 +63,11 @@ def upgraded(message: Any) -> Any:
             "parameters": list(parameters),
         }:
             files = {name: _with_new_keys(text) for name, text in files.items()}
-            problem = {**source, "text": _with_new_keys(source.get("text")), "files": files}
+            text = _with_new_keys(source.get("text"))
+            problem = {**source, "text": text, "files": files, "method": IPOPT}
             return {**message, "problem": problem, "parameters": [_renamed(each) for each in parameters]}
+        case {"format_version": int(), "problem": {"path": _} as problem}:
+            return {**message, "problem": {"method": IPOPT, **problem}}
         case {"assessment": {"heights": list(heights), "design": dict(design), **rest}}:
             values = {_name(name): value for name, value in design.items()}
             cases = [_case(each) for each in heights]

@@ -29,7 +29,7 @@ from evodesign.mechanics.projected import (
 )
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Scene
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.nlp.solver import SolverOptions, RawSolution, Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole
@@ -229,7 +229,7 @@ def boundless(problem: DesignProblem) -> tuple[Solver, Scene]:
         cost=assembly.undisturbed.effort({ROBOT: 1.0, HUMAN: 1.0}),
         parameters={"design": design, "height": height},
     )
-    return Solver(program, IpoptOptions()), scene
+    return Solver(program, SolverOptions()), scene
 
 
 def postures_of(scene: Scene, raw: RawSolution) -> dict[str, AgentPosture]:

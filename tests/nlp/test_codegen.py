@@ -26,13 +26,13 @@ from evodesign.nlp.codegen import (
 )
 from evodesign.nlp.disk_cache import Cache, open_cache
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.nlp.solver import SolverOptions, RawSolution, Solver
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 
-COMPILED = IpoptOptions(compiled=True)
+COMPILED = SolverOptions(compiled=True)
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ def fresh(found: Library | NotCompiled) -> bool:
 def test_compiled_and_virtual_machine_solve_alike_to_the_last_bit() -> None:
     compiled = Solver(program(1.3), COMPILED)
     assert isinstance(compiled.functions, CompiledFunctions)
-    assert same(solved(compiled), solved(Solver(program(1.3), IpoptOptions())))
+    assert same(solved(compiled), solved(Solver(program(1.3), SolverOptions())))
 
 
 @pytest.mark.needs_compiler
@@ -141,7 +141,7 @@ def test_compiled_reach_of_the_default_problem_is_the_same(problem: DesignProble
     """One real compilation: about six seconds."""
     reaches = [
         ReachProblem(Setting(problem.scene, problem.space, problem.weights, options), symmetric=True)
-        for options in (IpoptOptions(), COMPILED)
+        for options in (SolverOptions(), COMPILED)
     ]
     assert isinstance(reaches[1]._solver.functions, CompiledFunctions)
     for share in (0.4, 0.7):
@@ -230,7 +230,7 @@ def test_without_compiler_the_virtual_machine_solves_and_says_why(monkeypatch: p
     monkeypatch.setenv("PATH", "")
     solver = Solver(program(1.3), COMPILED)
     assert solver.functions == NotCompiled("no C compiler found (looked for cc, gcc, clang)")
-    assert same(solved(solver), solved(Solver(program(1.3), IpoptOptions())))
+    assert same(solved(solver), solved(Solver(program(1.3), SolverOptions())))
     assert find_compiler({"CC": "nocc -m64"}) == NotCompiled("no C compiler found ($CC names 'nocc -m64')")
 
 
@@ -280,7 +280,7 @@ def solve_compiled(radius: float) -> tuple[bool, float]:
 def test_processes_that_start_together_compile_once(count: Path) -> None:
     with ProcessPoolExecutor(3, mp_context=get_context("spawn")) as pool:
         found = set(pool.map(solve_compiled, [1.3] * 3))
-    assert found == {(True, solved(Solver(program(1.3), IpoptOptions())).cost)}
+    assert found == {(True, solved(Solver(program(1.3), SolverOptions())).cost)}
     assert calls(count) == 1
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import IpoptOptions, Solver
+from evodesign.nlp.solver import SolverOptions, Solver
 from evodesign.records import Status
 
 
@@ -26,24 +26,24 @@ def rosenbrock(scale: float, bound: float) -> Program:
 
 @pytest.mark.parametrize("scale", [1.0, 10.0])
 def test_minimum_does_not_depend_on_the_scale(scale: float) -> None:
-    solver = Solver(rosenbrock(scale, 10.0), IpoptOptions())
+    solver = Solver(rosenbrock(scale, 10.0), SolverOptions())
     solution = solver.solve({"weight": 100.0}, solver.start)
     assert solution.status is Status.SOLVED
     assert np.allclose(solution.values["x"], 1.0, atol=1e-5)
 
 
 def test_iteration_limit_is_a_status() -> None:
-    solver = Solver(rosenbrock(1.0, 10.0), IpoptOptions(iterations=2))
+    solver = Solver(rosenbrock(1.0, 10.0), SolverOptions(iterations=2))
     assert solver.solve({"weight": 100.0}, solver.start).status is Status.ITERATION_LIMIT
 
 
 def test_contradiction_is_infeasible() -> None:
-    solver = Solver(rosenbrock(1.0, -1.0), IpoptOptions())
+    solver = Solver(rosenbrock(1.0, -1.0), SolverOptions())
     assert solver.solve({"weight": 100.0}, solver.start).status is Status.INFEASIBLE
 
 
 def test_time_limit_is_a_status() -> None:
-    solver = Solver(rosenbrock(1.0, 10.0), IpoptOptions(seconds=1e-9))
+    solver = Solver(rosenbrock(1.0, 10.0), SolverOptions(seconds=1e-9))
     assert solver.solve({"weight": 100.0}, solver.start).status is Status.TIME_LIMIT
 
 

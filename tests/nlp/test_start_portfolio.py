@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import IpoptOptions, Solver
+from evodesign.nlp.solver import SolverOptions, Solver
 from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spread_designs, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
@@ -37,7 +37,7 @@ def landscape(limit: float = 3.0, least: float = -3.0) -> Landscape:
     )
     bound = ConstraintBlock("bound", x, least, 9.0)
     program = Program("wells", (joints,), (bound,), cost, {"design": design})
-    solver = Solver(program, IpoptOptions())
+    solver = Solver(program, SolverOptions())
     return Landscape(solver, {}, FIXED, 0.01, 1e-6)
 
 

@@ -11,7 +11,7 @@ import pytest
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
-from evodesign.nlp.solver import IpoptOptions, Solver
+from evodesign.nlp.solver import SolverOptions, Solver
 
 
 def nearest_point() -> Program:
@@ -23,7 +23,7 @@ def nearest_point() -> Program:
 
 
 def optimum(program: Program, parameters: list[float]) -> Optimum | NotDifferentiable:
-    options = IpoptOptions()
+    options = SolverOptions()
     given = {"wanted": parameters}
     found = Solver(program, options).solve(given, {})
     return SolutionSensitivity(program, options).at(given, found.values)
@@ -49,7 +49,7 @@ def test_nearest_point_follows_as_geometry_says(
 
 
 def test_multipliers_of_the_parameters_are_the_gradient_of_the_optimal_cost() -> None:
-    raw = Solver(nearest_point(), IpoptOptions()).solve({"wanted": [2.0, 1.0]}, {})
+    raw = Solver(nearest_point(), SolverOptions()).solve({"wanted": [2.0, 1.0]}, {})
     assert raw.cost_slope == pytest.approx([0.5, 0.5], abs=1e-6)
 
 

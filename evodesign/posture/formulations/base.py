@@ -16,7 +16,7 @@ from evodesign.identity import Exceptions, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import IpoptOptions
+from evodesign.nlp.solver import SolverOptions
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.candidate import Trial
@@ -48,7 +48,7 @@ class Setting:
     scene: Scene
     space: DesignSpace
     weights: EffortWeights
-    options: IpoptOptions
+    options: SolverOptions
 
 
 class Formulation(Protocol):

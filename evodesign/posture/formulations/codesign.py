@@ -30,7 +30,7 @@ import numpy as np
 from evodesign.design.space import DesignSpace, ParameterKind
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
 from evodesign.nlp.program import Array, Expression, Program, Start, Variable
-from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
 from evodesign.posture.candidate import checked
@@ -80,7 +80,7 @@ class JointSettings:
     efforts: EffortWeights
     tasks: Tasks
     enforced: Enforced
-    options: IpoptOptions
+    options: SolverOptions
     symmetric: bool
 
 

@@ -24,7 +24,7 @@ from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import Array, ConstraintBlock, Program
-from evodesign.nlp.solver import IpoptOptions, RawSolution, SolverCache
+from evodesign.nlp.solver import RawSolution, SolverCache, SolverOptions
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.starts import person_starts
@@ -93,7 +93,7 @@ class HumanProblem:
         form: Form,
         scene: Scene,
         weight: float,
-        options: IpoptOptions,
+        options: SolverOptions,
         solvers: SolverCache | None = None,
     ) -> None:
         self._push = scene.stance.push

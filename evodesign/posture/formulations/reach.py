@@ -25,7 +25,7 @@ from evodesign.mechanics.scene import Scene
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
-from evodesign.nlp.solver import IpoptOptions, RawSolution, Solver, SolverCache
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
@@ -264,7 +264,7 @@ def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]
     )
 
 
-def person_reach(scene: Scene, options: IpoptOptions, *, symmetric: bool) -> PersonReach | None:
+def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> PersonReach | None:
     """How low and how high a scene's person can hold the load; None when no posture was found.
 
     A person does not depend on the robot, so this is found once per person and load, as the best of many

@@ -17,7 +17,7 @@ from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene, scene_of
-from evodesign.nlp.solver import IpoptOptions
+from evodesign.nlp.solver import SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
@@ -89,7 +89,7 @@ class PrecomputeSetting:
     middle: Scene
     space: DesignSpace
     weights: EffortWeights
-    options: IpoptOptions
+    options: SolverOptions
     symmetry: Symmetry
 
     @property
@@ -107,7 +107,7 @@ NO_PART_OF_PIECES: Exceptions = {
     Piece: {"pair": "says which scene that is"},
     Agent: {"label": "is a word for results"},
     Payload: {"label": "is a word for results"},
-    IpoptOptions: {"compiled": "machine code gives the same bits"},
+    SolverOptions: {"compiled": "machine code gives the same bits"},
 }
 
 NO_PART_OF_A_PERSONS: Exceptions = {

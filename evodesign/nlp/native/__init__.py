@@ -1,0 +1,1 @@
+"""The interior-point method in C, over a program's compiled functions; IPOPT is its judge."""

@@ -1,0 +1,71 @@
+/* A primal-dual interior-point method with a filter line search, for programs of fixed sparsity:
+
+       minimise f(x)   subject to   lower <= x <= upper,   row_lower <= g(x) <= row_upper
+
+   Source: Waechter and Biegler, Mathematical Programming 106 (2006), 25-57, cited as WB with its equations.
+   Rows with different limits get a slack s between them; v = (x, s). All memory is taken in `create`. */
+
+#ifndef EVODESIGN_INTERIOR_POINT_H
+#define EVODESIGN_INTERIOR_POINT_H
+
+typedef long long Size; /* CasADi's integer */
+typedef int (*Function)(const double **arguments, double **results, Size *integers, double *work, int memory);
+
+/* What is known of a program before it is solved. Matrices are stored by columns: `starts` of each column among
+   the `rows` of its entries. */
+typedef struct {
+    int variables, rows;
+    const double *lower, *upper, *row_lower, *row_upper; /* beyond +-UNBOUNDED: none */
+    const int *hessian_starts, *hessian_rows;            /* of the Lagrangian, upper triangle */
+    const int *jacobian_starts, *jacobian_rows;
+    const int *order;                     /* of elimination: order[new] = old, variables and then rows */
+    const int *system_starts, *system_rows; /* reordered system, upper triangle */
+    const int *hessian_places, *jacobian_places, *diagonal_places; /* of entries, in the reordered system */
+    const int *factor_starts, *factor_rows;     /* L below its diagonal, by columns */
+    const int *pattern_starts, *pattern;        /* L below its diagonal, columns of each row, ascending */
+    Function values;      /* (x, p) -> f, g */
+    Function derivatives; /* (x, p, y) -> f, grad f, g, jacobian, hessian */
+    Function slopes;      /* (x, p, y) -> gradients of f + y g by p and by variables that are no variables here */
+    Size work, integers;  /* what the functions need */
+} Problem;
+
+typedef struct {
+    double tolerance;
+    double seconds;
+    double barrier;    /* mu at the start */
+    double push;       /* least distance of the start from bounds, relative */
+    double relaxation; /* of bounds, relative */
+    double hopeless;   /* cost above which a nearly feasible iterate is given up */
+    int iterations;
+    int near; /* whether multipliers of bounds follow from mu at the start */
+} Options;
+
+/* Numbers as Python's `Outcome` has them. */
+typedef enum {
+    SOLVED,
+    ACCEPTABLE,
+    ITERATION_LIMIT,
+    TIME_LIMIT,
+    INFEASIBLE,
+    RESTORATION_FAILED,
+    STEP_FAILED,
+    INVALID_NUMBER,
+    HOPELESS
+} Status;
+
+typedef struct {
+    double cost, infeasibility, dual_infeasibility, complementarity;
+    int status, iterations, factorisations, corrections, restorations;
+} Outcome;
+
+typedef struct Solver Solver;
+
+Solver *create(const Problem *problem); /* NULL where memory is short */
+void destroy(Solver *solver);
+
+/* Solve from x, which the solution replaces, with the multipliers of variables' bounds and of rows, and with the
+   slopes of the Lagrangian. */
+void solve(Solver *solver, const Options *options, const double *parameters, double *x, double *bounds,
+           double *rows, double *parameter_slopes, double *fixed_slopes, Outcome *outcome);
+
+#endif
