@@ -73,7 +73,9 @@ class Bench:
             starts = (like_known, *starts)
         known = Precomputed(postures={HOLD: StartPortfolio(starts, Coverage(0, 0, 0.0))})
         postures = PostureProblem(self._setting, self._problem.symmetry, known, self._solvers)
-        return postures.solve(design, HOLD, Checker(self._scene, tree, self._human))
+        return postures.solve(
+            design, HOLD, Checker(self._scene, AgentModel.of(self._scene.robot, tree), self._human)
+        )
 
 
 def cost_of(solution: CaseSolution) -> float:

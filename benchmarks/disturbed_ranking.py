@@ -94,7 +94,7 @@ class Judge:
         tree = self._problem.space.resized(self._scenes[0].robot.tree, design)
         found = []
         for scene, postures in zip(self._scenes, self._postures, strict=True):
-            checker = Checker(scene, tree, self._human)
+            checker = Checker(scene, AgentModel.of(scene.robot, tree), self._human)
             found.append([postures.solve(design, task, checker) for task in HOLDS])
         if not all(solution.solved for solutions in found for solution in solutions):
             return None

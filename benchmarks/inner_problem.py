@@ -48,7 +48,7 @@ def checker_of(problem: DesignProblem, design: Design) -> Checker:
     """The independent check of a design's postures."""
     scene = problem.scene
     tree = problem.space.resized(scene.robot.tree, design)
-    return Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
+    return Checker(scene, AgentModel.of(scene.robot, tree), AgentModel.of(scene.human, scene.human.tree))
 
 
 def processors() -> int:

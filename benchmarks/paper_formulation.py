@@ -70,7 +70,10 @@ class Figures:
 
 
 def measure(
-    problem: DesignProblem, designs: Sequence[Sequence[float]], height: float, options: SolverOptions = BOUNDED
+    problem: DesignProblem,
+    designs: Sequence[Sequence[float]],
+    height: float,
+    options: SolverOptions = BOUNDED,
 ) -> Figures:
     """What the paper's formulation costs.
 
@@ -101,7 +104,7 @@ def measure_ours(
     ours.landscape(Hold(height_m=height))  # builds the program
     seconds, iterations, solved = 0.0, [], 0
     for values in designs:
-        checker = Checker(scene, space.resized(scene.robot.tree, values), human)
+        checker = Checker(scene, AgentModel.of(scene.robot, space.resized(scene.robot.tree, values)), human)
         began = time.process_time()
         solution = ours.solve(values, Hold(height_m=height), checker)
         seconds += time.process_time() - began

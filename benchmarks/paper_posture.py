@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import SolverOptions, RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import AgentPosture, Instant
@@ -87,7 +87,9 @@ class PaperPostures:
         tree = self._space.resized(self._scene.robot.tree, values)
         return max(
             residual.size
-            for residual in Checker(self._scene, tree, self._human).residuals(Instant(0.0, postures), height)
+            for residual in Checker(
+                self._scene, AgentModel.of(self._scene.robot, tree), self._human
+            ).residuals(Instant(0.0, postures), height)
         )
 
 

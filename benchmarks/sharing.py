@@ -67,7 +67,9 @@ def sweep(problem: DesignProblem, allocation: str, height: float, starts: int) -
         layout = layout_of(landscape.solver.program)
         instant = instants_of(layout, symmetric_forms(scene), scene, best.values)[0]
         found = instant.postures
-        checker = Checker(shared_scene(scene, space, (value,)), scene.robot.tree, person)
+        checker = Checker(
+            shared_scene(scene, space, (value,)), AgentModel.of(scene.robot, scene.robot.tree), person
+        )
         if max(sizes(checker.residuals(instant, height)).values()) > TOLERANCE:
             raise AssertionError(f"the check refuses {allocation} {value:g} at {height:g} m")
         carried = -sum(wrench[2] for wrench in found[ROBOT].hand_wrenches.values())

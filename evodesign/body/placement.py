@@ -100,13 +100,18 @@ def rotate(matrix: Matrix, a: Vector) -> Vector:
 
 def transpose(matrix: Matrix) -> Matrix:
     """Transposed 3 x 3 matrix."""
-    return tuple(tuple(row[i] for row in matrix) for i in range(3))  # type: ignore[return-value]
+    (a, b, c), (d, e, f), (g, h, i) = matrix
+    return (a, d, g), (b, e, h), (c, f, i)
 
 
 def multiply(a: Matrix, b: Matrix) -> Matrix:
     """Product of two 3 x 3 matrices."""
-    columns = transpose(b)
-    return tuple(tuple(dot(row, column) for column in columns) for row in a)  # type: ignore[return-value]
+    (x, y, z), (p, q, r) = a, transpose(b)
+    return (
+        (dot(x, p), dot(x, q), dot(x, r)),
+        (dot(y, p), dot(y, q), dot(y, r)),
+        (dot(z, p), dot(z, q), dot(z, r)),
+    )
 
 
 def matrix_from_rpy(rpy: Sequence[float]) -> Matrix:

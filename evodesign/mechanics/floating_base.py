@@ -11,7 +11,7 @@ Source: Sartore et al. 2022, Eq. 5; pinocchio `crba`, `nonLinearEffects`, `getFr
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,31 @@ class Configuration:
     joints: Mapping[str, float] = field(default_factory=dict)
 
 
+@dataclass(slots=True, eq=False)
+class _Workspace:
+    """Pinocchio's memory, which takes longer to make than to fill, and whose kinematics it holds."""
+
+    data: Any
+    holds: BodyState | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Built:
+    """What a model was made of.
+
+    Args:
+        tree: of numbers.
+        moving: names of the joints that move.
+        carriers: of each link: pinocchio's joint, and the link's place in its frame.
+        bodies: of each link: pinocchio's inertia.
+    """
+
+    tree: Tree
+    moving: frozenset[str]
+    carriers: Mapping[str, tuple[int, Any]]
+    bodies: Mapping[str, Any]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FloatingBody:
     """A floating tree as pinocchio sees it.
@@ -56,6 +81,8 @@ class FloatingBody:
         order: pinocchio's velocity index of each of our rows.
         places: pinocchio's configuration index of each moving joint.
         world_from_given: rotation from the axes in which configurations are given to the world, (3, 3).
+        workspace: memory that pinocchio computes in.
+        built: what the model was made of; none where it cannot be made anew for another design.
     """
 
     model: Any
@@ -63,6 +90,8 @@ class FloatingBody:
     order: NDArray[np.intp]
     places: NDArray[np.intp]
     world_from_given: Array
+    workspace: _Workspace
+    built: _Built | None
 
     @property
     def size(self) -> int:
@@ -72,22 +101,63 @@ class FloatingBody:
     @classmethod
     def of_tree(cls, tree: Tree, joints: Sequence[str], world_from_given: Array) -> FloatingBody:
         """A tree of numbers, floating; joints that are not named are welded at zero."""
-        model = pin.Model()
+        model, moving = pin.Model(), frozenset(joints)
         root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
         carriers = {tree.root: (root, pin.SE3.Identity())}
         for joint in _depth_first(tree, tree.root):
             carrier, carrier_from_parent = carriers[joint.parent]
             carrier_from_child = carrier_from_parent * _placement(joint.parent_from_child)
-            if joint.name in joints:
-                moving = model.addJoint(carrier, _joint_model(joint), carrier_from_child, joint.name)
-                carriers[joint.child] = (moving, pin.SE3.Identity())
+            if joint.name in moving:
+                added = model.addJoint(carrier, _joint_model(joint), carrier_from_child, joint.name)
+                carriers[joint.child] = (added, pin.SE3.Identity())
             else:
                 carriers[joint.child] = (carrier, carrier_from_child)
-        for link in tree.links:
+        bodies = {link.name: _body(link.inertia) for link in tree.links}
+        for name, body in bodies.items():
+            carrier, carrier_from_link = carriers[name]
+            model.appendBodyToJoint(carrier, body, carrier_from_link)
+            model.addFrame(pin.Frame(name, carrier, carrier_from_link, pin.FrameType.BODY))
+        return cls._of_model(model, joints, world_from_given, _Built(tree, moving, carriers, bodies))
+
+    def resized(self, tree: Tree) -> FloatingBody:
+        """The tree of another design: what differs is put in the place of what was in a copy of the model.
+
+        Args:
+            tree: of numbers, which has all unchanged links and joints in common with the one that this was
+                made of.
+        """
+        built, model = self.built, pin.Model(self.model)
+        if built is None:
+            raise ValueError("a solid is not resized")
+        carriers, moved, changed = dict(built.carriers), set(), set()
+        joints = {joint.name: joint for joint in tree.joints}
+        for unscaled in _depth_first(built.tree, built.tree.root):
+            joint = joints[unscaled.name]
+            if joint is unscaled and joint.parent not in moved:
+                continue
+            carrier, carrier_from_parent = carriers[joint.parent]
+            carrier_from_child = carrier_from_parent * _placement(joint.parent_from_child)
+            if joint.name in built.moving:
+                model.jointPlacements[carriers[joint.child][0]] = carrier_from_child
+            else:
+                carriers[joint.child] = (carrier, carrier_from_child)
+                moved.add(joint.child)
+        bodies = dict(built.bodies)
+        for before, link in zip(built.tree.links, tree.links, strict=True):
             carrier, carrier_from_link = carriers[link.name]
-            model.appendBodyToJoint(carrier, _body(link.inertia), carrier_from_link)
-            model.addFrame(pin.Frame(link.name, carrier, carrier_from_link, pin.FrameType.BODY))
-        return cls._of_model(model, joints, world_from_given)
+            if link is not before:
+                bodies[link.name] = _body(link.inertia)
+            if link.name in moved:
+                model.frames[model.getFrameId(link.name, pin.FrameType.BODY)].placement = carrier_from_link
+            if link is not before or link.name in moved:
+                changed.add(carrier)
+        for carrier in changed:
+            model.inertias[carrier] = pin.Inertia.Zero()
+        for name, body in bodies.items():
+            carrier, carrier_from_link = carriers[name]
+            if carrier in changed:
+                model.appendBodyToJoint(carrier, body, carrier_from_link)
+        return replace(self, model=model, built=None)
 
     @classmethod
     def of_solid(cls, inertia: Inertia, points: Mapping[str, Array]) -> FloatingBody:
@@ -105,11 +175,15 @@ class FloatingBody:
         return cls._of_model(model, (), np.eye(3))
 
     @classmethod
-    def _of_model(cls, model: Any, joints: Sequence[str], world_from_given: Array) -> FloatingBody:
+    def _of_model(
+        cls, model: Any, joints: Sequence[str], world_from_given: Array, built: _Built | None = None
+    ) -> FloatingBody:
         model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
         columns = [model.joints[model.getJointId(name)].idx_v for name in joints]
         places = np.array([model.joints[model.getJointId(name)].idx_q for name in joints], int)
-        return cls(model, tuple(joints), np.array([*range(ROOT), *columns]), places, world_from_given)
+        order = np.array([*range(ROOT), *columns])
+        workspace = _Workspace(model.createData())
+        return cls(model, tuple(joints), order, places, world_from_given, workspace, built)
 
     def at(self, configuration: Configuration, velocity: Array) -> BodyState:
         """The body at a configuration, moving with a velocity of shape (6 + joints,).
@@ -117,14 +191,12 @@ class FloatingBody:
         Raises:
             ValueError: the configuration places other joints than those that move.
         """
-        model, data = self.model, self.model.createData()
+        model, data = self.model, self.workspace.data
         q, v = self._coordinates(configuration), np.empty(model.nv)
         v[self.order] = velocity
+        self.workspace.holds = None
         bias = np.array(pin.nonLinearEffects(model, data, q, v))[self.order]
-        pin.computeJointJacobians(model, data, q)
-        pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))  # last: it leaves dJ/dt nu in `data`
-        pin.updateFramePlacements(model, data)
-        return BodyState(self, q, bias, data)
+        return BodyState(self, q, v, bias)
 
     def _coordinates(self, configuration: Configuration) -> Array:
         """The configuration vector of pinocchio, in the world."""
@@ -170,14 +242,26 @@ class BodyState:
     Args:
         body: the body.
         coordinates: pinocchio's configuration vector.
+        speeds: pinocchio's velocity vector.
         bias: Coriolis, centrifugal and gravity terms h, shape (v,).
-        data: pinocchio's, with kinematics at zero acceleration.
     """
 
     body: FloatingBody
     coordinates: Array
+    speeds: Array
     bias: Array
-    data: Any
+
+    @property
+    def data(self) -> Any:
+        """Pinocchio's, with this state's kinematics at zero acceleration, until another's are asked for."""
+        body, q = self.body, self.coordinates
+        model, workspace = body.model, body.workspace
+        if workspace.holds is not self:
+            pin.computeJointJacobians(model, workspace.data, q)
+            pin.forwardKinematics(model, workspace.data, q, self.speeds, np.zeros(model.nv))  # last: dJ/dt nu
+            pin.updateFramePlacements(model, workspace.data)
+            workspace.holds = self
+        return workspace.data
 
     @property
     def mass(self) -> Array:

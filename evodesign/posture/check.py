@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,6 +42,10 @@ class AgentModel:
         """The agent with a tree of numbers (a design's)."""
         return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)))
 
+    def resized(self, tree: Tree) -> AgentModel:
+        """The same agent with the tree of another design."""
+        return replace(self, body=self.body.resized(tree))
+
     def at(self, posture: AgentPosture) -> BodyState:
         """Kinematics, Jacobians and gravity torques of a posture."""
         configuration = Configuration(posture.base_position, posture.base_angles, posture.joints)
@@ -51,9 +55,9 @@ class AgentModel:
 class Checker:
     """Residuals of postures of one design in a scene."""
 
-    def __init__(self, scene: Scene, robot_tree: Tree, human: AgentModel) -> None:
+    def __init__(self, scene: Scene, robot: AgentModel, human: AgentModel) -> None:
         self._scene = scene
-        self._models = (AgentModel.of(scene.robot, robot_tree), human)
+        self._models = (robot, human)
 
     def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
         """The check of the same robot in another scene."""

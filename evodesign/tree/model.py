@@ -103,6 +103,11 @@ class Link:
         return total([solid.inertia for solid in self.solids])
 
     @property
+    def mass(self) -> Scalar:
+        """Mass of the whole link [kg]."""
+        return sum(solid.mass for solid in self.solids) if self.solids else self.own_inertia.mass
+
+    @property
     def shown(self) -> tuple[Mesh, ...]:
         """Its meshes of which the triangles are known; where there are any, shapes are not shown."""
         return tuple(mesh for mesh in self.meshes if mesh.surface is not None)

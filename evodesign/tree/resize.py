@@ -116,7 +116,7 @@ def growth_of(tree: Tree, name: str) -> Growth:
 def _changeable(tree: Tree, name: str, what: str) -> Link:
     """The link of a name, if a design can change it."""
     link = tree.link(name, f"{what} parameter")
-    if link.inertia.mass == 0.0:
+    if link.mass == 0.0:
         found = "a shape that is only seen, without mass" if link.looks or link.meshes else "none"
         raise ModelError(tree.name, f"{what} of link {name}", "a link with mass", found)
     if what == "density" and not link.volume:

@@ -247,4 +247,6 @@ def parts_of(term: BodyTerm | SystemTerm, seen: Any) -> list[Any]:
 
 
 def checker_of(scene: Scene) -> Checker:
-    return Checker(scene, scene.robot.tree, AgentModel.of(scene.human, scene.human.tree))
+    return Checker(
+        scene, AgentModel.of(scene.robot, scene.robot.tree), AgentModel.of(scene.human, scene.human.tree)
+    )

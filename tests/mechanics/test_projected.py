@@ -29,7 +29,7 @@ from evodesign.mechanics.projected import (
 )
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Scene
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import SolverOptions, RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole

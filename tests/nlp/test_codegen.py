@@ -26,7 +26,7 @@ from evodesign.nlp.codegen import (
 )
 from evodesign.nlp.disk_cache import Cache, open_cache
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import SolverOptions, RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.problem.build import DesignProblem

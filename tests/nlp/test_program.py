@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import SolverOptions, Solver
+from evodesign.nlp.solver import Solver, SolverOptions
 from evodesign.records import Status
 
 

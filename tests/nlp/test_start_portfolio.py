@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import SolverOptions, Solver
+from evodesign.nlp.solver import Solver, SolverOptions
 from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spread_designs, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem

@@ -45,7 +45,9 @@ def bench(problem: DesignProblem) -> Bench:
     scene, space = problem.scene, problem.space
     design = space.unscaled(scene.robot.tree)
     checker = Checker(
-        scene, space.resized(scene.robot.tree, design), AgentModel.of(scene.human, scene.human.tree)
+        scene,
+        AgentModel.of(scene.robot, space.resized(scene.robot.tree, design)),
+        AgentModel.of(scene.human, scene.human.tree),
     )
     return Bench(Setting(scene, space, problem.weights, problem.options), design, checker)
 

@@ -65,7 +65,9 @@ def solve(
 
 
 def checker(scene: Scene) -> Checker:
-    return Checker(scene, scene.robot.tree, AgentModel.of(scene.human, scene.human.tree))
+    return Checker(
+        scene, AgentModel.of(scene.robot, scene.robot.tree), AgentModel.of(scene.human, scene.human.tree)
+    )
 
 
 def share(solution: CaseSolution) -> float:

@@ -63,7 +63,9 @@ def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
     scene, space = paper.scene, paper.space
     values = space.values(genome)
     checker = Checker(
-        scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
+        scene,
+        AgentModel.of(scene.robot, space.resized(scene.robot.tree, values)),
+        AgentModel.of(scene.human, scene.human.tree),
     )
     postures = PostureProblem(Setting(scene, space, EffortWeights(), OPTIONS), symmetry)
     alone = [postures.solve(values, task, checker) for task in tasks]

@@ -27,7 +27,9 @@ def unscaled(problem: DesignProblem, evaluator: Evaluator) -> DesignResult:
 @pytest.fixture(scope="module")
 def checker(problem: DesignProblem, unscaled: DesignResult) -> Checker:
     scene = problem.scene
-    return Checker(scene, unscaled.tree, AgentModel.of(scene.human, scene.human.tree))
+    return Checker(
+        scene, AgentModel.of(scene.robot, unscaled.tree), AgentModel.of(scene.human, scene.human.tree)
+    )
 
 
 def random_designs(problem: DesignProblem, count: int) -> list[tuple[float, ...]]:

@@ -60,7 +60,7 @@ def postures_in(
 
 def checker_of(scene: Scene, problem: DesignProblem, values: tuple[float, ...]) -> Checker:
     tree = problem.space.resized(scene.robot.tree, values)
-    return Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
+    return Checker(scene, AgentModel.of(scene.robot, tree), AgentModel.of(scene.human, scene.human.tree))
 
 
 def solved(

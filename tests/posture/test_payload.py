@@ -25,7 +25,7 @@ def solve(problem: DesignProblem, payload: Payload, height: float = 1.0) -> Case
     values = problem.space.unscaled(scene.robot.tree)
     posture = PostureProblem(Setting(scene, problem.space, problem.weights, problem.options), Symmetry.ON)
     tree = problem.space.resized(scene.robot.tree, values)
-    checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
+    checker = Checker(scene, AgentModel.of(scene.robot, tree), AgentModel.of(scene.human, scene.human.tree))
     return posture.solve(values, Hold(height_m=height), checker)
 
 

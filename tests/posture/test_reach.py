@@ -42,7 +42,9 @@ def test_postures_end_where_reach_ends(problem: DesignProblem) -> None:
     values = problem.space.unscaled(problem.scene.robot.tree)
     result = evaluator.solve(values)
     scene = problem.scene
-    checker = Checker(scene, result.tree, AgentModel.of(scene.human, scene.human.tree))
+    checker = Checker(
+        scene, AgentModel.of(scene.robot, result.tree), AgentModel.of(scene.human, scene.human.tree)
+    )
     assert result.reach.highest is not None
     (postures,) = evaluator._postures.values()
     below = postures.solve(values, Hold(height_m=result.reach.highest - 0.005), checker)

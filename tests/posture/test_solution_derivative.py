@@ -11,7 +11,7 @@ import pytest
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
-from evodesign.nlp.solver import SolverOptions, Solver
+from evodesign.nlp.solver import Solver, SolverOptions
 
 
 def nearest_point() -> Program:

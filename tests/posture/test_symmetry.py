@@ -24,7 +24,9 @@ def solve(problem: DesignProblem, symmetry: Symmetry, height: float = 1.0) -> Ca
     scene, space = problem.scene, problem.space
     values = space.unscaled(scene.robot.tree)
     checker = Checker(
-        scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
+        scene,
+        AgentModel.of(scene.robot, space.resized(scene.robot.tree, values)),
+        AgentModel.of(scene.human, scene.human.tree),
     )
     return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry).solve(
         values, Hold(height_m=height), checker

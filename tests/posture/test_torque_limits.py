@@ -65,7 +65,9 @@ def test_the_check_measures_how_far_a_torque_is_beyond_its_limit(
     assert "human.torque_limits" not in held.cases[0].residuals
     scene = limited(problem, SHOULDERS).scene
     human = AgentModel.of(scene.human, scene.human.tree)
-    found = violations(Checker(scene, free.tree, human), free.cases[0].postures, HEIGHT)
+    found = violations(
+        Checker(scene, AgentModel.of(scene.robot, free.tree), human), free.cases[0].postures, HEIGHT
+    )
     torques = free.cases[0].postures[ROBOT].torques
     assert found["robot.torque_limits"] == pytest.approx(abs(torques["l_shoulder_pitch"]) - 1.5)
 

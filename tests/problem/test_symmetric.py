@@ -175,7 +175,9 @@ def solve(problem: DesignProblem, scale: float = 1.0) -> CaseSolution:
     scene, space = problem.scene, problem.space
     values = [value * scale for value in space.unscaled(scene.robot.tree)]
     checker = Checker(
-        scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
+        scene,
+        AgentModel.of(scene.robot, space.resized(scene.robot.tree, values)),
+        AgentModel.of(scene.human, scene.human.tree),
     )
     options = replace(problem.options, compiled=False)
     setting = Setting(scene, space, problem.weights, options)

@@ -170,7 +170,11 @@ class JointProblem:
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
         tree = self._space.resized(self._scene.robot.tree, design)
-        checker = Checker(shared_scene(self._scene, self._space, design), tree, self._human)
+        checker = Checker(
+            shared_scene(self._scene, self._space, design),
+            AgentModel.of(self._scene.robot, tree),
+            self._human,
+        )
         layout, tasks = layout_of(self.program), self._tasks
         instants = instants_of(layout, self._forms, self._scene, raw.values, [0.0] * len(tasks))
         found = [checker.residuals(i, task.height_m) for i, task in zip(instants, tasks, strict=True)]
