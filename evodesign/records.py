@@ -204,7 +204,8 @@ class ReachOutcome(Record, frozen=True):
 class CaseOutcome(Record, frozen=True, omit_defaults=True):
     """One undisturbed case of one design, in short.
 
-    `disturbed` holds torque norms by disturbance and agent, where the problem has disturbances.
+    `disturbed` holds torque norms by disturbance and agent, where the problem has disturbances. `fallbacks`
+    counts solves by IPOPT because the native method had found no posture.
     """
 
     case: Case
@@ -215,6 +216,7 @@ class CaseOutcome(Record, frozen=True, omit_defaults=True):
     iterations: int
     residual: float | None
     disturbed: dict[str, dict[str, float]] = msgspec.field(default_factory=dict)
+    fallbacks: int = 0
 
 
 class Assessment(Record, frozen=True):
@@ -224,7 +226,8 @@ class Assessment(Record, frozen=True):
     does `constraints`, which is left out where there are none. `violation` is zero for a feasible design,
     None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
     required heights are missed, plus for each constraint its excess relative to its bound
-    (`evodesign.violations`).
+    (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
+    native method (`evodesign.problem.judge`).
     """
 
     design: dict[str, float]
@@ -235,6 +238,7 @@ class Assessment(Record, frozen=True):
     reach: ReachOutcome | None = None
     cases: tuple[CaseOutcome, ...] = ()
     constraints: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+    judged: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
 
     @property
     def constrained(self) -> dict[str, float]:

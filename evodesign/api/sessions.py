@@ -20,6 +20,7 @@ from evodesign.pool.registry import make_pool
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering, evaluation_factory
+from evodesign.problem.judge import judged_notes
 from evodesign.problem.notes import notes
 from evodesign.problem.reread import reread
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
@@ -161,7 +162,8 @@ def begin(
     with _resumable(directory, stop), make_pool(workers.pool, workers.jobs, workers.scheduler) as pool:
         factory = _factory(header, pool, workers, display)
         with display.search() as observer, stop.heeded():
-            return evolve.start(directory, header, factory, pool, observer, stop=stop)
+            run = evolve.start(directory, header, factory, pool, observer, stop=stop)
+    return _judged(run, display)
 
 
 def proceed(
@@ -205,11 +207,19 @@ def proceed(
     ):
         factory_of = partial(_factory, pool=pool, workers=workers, display=display)
         try:
-            return evolve.resume(
+            run = evolve.resume(
                 directory, factory_of, pool, observer, budgets.evaluations, stop=stop, renew=renew
             )
         except ResumeMismatch as mismatch:
             raise _explained(mismatch, logged) from mismatch
+    return _judged(run, display)
+
+
+def _judged(run: RunLog, display: Display) -> RunLog:
+    """The run, after a word on each design of which IPOPT thinks otherwise."""
+    for note in judged_notes(run.evaluations):
+        display.note(note)
+    return run
 
 
 def _factory(header: RunHeader, pool: Pool, workers: Workers, display: Display) -> Evaluate:

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_functions
-from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, SolverOptions
+from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, MethodName, SolverOptions
 from evodesign.nlp.program import Array, Program
 
 __all__ = ["Ipopt"]
@@ -20,6 +20,8 @@ class Ipopt:
     Attributes:
         functions: the machine code that evaluates it, or why CasADi's virtual machine does.
     """
+
+    name = MethodName.IPOPT
 
     def __init__(self, program: Program, options: SolverOptions) -> None:
         self._name, self._bounds, self._limits = program.name, program.bounds, program.limits

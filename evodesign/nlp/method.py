@@ -74,6 +74,8 @@ class Ending:
 class Method(Protocol):
     """Solves one program, any number of times."""
 
+    name: MethodName
+
     def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
         """Solve from a start, in the program's own units."""
         ...

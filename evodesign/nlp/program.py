@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import casadi as ca
@@ -72,7 +74,7 @@ class ConstraintBlock:
     labels: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Program:
     """Minimise a cost over variables, subject to constraints, with numbers given as parameters, by name."""
 
@@ -82,17 +84,17 @@ class Program:
     cost: Expression
     parameters: Mapping[str, Expression]
 
-    @property
+    @cached_property
     def symbols(self) -> Expression:
         """Everything that the solver varies, as one column."""
         return ca.vertcat(*[variable.symbol for variable in self.variables])
 
-    @property
+    @cached_property
     def given(self) -> Expression:
         """All parameters, as one column."""
         return ca.vertcat(*self.parameters.values())
 
-    @property
+    @cached_property
     def columns(self) -> Mapping[str, slice]:
         """Where each parameter lies among the rows of `given`."""
         found, first = {}, 0
@@ -101,18 +103,18 @@ class Program:
             first += symbol.numel()
         return found
 
-    @property
+    @cached_property
     def rows(self) -> Expression:
         """All constraints, as one column."""
         return ca.vertcat(*[constraint.expression for constraint in self.constraints])
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the symbols."""
         lower = np.concatenate([v.lower / v.scale for v in self.variables])
         return lower, np.concatenate([v.upper / v.scale for v in self.variables])
 
-    @property
+    @cached_property
     def limits(self) -> tuple[Array, Array]:
         """Lower and upper limits of the constraints' rows."""
         counts = [c.expression.numel() for c in self.constraints]
@@ -126,12 +128,15 @@ class Program:
 
     def unpacked(self, symbols: Array) -> dict[str, Array]:
         """Values in SI units, by name, from a column of symbols or of their changes, shape (symbols, ...)."""
-        values, first = {}, 0
-        for variable in self.variables:
-            last = first + variable.symbol.numel()
-            values[variable.name] = variable.scale * symbols[first:last]
-            first = last
-        return values
+        return {
+            v.name: v.scale * symbols[place] for v, place in zip(self.variables, self._places, strict=True)
+        }
+
+    @cached_property
+    def _places(self) -> tuple[slice, ...]:
+        """Where each variable lies among the symbols."""
+        ends = np.cumsum([0, *(variable.symbol.numel() for variable in self.variables)]).tolist()
+        return tuple(slice(first, last) for first, last in pairwise(ends))
 
     def packed_parameters(self, values: Mapping[str, Any]) -> Array:
         """The column of `given` from a number or several for each parameter.
@@ -139,8 +144,15 @@ class Program:
         Raises:
             ValueError: other parameters than the program's are given.
         """
-        if set(values) != set(self.parameters):
+        if values.keys() != self.parameters.keys():
             wanted, found = ", ".join(sorted(self.parameters)), ", ".join(sorted(values))
             raise ValueError(f"program '{self.name}' wants parameters {wanted}; found {found}")
-        blocks = [np.atleast_1d(np.asarray(values[name], float)) for name in self.parameters]
-        return np.concatenate([[], *blocks])
+        column = np.empty(self.given.numel())
+        for name, place in self.columns.items():
+            if np.size(values[name]) != place.stop - place.start:
+                wanted, count = place.stop - place.start, np.size(values[name])
+                raise ValueError(
+                    f"parameter '{name}' of program '{self.name}' has {wanted} rows; found {count}"
+                )
+            column[place] = values[name]
+        return column

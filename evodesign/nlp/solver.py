@@ -48,6 +48,7 @@ class RawSolution:
         cost_slope: derivative of the optimal cost with respect to each row of the program's `given` (envelope
             theorem).
         multipliers: of bounds and constraints.
+        method: who solved.
     """
 
     values: Mapping[str, Array]
@@ -58,6 +59,7 @@ class RawSolution:
     cost: float
     cost_slope: Array
     multipliers: Multipliers
+    method: MethodName = MethodName.IPOPT
 
 
 _STATUS = {
@@ -91,6 +93,16 @@ class Solver:
         other.options = replace(self.options, near=True)
         return other
 
+    @cached_property
+    def by_ipopt(self) -> Solver:
+        """The same program for what the native method does not solve; too seldom to compile for."""
+        return Solver(self.program, replace(self.options, method=MethodName.IPOPT, compiled=False))
+
+    @property
+    def native(self) -> bool:
+        """Whether the native method solves."""
+        return self._method.name is MethodName.NATIVE
+
     @property
     def start(self) -> dict[str, Array]:
         """The program's own starting values, SI units."""
@@ -111,6 +123,7 @@ class Solver:
             cost=ending.cost,
             cost_slope=ending.cost_slope,
             multipliers=Multipliers(ending.bounds, ending.rows),
+            method=self._method.name,
         )
 
 

@@ -50,7 +50,7 @@ def checked(formulation: str, start: str, raw: RawSolution, residuals: Sequence[
         if not worst.size <= TOLERANCE:
             status = Status.NUMERICAL_FAILURE
             reason = f"the check found {worst.name} {worst.size:.1e} above {TOLERANCE:g}"
-    return Attempt(formulation, start, status, reason, raw.iterations, raw.seconds, raw.cost)
+    return Attempt(formulation, start, status, reason, raw.iterations, raw.seconds, raw.cost, raw.method)
 
 
 def cheapest(

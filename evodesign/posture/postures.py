@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
+from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import SolverCache
@@ -91,7 +92,7 @@ class PostureProblem:
         self._setting, self._symmetry, self._known = setting, symmetry, known
         self._solvers = solvers or SolverCache()
         self._values = known.values_of(setting.scene)
-        self._made: dict[tuple[str, type[TaskRecord]], Formulation] = {}
+        self._made: dict[tuple[str, type[TaskRecord], MethodName], Formulation] = {}
         if symmetry is not Symmetry.OFF:
             setting.space.check_mirror(setting.scene.robot.tree)
             symmetric_forms(setting.scene)
@@ -118,7 +119,8 @@ class PostureProblem:
                 break
         best = trials[-1].best
         if self._symmetry is Symmetry.POLISH and best is not None:
-            whole = _whole(WHOLE, self._compiled(WHOLE), self._known, self._solvers, type(task))
+            setting = self._solved_by(self._methods(WHOLE)[0], WHOLE)
+            whole = _whole(WHOLE, setting, self._known, self._solvers, type(task))
             trials.append(whole.polish(design, task, best.instants, checker))
         return case_solution(self._setting.scene.case(task), trials)
 
@@ -128,24 +130,24 @@ class PostureProblem:
         """How a solved posture moves with the design, or why it has no derivative."""
         if solution.attempt is None:
             return NotDifferentiable(solution.reason)
-        return self._formulation(solution.attempt.formulation, solution.case.task).derivative(
-            design, solution
-        )
+        name, task = solution.attempt.formulation, solution.case.task
+        return self._formulation(name, task, self._methods(name)[0]).derivative(design, solution)
 
     def landscape(self, task: Task) -> Landscape:
         """The cost for a task of the formulation that is tried first, of which portfolios are made."""
         name, _ = next(self._in_turn(task))
-        return self._formulation(name, task).landscape(task)
+        return self._formulation(name, task, self._methods(name)[0]).landscape(task)
 
     def _trials(
         self, design: Sequence[float], task: Task, checker: Checker, neighbour: Neighbour | None
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn."""
         for name, portfolio in self._in_turn(task):
-            formulation = self._formulation(name, task)
-            if neighbour is not None:
-                yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
-            yield formulation.solve(design, task, portfolio, checker)
+            for method in self._methods(name):
+                formulation = self._formulation(name, task, method)
+                if neighbour is not None:
+                    yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
+                yield formulation.solve(design, task, portfolio, checker)
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""
@@ -160,19 +162,28 @@ class PostureProblem:
             yield SYMMETRIC, portfolio
         yield WHOLE, ()
 
-    def _formulation(self, name: str, task: Task) -> Formulation:
-        key = (name, type(task))
+    def _formulation(self, name: str, task: Task, method: MethodName) -> Formulation:
+        key = (name, type(task), method)
         if key not in self._made:
-            setting = self._compiled(name)
+            setting = self._solved_by(method, name)
             self._made[key] = FORMULATIONS[name](name, setting, self._known, self._solvers, type(task))
         return self._made[key]
 
-    def _compiled(self, name: str) -> Setting:
-        """The setting of a formulation; one that is seldom solved is not worth compiling."""
-        refuge = {
+    def _methods(self, name: str) -> tuple[MethodName, ...]:
+        """Who solves a formulation, in turn: IPOPT is tried where the native method finds no posture."""
+        native = self._setting.options.method is MethodName.NATIVE and not self._is_refuge(name)
+        return (MethodName.NATIVE, MethodName.IPOPT) if native else (MethodName.IPOPT,)
+
+    def _is_refuge(self, name: str) -> bool:
+        """Whether a formulation is solved only where another one failed."""
+        return {
             DECOUPLED: False,
             SYMMETRIC: bool(self._values),
             WHOLE: self._symmetry is Symmetry.ON,
         }[name]
-        options = self._setting.options
-        return replace(self._setting, options=replace(options, compiled=options.compiled and not refuge))
+
+    def _solved_by(self, method: MethodName, name: str) -> Setting:
+        """The setting of a formulation; one that is seldom solved is not worth compiling."""
+        options, first = self._setting.options, self._methods(name)[0]
+        compiled = options.compiled and not self._is_refuge(name) and method is first
+        return replace(self._setting, options=replace(options, method=method, compiled=compiled))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.nlp.method import MethodName
 from evodesign.records import Case, Status
 
 __all__ = ["AgentPosture", "Attempt", "CaseSolution", "Instant", "Neighbour"]
@@ -54,6 +55,7 @@ class Attempt:
         iterations: of the solve.
         seconds: wall time [s].
         cost: of the last iterate.
+        method: who solved.
     """
 
     formulation: str
@@ -63,6 +65,7 @@ class Attempt:
     iterations: int
     seconds: float
     cost: float
+    method: MethodName
 
     @property
     def name(self) -> str:

@@ -6,11 +6,13 @@ An evaluation depends on problem and design alone: no state is carried from one 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import msgspec
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
@@ -21,6 +23,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.judge import is_judged
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.records import (
     AgentDetail,
@@ -110,7 +113,23 @@ class Evaluator:
 
     def assess(self, genome: Genome) -> Assessed:
         """The results of a genome, with its postures."""
-        return self.assess_values(self.problem.space.values(genome))
+        values = self.problem.space.values(genome)
+        assessed = self.assess_values(values)
+        if not self._native or not is_judged(genome):
+            return assessed
+        judged = self._judge.assess_values(values).assessment.objectives
+        assessment = msgspec.structs.replace(assessed.assessment, judged=judged)
+        return msgspec.structs.replace(assessed, assessment=assessment)
+
+    @property
+    def _native(self) -> bool:
+        return self.problem.options.method is MethodName.NATIVE
+
+    @cached_property
+    def _judge(self) -> Evaluator:
+        """The same, solved by IPOPT; too seldom to compile for."""
+        options = replace(self.problem.options, method=MethodName.IPOPT, compiled=False)
+        return Evaluator(replace(self.problem, options=options), self.known)
 
     def assess_values(self, values: Sequence[float]) -> Assessed:
         """The results of a design given as one number per parameter, with its postures."""
@@ -123,7 +142,7 @@ class Evaluator:
         failed = [solution for solution in result.cases if not solution.solved]
         constraints, reach = self.problem.constraints, reach_of(result.reach)
         constrained = objective_values(constraints, result)
-        cases = tuple(map(case_outcome, result.cases))
+        cases = tuple(case_outcome(solution, native=self._native) for solution in result.cases)
         return Assessment(
             design=dict(self.problem.space.named(values)),
             objectives=objective_values(self.problem.objectives, result),
@@ -160,8 +179,13 @@ def reach_of(reach: Reach) -> ReachOutcome:
     )
 
 
-def case_outcome(solution: CaseSolution) -> CaseOutcome:
-    """A case in short, as it is logged; of several instants the one with the largest torques counts."""
+def case_outcome(solution: CaseSolution, *, native: bool = False) -> CaseOutcome:
+    """A case in short, as it is logged; of several instants the one with the largest torques counts.
+
+    Args:
+        solution: of the case.
+        native: whether solves by IPOPT are fallbacks.
+    """
     norms: dict[str, dict[str, float]] = {}
     for instant in solution.instants:
         for load_case, postures in ((UNDISTURBED, instant.postures), *instant.disturbed.items()):
@@ -176,6 +200,7 @@ def case_outcome(solution: CaseSolution) -> CaseOutcome:
         robot_torque_norm=undisturbed.get(ROBOT),
         human_torque_norm=undisturbed.get(HUMAN),
         iterations=sum(attempt.iterations for attempt in solution.attempts),
+        fallbacks=sum(each.method is MethodName.IPOPT for each in solution.attempts) if native else 0,
         residual=max(solution.residuals.values()) if solution.solved else None,
         disturbed=norms,
     )

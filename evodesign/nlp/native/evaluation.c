@@ -33,21 +33,22 @@ double largest(const double *values, int count) {
     return most;
 }
 
-/* WB equation 3a, with the damping of section 3.7 for what is bounded on one side only. */
+/* WB equation 3a, with the damping of section 3.7 for what is bounded on one side only. Logarithms are dear, so
+   they are taken of products, as long as these are neither huge nor tiny. */
 double barrier_cost(const Solver *s, double cost, const double *primals) {
-    double logarithms = 0, distances = 0;
+    double logarithms = 0, product = 1, distances = 0;
     for (int i = 0; i < s->primals; i++) {
         int below = bounded_below(s, i), above = bounded_above(s, i);
-        if (below)
-            logarithms += log(primals[i] - s->lower[i]);
-        if (above)
-            logarithms += log(s->upper[i] - primals[i]);
-        if (below && !above)
-            distances += primals[i] - s->lower[i];
-        if (above && !below)
-            distances += s->upper[i] - primals[i];
+        double low = primals[i] - s->lower[i], high = s->upper[i] - primals[i];
+        product *= (below ? low : 1) * (above ? high : 1);
+        if (!(product > 1e-200 && product < 1e200)) {
+            logarithms += log(product);
+            product = 1;
+        }
+        if (below != above)
+            distances += below ? low : high;
     }
-    return cost - s->barrier * logarithms + DAMPING * s->barrier * distances;
+    return cost - s->barrier * (logarithms + log(product)) + DAMPING * s->barrier * distances;
 }
 
 void jacobian_transposed(const Solver *s, const Evaluation *at, const double *multipliers, double *product) {

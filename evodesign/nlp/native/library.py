@@ -18,7 +18,7 @@ import numpy as np
 from evodesign.identity import code_digest
 from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, Library, NotCompiled, built, compiler_and_cache
 from evodesign.nlp.disk_cache import Cache
-from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, SolverOptions
+from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, MethodName, SolverOptions
 from evodesign.nlp.native.source import HERE, METHOD_FILES, PROBLEM, fixed_variables, program_text
 from evodesign.nlp.program import Array, Program
 
@@ -96,6 +96,8 @@ class NativeMethod:
         OSError: a library cannot be loaded.
         MemoryError: memory is short.
     """
+
+    name = MethodName.NATIVE
 
     def __init__(self, program: Program, method: ctypes.CDLL, functions: Library) -> None:
         self.functions = functions

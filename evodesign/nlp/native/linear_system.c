@@ -12,6 +12,21 @@
 #define REFINEMENTS 3
 #define REFINED 1e-11
 
+/* Subtract a multiple of part of a column. Its rows differ, which no compiler knows: four at a time are read
+   before any is written. */
+static inline void subtract(const double *restrict factor, const int *restrict below, int from, int until,
+                            double value, double *restrict vector) {
+    int k = from;
+    for (; k + 3 < until; k += 4) {
+        int a = below[k], b = below[k + 1], c = below[k + 2], d = below[k + 3];
+        double first = vector[a] - factor[k] * value, second = vector[b] - factor[k + 1] * value;
+        double third = vector[c] - factor[k + 2] * value, fourth = vector[d] - factor[k + 3] * value;
+        vector[a] = first, vector[b] = second, vector[c] = third, vector[d] = fourth;
+    }
+    for (; k < until; k++)
+        vector[below[k]] -= factor[k] * value;
+}
+
 /* Number of positive pivots, or -1 where a pivot is nearly zero; `hessian` NULL stands for zeros. */
 int factorise(Solver *s, const double *hessian, double dual_shift) {
     const Problem *p = &s->problem;
@@ -44,8 +59,7 @@ int factorise(Solver *s, const double *hessian, double dual_shift) {
             int column = p->pattern[k], last = filled[column];
             double value = row[column];
             row[column] = 0;
-            for (int l = starts[column]; l < last; l++)
-                row[below[l]] -= factor[l] * value;
+            subtract(factor, below, starts[column], last, value, row);
             double entry = value * inverse[column];
             pivot -= value * entry;
             factor[last] = entry;
@@ -71,8 +85,7 @@ static void solve_factored(Solver *s, const double *right, double *solution) {
         z[i] = right[p->order[i]];
     for (int i = 0; i < s->unknowns; i++) {
         double value = z[i];
-        for (int k = starts[i]; k < starts[i + 1]; k++)
-            z[below[k]] -= factor[k] * value;
+        subtract(factor, below, starts[i], starts[i + 1], value, z);
     }
     for (int i = s->unknowns - 1; i >= 0; i--) {
         double value = z[i] * s->inverse_pivots[i];

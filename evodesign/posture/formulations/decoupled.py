@@ -47,7 +47,7 @@ from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import PUSH, any_load, force_along_x
 from evodesign.posture.terms.registry import TERMS
-from evodesign.posture.warm_start import instants_of, layout_of, start_from
+from evodesign.posture.warm_start import Layout, instants_of, layout_of, start_from
 from evodesign.records import Status, Task, worst_status
 
 __all__ = ["DecoupledPostures", "robot_program"]
@@ -90,6 +90,10 @@ class DecoupledPostures:
         setting = self._setting
         weight = setting.weights.human
         return HumanProblem(self._forms[1], setting.scene, weight, setting.options, self._solvers)
+
+    @cached_property
+    def _layout(self) -> Layout:
+        return {**layout_of(self._robot.program, ROBOT), **layout_of(self._human.program, HUMAN)}
 
     @cached_property
     def _fixed(self) -> tuple[Start, ...]:
@@ -147,10 +151,6 @@ class DecoupledPostures:
 
     def _trial(self, task: Task, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
         """The robot's postures with the person's at the internal force that was found."""
-        layout = {
-            **layout_of(self._robot.program, ROBOT),
-            **layout_of(self._human.program, HUMAN),
-        }
 
         def finish(start: str, robot: RawSolution) -> Candidate:
             value, internal = self._values[task], self._internal_force(robot)
@@ -158,7 +158,7 @@ class DecoupledPostures:
             both = _joined(robot, human, float(value.cost(internal)))
             if human.status is not Status.SOLVED:
                 return Candidate(checked(self.name, start, both, ()), (), ())
-            instants = instants_of(layout, self._forms, self._setting.scene, both.values)
+            instants = instants_of(self._layout, self._forms, self._setting.scene, both.values)
             residuals = checker.task_residuals(instants, task.heights)
             return Candidate(checked(self.name, start, both, residuals), instants, residuals)
 

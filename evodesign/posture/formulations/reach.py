@@ -177,7 +177,10 @@ class ReachProblem:
         """The result of every start in one sense."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        return [self._solver.solve(parameters, start) for start in starts]
+        found = [self._solver.solve(parameters, start) for start in starts]
+        if self._solver.native and not any(raw.status is Status.SOLVED for raw in found):
+            return [self._solver.by_ipopt.solve(parameters, start) for start in starts]
+        return found
 
     def _extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
