@@ -142,14 +142,13 @@ def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> 
     Raises:
         OSError: a file cannot be written.
     """
+    return built(_of(nlp), lambda: {"functions.c": _c_text(nlp)}, FUNCTION_FLAGS, compiler, cache)
+
+
+def _of(nlp: Mapping[str, Expression]) -> tuple[str, str]:
+    """What a program's C follows from."""
     expressions = ca.Function("nlp", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]]).serialize()
-    return built(
-        (code_digest(__name__), expressions),
-        lambda: {"functions.c": _c_text(nlp)},
-        FUNCTION_FLAGS,
-        compiler,
-        cache,
-    )
+    return code_digest(__name__), expressions
 
 
 def built(
@@ -170,8 +169,7 @@ def built(
     Raises:
         OSError: a file cannot be written.
     """
-    machine = " ".join(os.uname()[::4])  # system and processor
-    key = digest((of, tuple(flags), machine, compiler))
+    key = _key(of, flags, compiler)
     path = cache.find(key)
     if path is not None:
         return Library(path, fresh=False)
@@ -183,6 +181,11 @@ def built(
             return NotCompiled("another process tried to compile the same functions and failed")
         content = _compiled(texts(), flags, compiler, cache.directory)
         return content if isinstance(content, NotCompiled) else Library(cache.store(key, content), fresh=True)
+
+
+def _key(of: object, flags: Sequence[str], compiler: Compiler) -> str:
+    machine = " ".join(os.uname()[::4])  # system and processor
+    return digest((of, tuple(flags), machine, compiler))
 
 
 def _c_text(nlp: Mapping[str, Expression]) -> str:

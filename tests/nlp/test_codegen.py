@@ -217,7 +217,7 @@ def test_nothing_but_libraries_and_locks_is_left(cache: Cache, compiler: Compile
 
 @pytest.mark.needs_compiler
 def test_what_cannot_be_loaded_is_a_reason(home: Path, compiler: Compiler) -> None:
-    key = codegen._key(nlp(1.0), compiler)
+    key = codegen._key(codegen._of(nlp(1.0)), codegen.FUNCTION_FLAGS, compiler)
     open_cache(home).store(key, b"not a library")
     found = compiled_functions(nlp(1.0))
     assert isinstance(found, NotCompiled)
