@@ -28,8 +28,7 @@ double take_residuals(const Solver *s, const double *rows, const double *primals
 double largest(const double *values, int count) {
     double most = 0;
     for (int i = 0; i < count; i++)
-        if (!(fabs(values[i]) <= most))
-            most = fabs(values[i]);
+        most = larger(most, fabs(values[i]));
     return most;
 }
 

@@ -44,19 +44,18 @@ static Errors errors(Solver *s, double barrier) {
         if (bounded_below(s, i)) {
             slope -= s->lower_forces[i];
             double product = fabs((s->primals_now[i] - s->lower[i]) * s->lower_forces[i] - barrier);
-            e.complementary = fmax(e.complementary, product);
+            e.complementary = larger(e.complementary, product);
             forces += s->lower_forces[i];
             bounds++;
         }
         if (bounded_above(s, i)) {
             slope += s->upper_forces[i];
             double product = fabs((s->upper[i] - s->primals_now[i]) * s->upper_forces[i] - barrier);
-            e.complementary = fmax(e.complementary, product);
+            e.complementary = larger(e.complementary, product);
             forces += s->upper_forces[i];
             bounds++;
         }
-        if (!(fabs(slope) <= e.dual))
-            e.dual = fabs(slope);
+        e.dual = larger(e.dual, fabs(slope));
     }
     for (int j = 0; j < p->rows; j++)
         multipliers += fabs(s->multipliers[j]);
@@ -66,7 +65,7 @@ static Errors errors(Solver *s, double barrier) {
 }
 
 static double scaled(const Errors *e, double infeasibility) {
-    return fmax(fmax(e->dual / e->dual_scale, infeasibility), e->complementary / e->force_scale);
+    return larger(larger(e->dual / e->dual_scale, infeasibility), e->complementary / e->force_scale);
 }
 
 /* WB section 3.6: off the bounds by a share of their size and of their distance. */
@@ -180,7 +179,7 @@ static Status iterate(Solver *s, const Options *options) {
         nearly = error <= NEARLY && feasible ? nearly + 1 : 0;
         if (nearly == NEARLY_ITERATIONS)
             return ACCEPTABLE;
-        if (!(error < DIVERGED))
+        if (!(error < DIVERGED) || !isfinite(s->now.cost))
             return INVALID_NUMBER;
         if (o->iterations + o->restorations >= options->iterations)
             return ITERATION_LIMIT;

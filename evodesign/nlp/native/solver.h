@@ -63,6 +63,9 @@ double barrier_cost(const Solver *s, double cost, const double *primals);
 void jacobian_transposed(const Solver *s, const Evaluation *at, const double *multipliers, double *product);
 double largest_step(const Solver *s, const double *step, double fraction);
 
+/* The larger of two numbers; unlike fmax, what is not a number if either is none. */
+static inline double larger(double a, double b) { return a != a || a > b ? a : b; }
+
 static inline int bounded_below(const Solver *s, int i) { return s->lower[i] > -UNBOUNDED; }
 static inline int bounded_above(const Solver *s, int i) { return s->upper[i] < UNBOUNDED; }
 
