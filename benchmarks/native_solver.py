@@ -1,0 +1,135 @@
+"""The native method against IPOPT, its judge: the same designs in turn, in one process.
+
+Both begin at the same starts, those of the native method's portfolio. For every program the median of
+processor time per solve, and for whole evaluations designs per second, the share of cases that are solved,
+and the share of designs of which every objective agrees within 1e-5. Results go to
+benchmarks/results/native_solver.json and are printed as Markdown tables.
+
+    python -m benchmarks.native_solver [--designs 100] [--jobs 2] [PROBLEM ..]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+
+from benchmarks.inner_problem import HEIGHTS, HERE, known_at, problem_at, random_designs
+from evodesign.nlp.method import MethodName
+from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.judge import AGREEMENT
+from evodesign.problem.source import read_source
+from evodesign.records import Assessment, Status
+
+Times = dict[tuple[str, MethodName], list[float]]
+
+
+def main() -> None:
+    """Measure, write and print."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("problems", nargs="*", type=Path, metavar="PROBLEM")
+    parser.add_argument("--designs", type=int, default=100)
+    parser.add_argument("--jobs", type=int, default=2)
+    options = parser.parse_args()
+    problems = {path.stem: build_problem(read_source(path)) for path in options.problems}
+    problems = problems or {"icub_lifting": problem_at(HEIGHTS)}
+    target = HERE / "results" / "native_solver.json"
+    before = json.loads(target.read_text()) if target.exists() else {}
+    found = {name: measured(each, options.designs, options.jobs) for name, each in problems.items()}
+    target.write_text(json.dumps({**before, **found}, indent=2) + "\n")
+    for name, result in found.items():
+        print(f"\n{name}, {options.designs} designs\n")
+        print("| program | native ms | IPOPT ms | ratio |\n|---|---|---|---|")
+        for program, row in result["programs"].items():
+            print(f"| {program} | {row['native']:.3f} | {row['ipopt']:.3f} | {row['ratio']:.1f} |")
+        print(json.dumps({key: value for key, value in result.items() if key != "programs"}, indent=2))
+
+
+def measured(problem: DesignProblem, designs: int, jobs: int) -> dict[str, Any]:
+    """What both methods make of the same designs."""
+    known, times = known_at(problem, jobs), defaultdict(list)
+    evaluators = {
+        method: Evaluator(replace(problem, options=replace(problem.options, method=method)), known)
+        for method in MethodName
+    }
+    first, *others = random_designs(problem, designs + 1)
+    for evaluator in evaluators.values():  # builds and compiles
+        evaluator.assess_values(first)
+    spent = dict.fromkeys(MethodName, 0.0)
+    ends: dict[MethodName, list[Assessment]] = {method: [] for method in MethodName}
+    with _timed(times):
+        for design in others:
+            for method, evaluator in evaluators.items():
+                began = time.thread_time()
+                ends[method].append(evaluator.assess_values(design).assessment)
+                spent[method] += time.thread_time() - began
+    pairs = list(zip(ends[MethodName.NATIVE], ends[MethodName.IPOPT], strict=True))
+    gaps = [_gap(native, ipopt) for native, ipopt in pairs]
+    return {
+        "programs": _programs(times),
+        "designs_per_second": {method.value: designs / spent[method] for method in MethodName},
+        "ratio": spent[MethodName.IPOPT] / spent[MethodName.NATIVE],
+        "cases_solved": {method.value: _share_solved(ends[method]) for method in MethodName},
+        "designs_that_agree": float(np.mean([gap <= AGREEMENT for gap in gaps])),
+        "others": sorted(gap for gap in gaps if gap > AGREEMENT),
+        "fallbacks": sum(case.fallbacks for native, _ in pairs for case in native.cases),
+    }
+
+
+@contextmanager
+def _timed(times: Times) -> Iterator[None]:
+    """Note the processor time [ms] of every solve that succeeds, by program and method."""
+    solve = Solver.solve
+
+    def timed(self: Solver, parameters: Mapping[str, Any], start: Mapping[str, Any]) -> RawSolution:
+        began = time.thread_time()
+        end = solve(self, parameters, start)
+        if end.status is Status.SOLVED:
+            name = self.program.name + (", near" if self.options.near else "")
+            times[name, end.method].append(1e3 * (time.thread_time() - began))
+        return end
+
+    with mock.patch.object(Solver, "solve", timed):
+        yield
+
+
+def _programs(times: Times) -> dict[str, dict[str, float]]:
+    """Medians by program, and their ratio."""
+    rows = {}
+    for name in sorted({program for program, _ in times}):
+        native, ipopt = (
+            float(np.median(times[name, method])) if times[name, method] else float("nan")
+            for method in (MethodName.NATIVE, MethodName.IPOPT)
+        )
+        rows[name] = {"native": native, "ipopt": ipopt, "ratio": ipopt / native}
+    return rows
+
+
+def _share_solved(ends: Sequence[Assessment]) -> float:
+    return float(np.mean([case.status is Status.SOLVED for end in ends for case in end.cases]))
+
+
+def _gap(native: Assessment, ipopt: Assessment) -> float:
+    """Largest difference of an objective, relative to its size or 1; infinite where one lacks it."""
+    if native.objectives.keys() != ipopt.objectives.keys():
+        return float("inf")
+    return max(
+        (abs(native.objectives[k] - v) / max(1.0, abs(v)) for k, v in ipopt.objectives.items()), default=0.0
+    )
+
+
+if __name__ == "__main__":
+    main()
