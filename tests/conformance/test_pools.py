@@ -10,6 +10,7 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import POOLS, make_pool
+from evodesign.pool.worker import SerialPool
 from tests.pool.tasks import Broken, Counted, picky, square, squares
 
 JOBS = 2
@@ -28,6 +29,10 @@ def test_every_argument_ends_once_with_the_value_of_a_plain_call(pool: Pool) -> 
     assert sorted(end.index for end in ends) == numbers
     assert {end.index: end.value for end in ends} == {number: square(number) for number in numbers}
     assert all(end.failure is None and not end.worker_lost for end in ends)
+
+
+def test_as_many_arguments_run_at_once_as_it_says(pool: Pool) -> None:
+    assert pool.processes == (1 if isinstance(pool, SerialPool) else JOBS)
 
 
 def test_seconds_are_those_of_the_task(pool: Pool) -> None:
