@@ -23,7 +23,7 @@ too; 0.2 to 0.7 with four public robots."""
 GROUND = 0.1
 """Share of the work that has to be done before there is a forecast."""
 
-AT_LEAST = 0.1
+AT_LEAST = 0.25
 """Share of a piece's expected time that a piece at work is taken to need still, however long it has taken."""
 
 LATE = 3.0

@@ -97,7 +97,7 @@ def test_a_stage_begins_when_all_of_the_one_before_are_done() -> None:
     first = [PendingPiece("short", "a", 1.0, 0), PendingPiece("long", "b", 1.0, 0)]
     last = [PendingPiece(name, "c", 2.0, 1) for name in ("one", "other")]
     left = TimeLeft().with_missing([*last, *first], 2, 0.0).with_done(first[0], 10.0, 10.0)
-    assert left.seconds(10.0) == pytest.approx(0.1 * 10.0 + 20.0), "the long one is late; the last two follow"
+    assert left.seconds(10.0) == pytest.approx(0.25 * 10.0 + 20.0), "the long one is late; the last two follow"
     left = left.with_done(first[1], 30.0, 30.0)
     assert left.seconds(30.0) == pytest.approx(2.0 * 20.0), "side by side, at 20 s for a unit of work"
     assert left.seconds(45.0) == pytest.approx(25.0)
