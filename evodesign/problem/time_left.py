@@ -23,8 +23,8 @@ too; 0.2 to 0.7 with four public robots."""
 GROUND = 0.1
 """Share of the work that has to be done before there is a forecast."""
 
-AT_LEAST = 0.25
-"""Share of a piece's expected time that a piece at work is taken to need still, however long it has taken."""
+AT_LEAST = 0.15
+"""Share of the time that a piece at work has taken which it is taken to need still."""
 
 LATE = 3.0
 """From so many times its expected time a piece at work makes the forecast void."""
@@ -101,7 +101,7 @@ class TimeLeft:
     def seconds(self, now: float) -> float | None:
         """The time left [s]; None where there is no ground for a forecast.
 
-        It is never negative, and not more than what is missing takes one after the other.
+        It is never negative, and bounded by what is missing at `LATE` times the slowest pace so far.
         """
         done = sum(each.work for each in self.done)
         missing = sum(each.work for each in self.at_work) + sum(each.work for each in self.waiting)
@@ -111,11 +111,16 @@ class TimeLeft:
         passed = [now - each.since for each in self.at_work]
         if any(time > LATE * whole for time, whole in zip(passed, expected, strict=True)):
             return None
-        left = [max(whole - time, AT_LEAST * whole) for time, whole in zip(passed, expected, strict=True)]
-        return self._last_end([*left, *[0.0] * (self.processes - len(left))])
+        left = [max(whole - time, AT_LEAST * time) for time, whole in zip(passed, expected, strict=True)]
+        return self._last_end([*left, *[0.0] * (self.processes - len(left))], now)
 
-    def _last_end(self, ends: list[float]) -> float:
+    def _last_end(self, ends: list[float], now: float) -> float:
         """When the last process ends [s from now], from when each ends what it is at."""
+        taken = [(each.piece.kind, (now - each.since) / each.work) for each in self.at_work]
+        paces = {
+            kind: max([self._pace(kind), *(pace for like, pace in taken if like == kind)])
+            for kind in {piece.kind for piece in self.waiting}
+        }
         begun = self._kinds_begun()
         current = min((each.piece.stage for each in self.at_work), default=None)
         heapify(ends)
@@ -123,7 +128,7 @@ class TimeLeft:
             if stage != current:
                 ends = [max(ends)] * len(ends)
             for piece in pieces:
-                heapreplace(ends, ends[0] + self._work(piece, begun) * self._pace(piece.kind))
+                heapreplace(ends, ends[0] + self._work(piece, begun) * paces[piece.kind])
                 begun[piece.kind] += 1
         return max(ends)
 

@@ -97,7 +97,9 @@ def test_a_stage_begins_when_all_of_the_one_before_are_done() -> None:
     first = [PendingPiece("short", "a", 1.0, 0), PendingPiece("long", "b", 1.0, 0)]
     last = [PendingPiece(name, "c", 2.0, 1) for name in ("one", "other")]
     left = TimeLeft().with_missing([*last, *first], 2, 0.0).with_done(first[0], 10.0, 10.0)
-    assert left.seconds(10.0) == pytest.approx(0.25 * 10.0 + 20.0), "the long one is late; the last two follow"
+    assert left.seconds(10.0) == pytest.approx(0.15 * 10.0 + 20.0), (
+        "the long one is late; the last two follow"
+    )
     left = left.with_done(first[1], 30.0, 30.0)
     assert left.seconds(30.0) == pytest.approx(2.0 * 20.0), "side by side, at 20 s for a unit of work"
     assert left.seconds(45.0) == pytest.approx(25.0)
@@ -130,7 +132,7 @@ def test_forecasts_get_better_as_pieces_are_done(processes: int) -> None:
     means = [sum(each) / len(each) for each in errors]
     assert means == sorted(means, reverse=True)
     assert means[0] < 0.15
-    assert means[-1] < 0.05
+    assert means[-1] < 0.06
 
 
 some_seconds = st.one_of(st.floats(0.0, 100.0), st.just(0.0), st.floats(1e3, 1e6))
@@ -150,7 +152,7 @@ def test_whatever_pieces_take_no_forecast_is_absurd(
         if forecast is None:
             continue
         slowest = max(seconds[piece.name] / (LATER * piece.work) for piece in done)
-        assert 0.0 <= forecast <= missing * slowest * (1.0 + 1e-9)
+        assert 0.0 <= forecast <= LATE * missing * slowest * (1.0 + 1e-9)
 
 
 def test_a_piece_that_hangs_silences_the_forecast_and_its_end_brings_it_back() -> None:
@@ -160,8 +162,9 @@ def test_a_piece_that_hangs_silences_the_forecast_and_its_end_brings_it_back() -
         left = left.with_done(piece, seconds, 20.0)
     told = [left.seconds(20.0 + 0.5 * step) for step in range(400)]
     spoken = [each for each in told if each is not None]
-    assert spoken == sorted(spoken, reverse=True), "it goes down"
-    assert spoken[-1] > 0.0, "and never below what has not even begun"
+    assert spoken[:28] == sorted(spoken[:28], reverse=True), "it goes down while 17 s are not over"
+    assert spoken[34:] == sorted(spoken[34:]), "what is late may take longer, and so may those to come"
+    assert max(spoken) <= LATE * (17.0 + 17.0 * LATER)
     assert len(spoken) == math.floor(LATE * 17.0 / 0.5) + 1, "until a posture takes three times 17 s"
     assert left.with_done(pieces[5], 199.0, 219.0).seconds(219.0) is not None
 
