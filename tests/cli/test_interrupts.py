@@ -42,7 +42,7 @@ HEADER = synthetic_header(budget=20, seed=4, population=10)
 
 
 def interrupted(arguments: Sequence[str | Path], delays: Sequence[float]) -> subprocess.CompletedProcess[str]:
-    """A command that gets Ctrl-C, as its whole terminal does, after each of the delays [s] from its word on."""
+    """A command that gets Ctrl-C, as all of its terminal does, after each of the delays [s] from its word."""
     command = [*COMMAND, *map(str, arguments)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True) as process:
