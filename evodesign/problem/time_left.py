@@ -165,7 +165,9 @@ def in_words(seconds: float | None) -> str:
         return "a few seconds left"
     if seconds < 55.0:
         return f"about {round(seconds, -1):.0f} s left"
-    minutes = max(1, round(seconds / 60.0))
+    if seconds < 165.0:
+        return f"about {round(seconds / 30.0) / 2.0:g} min left"
+    minutes = round(seconds / 60.0)
     if minutes < 10:
         return f"about {minutes} min left"
     if minutes < 90:
