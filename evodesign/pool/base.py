@@ -81,6 +81,11 @@ class Pool(Protocol):
     A pool holds one run at a time: exhaust or close its iterator before the next.
     """
 
+    @property
+    def processes(self) -> int:
+        """How many arguments run at the same time."""
+        return 1
+
     def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, once each, in the order in which they come; a task's error never raises.
 

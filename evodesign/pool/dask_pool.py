@@ -77,6 +77,13 @@ class DaskPool(Pool):
             wanted = "the address of a running Dask scheduler, such as tcp://127.0.0.1:8786"
             raise InputError("--scheduler", "", wanted, f"'{scheduler}' ({error})") from error
 
+    @property
+    def processes(self) -> int:
+        """How many arguments run at the same time: threads of the workers that are there now, or one."""
+        with suppress(OSError):  # just lost
+            return int(sum(self.living().nthreads().values())) or 1
+        return 1
+
     def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, in the order in which they come; ends a run that was left unfinished."""
         self._end_run()

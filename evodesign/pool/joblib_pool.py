@@ -32,6 +32,11 @@ class JoblibPool(Pool):
         self._processes: list[WorkerProcess[Any, Any]] = []
         self._current: weakref.ref[Generator[Any, None, None]] | None = None
 
+    @property
+    def processes(self) -> int:
+        """How many arguments run at the same time."""
+        return self._jobs
+
     def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, in the order in which they come; ends a run that was left unfinished."""
         self._end_run()

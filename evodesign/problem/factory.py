@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import functools
 import os
+import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
@@ -20,8 +21,9 @@ from dataclasses import dataclass
 import msgspec
 
 from evodesign.identity import Exceptions, code_digest, digest
-from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
+from evodesign.nlp.codegen import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
+from evodesign.nlp.solver import IpoptOptions
 from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
@@ -30,7 +32,7 @@ from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.file import ProblemFile, SolverTable
-from evodesign.problem.precompute import precomputed
+from evodesign.problem.precompute import COMPILING, precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
 from evodesign.records import (
@@ -66,16 +68,14 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
         pool: where what no cache holds is worked out.
         progress: is shown what is worked out.
     """
-    problem, name = build_problem(header.problem), digest(header.problem)
-    factory: Evaluations
-    if header.search.algorithm == JOINT_STARTS:
-        factory = BaselineFactory(f"{name}-{JOINT_STARTS}", header.problem, problem.limits)
-        compiled = problem.joint.options.compiled
-    else:
-        factory = AssessmentFactory(name, problem, cached_precomputed(problem, pool, progress))
-        compiled = problem.options.compiled
-    if compiled:
-        _compile(factory, progress)
+    problem = build_problem(header.problem)
+    if header.search.algorithm != JOINT_STARTS:
+        return _assessment_factory(problem, pool, progress)
+    factory = BaselineFactory(f"{digest(header.problem)}-{JOINT_STARTS}", header.problem, problem.limits)
+    compilation = _compilation(BaselineFactory, factory.digest, problem.joint.options, progress)
+    if compilation:
+        progress.missing([COMPILING], 1)
+        compilation.run(factory, progress)
     return factory
 
 
@@ -109,11 +109,7 @@ def values_factory(
         pool: where what no cache holds is worked out.
         progress: is shown what is worked out.
     """
-    known = cached_precomputed(problem, pool, progress)
-    factory = AssessmentFactory(digest(problem.source), problem, known)
-    if problem.options.compiled:
-        _compile(factory, progress)
-    return ValuesFactory(factory)
+    return ValuesFactory(_assessment_factory(problem, pool, progress))
 
 
 def evaluator_of(problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
@@ -130,27 +126,62 @@ def cached_precomputed(
     return precomputed(problem, _cache("precomputed", progress), pool, progress)
 
 
-def _compile(factory: Evaluations, progress: PrecomputeProgress) -> None:
-    """Compile a problem's functions unless that was done before, so that no worker waits for another."""
+def _assessment_factory(
+    problem: DesignProblem, pool: Pool, progress: PrecomputeProgress
+) -> AssessmentFactory:
+    """The evaluation of a problem's designs, with all that is worked out once: pieces, then machine code."""
+    name = digest(problem.source)
+    compilation = _compilation(AssessmentFactory, name, problem.options, progress)
+    after = [COMPILING] if compilation else []
+    known = precomputed(problem, _cache("precomputed", progress), pool, progress, after)
+    factory = AssessmentFactory(name, problem, known)
+    if compilation:
+        compilation.run(factory, progress)
+    return factory
+
+
+@dataclass(frozen=True, slots=True)
+class _Compilation:
+    """The compilation of a problem's functions, done once so that no worker waits for another.
+
+    Args:
+        cache: of marks that it is done; None where nothing can be kept.
+        key: of this problem's mark.
+    """
+
+    cache: Cache | None
+    key: str
+
+    def run(self, factory: Evaluations, progress: PrecomputeProgress) -> None:
+        """Compile, and leave the mark."""
+        began = time.monotonic()
+        factory()
+        progress.done(COMPILING, time.monotonic() - began)
+        if self.cache is not None:
+            self.cache.store(self.key, b"ready")
+
+
+def _compilation(
+    kind: type[Evaluations], name: str, options: IpoptOptions, progress: PrecomputeProgress
+) -> _Compilation | None:
+    """What is to be compiled of a problem; None if that is done, not wanted, or not possible.
+
+    Args:
+        kind: of the evaluation.
+        name: its digest.
+        options: of its solver.
+        progress: is told what stands in the way.
+    """
+    if not options.compiled:
+        return None
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
         progress.note(
             f"{compiler.reason}: solving on CasADi's virtual machine, slower and with equal results"
         )
-        return
-    cache, key = _cache("ready", progress), _mark(factory, compiler)
-    if cache is not None and cache.read(key):
-        return
-    progress.missing(1)
-    factory()
-    progress.done("compiled inner problems")
-    if cache is not None:
-        cache.store(key, b"ready")
-
-
-def _mark(factory: Evaluations, compiler: Compiler) -> str:
-    """Key of the mark that a problem's functions are compiled."""
-    return digest((factory.digest, code_digest(type(factory).__module__), compiler))
+        return None
+    cache, key = _cache("ready", progress), digest((name, code_digest(kind.__module__), compiler))
+    return None if cache is not None and cache.read(key) else _Compilation(cache, key)
 
 
 def _cache(subject: str, progress: PrecomputeProgress = SILENT) -> Cache | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from evodesign.errors import InputError, RunError
@@ -11,6 +11,7 @@ from evodesign.pool.base import Limits, Pool
 from evodesign.posture.precompute.pieces import (
     Piece,
     PrecomputeSetting,
+    Subject,
     compute_piece,
     key_of,
     stages,
@@ -19,9 +20,22 @@ from evodesign.posture.precompute.pieces import (
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.progress import PrecomputeProgress
+from evodesign.problem.time_left import PendingPiece
 from evodesign.records import ProblemSource
 
-__all__ = ["precompute_setting", "precomputed"]
+__all__ = ["COMPILING", "precompute_setting", "precomputed"]
+
+WORK: Mapping[Subject, float] = {
+    Subject.HIGHEST: 1.0,
+    Subject.LOWEST: 1.0,
+    Subject.POSTURE: 1.7,
+    Subject.PERSON: 0.3,
+    Subject.PERSON_REACH: 0.3,
+}
+"""How much work a piece is, by its subject: medians of public robots. It serves until one of them is done."""
+
+COMPILING = PendingPiece("compiled inner problems", "compiling", work=0.1, stage=2)
+"""What comes last; little, since pieces have the functions compiled that they need."""
 
 
 def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
@@ -32,7 +46,11 @@ def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
 
 
 def precomputed(
-    problem: DesignProblem, cache: Cache | None, pool: Pool, watcher: PrecomputeProgress
+    problem: DesignProblem,
+    cache: Cache | None,
+    pool: Pool,
+    watcher: PrecomputeProgress,
+    after: Sequence[PendingPiece] = (),
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
 
@@ -41,6 +59,7 @@ def precomputed(
         cache: of pieces worked out before; None to work out everything.
         pool: where pieces are worked out.
         watcher: is shown what is worked out.
+        after: what the caller will work out next, to be told along with the pieces.
     Raises:
         RunError: a piece could not be worked out; it says which and why.
         InputError: a height at which one of the people cannot hold a load.
@@ -48,23 +67,27 @@ def precomputed(
     setting, known = precompute_setting(problem), Precomputed()
     tasks, portfolios, people = problem.tasks, problem.start_portfolio, problem.person_reaches
     staged = [*stages(setting, tasks, portfolios=portfolios, person_reaches=people)]
-    pieces = [piece for stage in staged for piece in stage]
+    pieces = {
+        piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
+        for stage, pieces in enumerate(staged)
+        for piece in pieces
+    }
     absent = [piece for piece in pieces if cache is None or cache.read(key_of(setting, piece)) is None]
-    if absent:
-        watcher.missing(len(absent))
+    if absent or after:
+        watcher.missing([*(pieces[piece] for piece in absent), *after], pool.processes)
     for stage in staged:
-        missing = []
+        missing = {}
         for piece in stage:
             content = cache.read(key_of(setting, piece)) if cache else None
             found = with_piece(known, piece, content) if content else None
             if found is None:
-                missing.append(piece)
+                missing[piece] = pieces[piece]
             else:
                 known = found
         if missing:
-            spoilt = [piece for piece in missing if piece not in absent]
+            spoilt = [told for piece, told in missing.items() if piece not in absent]
             if spoilt:
-                watcher.missing(len(spoilt))
+                watcher.missing(spoilt, pool.processes)
             for piece, content in _worked_out(problem, missing, known, pool, watcher).items():
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)
@@ -94,19 +117,24 @@ def refuse_heights(problem: DesignProblem, known: Precomputed) -> None:
 
 
 def _worked_out(
-    problem: DesignProblem, missing: list[Piece], known: Precomputed, pool: Pool, watcher: PrecomputeProgress
+    problem: DesignProblem,
+    missing: Mapping[Piece, PendingPiece],
+    known: Precomputed,
+    pool: Pool,
+    watcher: PrecomputeProgress,
 ) -> dict[Piece, bytes]:
     """Contents of the pieces, in the order in which they are missing."""
     contents: dict[Piece, bytes] = {}
-    name = " ".join(key_of(precompute_setting(problem), piece) for piece in missing)
+    pieces = [*missing]
+    name = " ".join(key_of(precompute_setting(problem), piece) for piece in pieces)
     factory = _PieceFactory(name, problem.source, known)
-    for finished in pool.run(factory, missing):
-        piece = missing[finished.index]
+    for finished in pool.run(factory, pieces):
+        piece = pieces[finished.index]
         if finished.value is None:
             raise RunError(f"{problem.name}: {piece} could not be worked out: {finished.failure}")
         contents[piece] = finished.value
-        watcher.done(str(piece))
-    return {piece: contents[piece] for piece in missing}
+        watcher.done(missing[piece], finished.seconds)
+    return {piece: contents[piece] for piece in pieces}
 
 
 LIMITS = Limits(seconds=3600.0)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from evodesign.problem.time_left import PendingPiece
+
 __all__ = ["SILENT", "PrecomputeProgress"]
 
 
 class PrecomputeProgress:
     """Is shown how far the pieces are; this one does nothing with it."""
 
-    def missing(self, pieces: int) -> None:
-        """So many pieces have to be worked out, all stages together; more if the cache is damaged."""
+    def missing(self, pieces: Sequence[PendingPiece], processes: int) -> None:
+        """These have to be worked out, by so many processes: all at once; more if the cache is damaged."""
 
-    def done(self, piece: str) -> None:
-        """One of them is."""
+    def done(self, piece: PendingPiece, seconds: float) -> None:
+        """One of them is, and took so many seconds."""
 
     def note(self, sentence: str) -> None:
         """Something that makes it take longer."""

@@ -99,7 +99,8 @@ def test_agrees_with_inclusion_and_exclusion(data, dimension):
     expected = included_and_excluded(signs * np.array(points), signs * np.array(corner))
     names = [objective.name for objective in objectives]
     found = hypervolume(objectives, run_of(objectives, points), dict(zip(names, corner, strict=True)))
-    assert found == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    largest = 10.0**dimension  # of a box; the terms of the sum cancel to a small part of it
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-12 * largest)
 
 
 @given(st.lists(st.tuples(values, values), min_size=1, max_size=10))
@@ -107,7 +108,8 @@ def test_never_shrinks_as_a_run_goes_on(points):
     run = run_of(BOTH, points)
     reference = {"torque": 6.0, "reach": -6.0}
     volumes = [hypervolume(BOTH, run[:count], reference) for count in range(len(run) + 1)]
-    assert volumes == sorted(volumes)
+    rounding = 1e-12 * volumes[-1]
+    assert all(after >= before - rounding for before, after in itertools.pairwise(volumes))
 
 
 def test_the_reference_is_a_tenth_of_the_range_worse_than_the_worst():

@@ -30,7 +30,7 @@ def kernel(known: Precomputed) -> Iterator[tuple[ThisPython, BlockingKernelClien
     manager.start_kernel()
     client = manager.blocking_client()
     client.start_channels()
-    client.wait_for_ready(timeout=60)
+    client.wait_for_ready(timeout=300)
     yield manager, client
     client.stop_channels()
     manager.shutdown_kernel(now=True)
@@ -38,7 +38,7 @@ def kernel(known: Precomputed) -> Iterator[tuple[ThisPython, BlockingKernelClien
 
 def reply(client: BlockingKernelClient, request: str) -> dict[str, Any]:
     while True:
-        answer = client.get_shell_msg(timeout=120)
+        answer = client.get_shell_msg(timeout=300)
         if answer["parent_header"].get("msg_id") == request:
             return dict(answer["content"])
 
@@ -55,7 +55,7 @@ def test_the_stop_button_leaves_a_run_that_the_next_cell_resumes(
         "    callback=lambda event: print('one'))"
     )
     request = client.execute(cell)
-    while client.get_iopub_msg(timeout=120)["content"].get("text", "").strip() == "":
+    while client.get_iopub_msg(timeout=300)["content"].get("text", "").strip() == "":
         pass
     manager.interrupt_kernel()
     stopped = reply(client, request)

@@ -75,7 +75,7 @@ def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
 
 def test_unknown_symmetry_is_refused(quick: Path) -> None:
     command = [*COMMAND, "evaluate", str(quick), "--symmetry", "polsh"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 2
     assert (
         "--symmetry: wanted one of auto, on, off, polish, found 'polsh'; did you mean 'polish'?"

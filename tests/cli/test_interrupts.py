@@ -22,15 +22,27 @@ from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask
 
 BEGUN = "begun"
-COMMAND = [sys.executable, "-c", f"from evodesign.__main__ import main; print('{BEGUN}', flush=True); main()"]
+SAYING = f"""
+from evodesign.__main__ import main
+from evodesign.interrupts import Interrupts
+
+def begin(interrupts, begin=Interrupts.begin):
+    begin(interrupts)
+    print("{BEGUN}", flush=True)
+
+Interrupts.begin = begin
+main()
+"""
+COMMAND = [sys.executable, "-c", SAYING]
+"""The command line, which says a word as soon as it heeds Ctrl-C."""
+
+LONG = 300.0
+"""A wait [s] that only a command that hangs takes."""
 HEADER = synthetic_header(budget=20, seed=4, population=10)
 
 
 def interrupted(arguments: Sequence[str | Path], delays: Sequence[float]) -> subprocess.CompletedProcess[str]:
-    """A command that gets Ctrl-C, as all of its terminal does, after each of the delays [s].
-
-    The first one must leave it the time for its first instruction, which comes after the word.
-    """
+    """A command that gets Ctrl-C, as all of its terminal does, after each of the delays [s] from its word."""
     command = [*COMMAND, *map(str, arguments)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True) as process:
@@ -42,7 +54,7 @@ def interrupted(arguments: Sequence[str | Path], delays: Sequence[float]) -> sub
                     process.wait(delay)
                 except subprocess.TimeoutExpired:
                     os.killpg(process.pid, signal.SIGINT)
-            output, errors = process.communicate(timeout=60)
+            output, errors = process.communicate(timeout=LONG)
         finally:
             process.kill()
     return subprocess.CompletedProcess(command, process.returncode, output, errors)
@@ -64,7 +76,7 @@ def check(done: subprocess.CompletedProcess[str], run: Path) -> None:
 AGAIN = ((), (0.05,), (0.4, 0.1))
 """After how many seconds the next signals follow the first."""
 
-LONG = [
+MOMENTS = [
     (delay, *AGAIN[place % len(AGAIN)])
     for place, delay in enumerate((0.02, 0.2, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0, 8.0))
 ]
@@ -76,7 +88,7 @@ LONG = [
         (0.03,),
         (1.0, 0.2),
         (2.0, 0.0, 0.0),
-        *(pytest.param(delays, marks=pytest.mark.slow) for delays in LONG),
+        *(pytest.param(delays, marks=pytest.mark.slow) for delays in MOMENTS),
     ],
     ids=str,
 )
@@ -159,4 +171,4 @@ def test_an_interrupt_waits_for_the_module_that_is_loaded(
 
 def _load_and_wait(module: str) -> None:
     __import__(module)
-    time.sleep(5.0)
+    time.sleep(LONG)

@@ -50,7 +50,7 @@ def test_watcher_goes_on_while_the_search_writes_and_ends_with_it(
             for evaluation in RUN[4 * number : 4 * number + 4]:
                 writer.evaluation(evaluation)
             writer.generation(toy_generation(number, 4 * number + 4))
-        watcher.join(timeout=20)
+        watcher.join(timeout=60)
         assert not watcher.is_alive()
     lines = capsys.readouterr().out.splitlines()
     assert [line.split(",")[0] for line in lines][:2] == [

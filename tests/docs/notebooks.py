@@ -29,7 +29,7 @@ def executed(notebook: Path) -> Any:
     metadata = dict(book.metadata)
     client = NotebookClient(
         book,
-        timeout=240,
+        timeout=1200,
         record_timing=False,
         kernel_manager_class=ThisPython,
         resources={"metadata": {"path": str(notebook.parent)}},

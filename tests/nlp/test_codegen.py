@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -31,6 +30,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
+from tests.processes import wait_until_all_end
 
 COMPILED = SolverOptions(compiled=True)
 
@@ -256,17 +256,17 @@ def test_compiler_that_writes_nothing_is_a_reason(home: Path, monkeypatch: pytes
 def test_slow_compiler_is_stopped_with_what_it_started(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(codegen, "COMPILING_LIMIT", 0.3)
-    late = tmp_path / "late"
-    body = f'case "$*" in *--version*) echo 1 ;; *) (sleep 1; touch {late}) & wait ;; esac'
+    started = tmp_path / "started"
+    body = f'case "$*" in *--version*) echo 1 ;; *) sleep 3600 & echo $! > {started}; wait ;; esac'
     monkeypatch.setenv("CC", str(script(tmp_path / "slow-cc", body)))
-    began = time.monotonic()
-    found = compiled_functions(nlp(1.0))
-    assert time.monotonic() - began < 0.9
-    assert isinstance(found, NotCompiled)
-    assert found.reason.endswith("slow-cc did not finish within 0.3 s")
-    time.sleep(1.0)
-    assert not late.exists()
+    for limit in (0.3, 3.0, 30.0):  # a busy machine may take a while to start anything
+        monkeypatch.setattr(codegen, "COMPILING_LIMIT", limit)
+        found = compiled_functions(nlp(1.0))
+        assert isinstance(found, NotCompiled)
+        assert found.reason.endswith(f"slow-cc did not finish within {limit:g} s")
+        if started.exists() and started.read_text():
+            break
+    wait_until_all_end({int(started.read_text())})
 
 
 def solve_compiled(radius: float) -> tuple[bool, float]:

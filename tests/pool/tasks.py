@@ -111,6 +111,33 @@ def process() -> Callable[[float], int]:
     return task
 
 
+def held() -> Callable[[str], None]:
+    """A task that waits while the file that it is given is there."""
+
+    def task(hold: str) -> None:
+        while hold and Path(hold).exists():
+            time.sleep(0.01)
+
+    return task
+
+
+@dataclass(frozen=True)
+class Alone:
+    """A task that fails when another one runs beside it, and gives its process."""
+
+    folder: str
+
+    def __call__(self) -> Callable[[int], int]:
+        def task(number: int) -> int:
+            mark = Path(self.folder) / "at work"
+            mark.touch(exist_ok=False)
+            time.sleep(0.02)
+            mark.unlink()
+            return os.getpid()
+
+        return task
+
+
 @dataclass(frozen=True)
 class Within:
     """A factory of `process` with limits."""

@@ -15,42 +15,27 @@ import pytest
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
 from tests.pool.tasks import (
+    Alone,
     Hoards,
     KillsOnce,
     SlowToBuild,
     Within,
     deadly,
     environment,
+    held,
     mark,
     process,
     unsendable,
 )
+from tests.processes import is_alive, wait_until_all_end
 
 ROOT = Path(__file__).parents[2]
-PATIENCE = 10.0
-"""Longest wait [s] for a process to end; without a watch, workers stay for minutes."""
 
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[JoblibPool]:
     with JoblibPool(2) as made:
         yield made
-
-
-def is_alive(pid: int | None) -> bool:
-    """Whether a process runs (a zombie does not)."""
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-    return state != "Z"
-
-
-def wait_until_all_end(pids: set[int | None]) -> None:
-    start = time.monotonic()
-    while still := [pid for pid in pids if is_alive(pid)]:
-        assert time.monotonic() - start < PATIENCE, f"{still} still run"
-        time.sleep(0.02)
 
 
 def test_work_runs_in_two_other_processes(pool: JoblibPool) -> None:
@@ -66,8 +51,13 @@ def test_a_second_run_has_the_same_workers(pool: JoblibPool) -> None:
     assert first == second
 
 
-def test_results_come_as_they_end_and_not_in_order(pool: JoblibPool) -> None:
-    assert [end.index for end in pool.run(process, [0.3, 0.01, 0.01])] == [1, 2, 0]
+def test_results_come_as_they_end_and_not_in_order(pool: JoblibPool, tmp_path: Path) -> None:
+    hold = tmp_path / "hold"
+    hold.touch()
+    ends = pool.run(held, [str(hold), "", ""])
+    assert [next(ends).index, next(ends).index] == [1, 2]
+    hold.unlink()
+    assert [end.index for end in ends] == [0]
 
 
 @pytest.mark.parametrize("name", ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"])
@@ -130,14 +120,13 @@ def test_idle_workers_killed_between_runs_are_replaced(pool: JoblibPool) -> None
     assert not any(end.worker_lost for end in ends)
 
 
-def test_one_job_runs_one_argument_at_a_time_and_survives_a_death() -> None:
+def test_one_job_runs_one_argument_at_a_time_and_survives_a_death(tmp_path: Path) -> None:
     with JoblibPool(1) as pool:
         list(pool.run(deadly, ["warm"] * 4))
         ends = list(pool.run(deadly, ["one", "kill", "two"]))
-        start = time.perf_counter()
-        pids = {end.value for end in pool.run(process, [0.1] * 4)}
-        assert time.perf_counter() - start > 0.4
-    assert os.getpid() not in pids
+        alone = list(pool.run(Alone(str(tmp_path)), range(4)))
+    assert [(end.index, end.failure) for end in alone] == [(number, None) for number in range(4)]
+    assert os.getpid() not in {end.value for end in alone}
     assert {end.index: end.value for end in ends} == {0: "ONE", 1: None, 2: "TWO"}
 
 
@@ -175,25 +164,25 @@ def test_arguments_are_taken_when_a_worker_is_free_and_not_before() -> None:
 
 def test_an_argument_that_takes_too_long_is_ended_and_costs_no_other_its_worker() -> None:
     with JoblibPool(2) as pool:
-        ends = {end.index: end for end in pool.run(Within(Limits(seconds=0.5)), [60.0, *[0.1] * 8])}
+        ends = {end.index: end for end in pool.run(Within(Limits(seconds=3.0)), [3600.0, *[0.01] * 8])}
         late = ends.pop(0)
     assert late.out_of_time
     assert not late.worker_lost
-    assert late.failure == "no result after 0.5 s, so the worker process was ended"
-    assert 0.5 <= late.seconds < 2.0
+    assert late.failure == "no result after 3 s, so the worker process was ended"
+    assert late.seconds >= 3.0
     assert all(end.failure is None for end in ends.values())
     assert late.worker.startswith("local-")
 
 
 def test_the_building_of_a_task_does_not_count_as_time_of_its_first_argument() -> None:
     with JoblibPool(1) as pool:
-        (end,) = pool.run(SlowToBuild(seconds=0.8, limits=Limits(seconds=0.9)), [0.6])
+        (end,) = pool.run(SlowToBuild(seconds=3.5, limits=Limits(seconds=3.0)), [0.01])
     assert end.failure is None
 
 
 def test_a_task_that_takes_for_ever_to_build_is_ended() -> None:
     with JoblibPool(1) as pool:
-        (end,) = pool.run(SlowToBuild(seconds=60.0, limits=Limits(building_seconds=1.0)), [0.1])
+        (end,) = pool.run(SlowToBuild(seconds=3600.0, limits=Limits(building_seconds=1.0)), [0.1])
     assert end.out_of_time
     assert end.failure == "no task built after 1 s, so the worker process was ended"
 

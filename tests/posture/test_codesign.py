@@ -32,7 +32,7 @@ from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
 
 ONE = Hold(height_m=1.0)
-OPTIONS = SolverOptions(iterations=1000, seconds=60.0)
+OPTIONS = SolverOptions(iterations=1000, seconds=600.0)
 LIMITS = Enforced()
 NO_LIMITS = Enforced(joint_limits=False, contact=False, stance=False, lengths=False)
 PUBLISHED_HUMAN = {0.8: 192.4, 1.0: 141.6, 1.2: 120.6, 1.5: 113.1}

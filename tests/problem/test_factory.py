@@ -3,9 +3,10 @@ from __future__ import annotations
 import shutil
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import cast
 
 import msgspec
 import pytest
@@ -13,8 +14,14 @@ import pytest
 from evodesign import identity
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.problem.factory import Remembering, problem_digest
+from evodesign.pool.worker import SerialPool
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.evaluate import AssessmentFactory
+from evodesign.problem.factory import Remembering, problem_digest, values_factory
+from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
+from evodesign.problem.time_left import PendingPiece
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
 
@@ -185,3 +192,27 @@ def test_where_nothing_can_be_kept_evaluations_go_on(
 
 def test_limits_are_those_of_the_evaluation_inside(source: ProblemSource) -> None:
     assert Remembering(Counting(source, "", limits=Limits(seconds=7.0))).limits == Limits(seconds=7.0)
+
+
+def test_compilation_is_told_before_it_begins_and_once(
+    problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[tuple[str, ...]] = []
+
+    def precomputed(*arguments: object) -> Precomputed:
+        *_, after = arguments
+        told.append(tuple(piece.name for piece in cast("list[PendingPiece]", after)))
+        return NOTHING_PRECOMPUTED
+
+    class Watcher(PrecomputeProgress):
+        def done(self, piece: PendingPiece, seconds: float) -> None:
+            told.append((f"{piece.name}, done",))
+
+    monkeypatch.setattr("evodesign.problem.factory.precomputed", precomputed)
+    monkeypatch.setattr("evodesign.problem.factory.find_compiler", lambda environment: "a compiler")
+    monkeypatch.setattr(AssessmentFactory, "__call__", lambda self: told.append(("compiled",)))
+    compiled = replace(problem, options=replace(problem.options, compiled=True))
+    for _ in range(2):
+        values_factory(compiled, SerialPool(), Watcher())
+    name = "compiled inner problems"
+    assert told == [(name,), ("compiled",), (f"{name}, done",), ()]

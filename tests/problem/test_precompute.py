@@ -13,8 +13,9 @@ from evodesign.pool.base import Finished, Pool
 from evodesign.posture.precompute.pieces import Piece, key_of
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.precompute import precompute_setting, precomputed
+from evodesign.problem.precompute import COMPILING, precompute_setting, precomputed
 from evodesign.problem.progress import PrecomputeProgress
+from evodesign.problem.time_left import PendingPiece, TimeLeft
 
 
 class Forgetful:
@@ -36,6 +37,10 @@ class Forgetful:
 
     def store(self, key: str, content: bytes) -> None: ...
 
+    @property
+    def processes(self) -> int:
+        return 3
+
     def run(self, factory: Any, pieces: Sequence[Piece]) -> Iterator[Finished[bytes]]:
         for index, piece in enumerate(pieces):
             self.worked_out += 1
@@ -46,24 +51,41 @@ class Forgetful:
 class Watcher(PrecomputeProgress):
     def __init__(self) -> None:
         self.told: list[int] = []
-        self.ended = 0
+        self.left = TimeLeft()
 
-    def missing(self, pieces: int) -> None:
-        self.told.append(pieces)
+    def missing(self, pieces: Sequence[PendingPiece], processes: int) -> None:
+        assert processes == 3
+        self.told.append(len(pieces))
+        self.left = self.left.with_missing(pieces, processes, 0.0)
 
-    def done(self, piece: str) -> None:
-        self.ended += 1
+    def done(self, piece: PendingPiece, seconds: float) -> None:
+        self.left = self.left.with_done(piece, seconds, 0.0)
 
 
 @pytest.mark.parametrize(
-    ("lost", "damaged", "told"), [(0, 0, []), (100, 0, [8]), (6, 0, [6]), (6, 1, [6, 1])]
+    ("lost", "damaged", "after", "told"),
+    [
+        (0, 0, [], []),
+        (0, 0, [COMPILING], [1]),
+        (100, 0, [], [8]),
+        (100, 0, [COMPILING], [9]),
+        (6, 0, [], [6]),
+        (6, 1, [], [6, 1]),
+    ],
 )
 def test_all_pieces_are_told_before_the_first_is_worked_out(
-    lost: int, damaged: int, told: list[int], problem: DesignProblem, known: Precomputed
+    lost: int,
+    damaged: int,
+    after: list[PendingPiece],
+    told: list[int],
+    problem: DesignProblem,
+    known: Precomputed,
 ) -> None:
     forgetful, watcher = Forgetful(problem, lost, damaged), Watcher()
-    found = precomputed(problem, cast("Cache", forgetful), cast("Pool", forgetful), watcher)
+    found = precomputed(problem, cast("Cache", forgetful), cast("Pool", forgetful), watcher, after)
     assert found.values.keys() == known.values.keys()
     assert len(forgetful.asked) == 8, "starts of the highest and lowest load, and two pieces at three heights"
     assert watcher.told == told
-    assert watcher.ended == forgetful.worked_out == sum(told)
+    assert len(watcher.left.done) == forgetful.worked_out == sum(told) - len(after)
+    assert [each.piece for each in watcher.left.at_work] == after, "what the caller does next"
+    assert watcher.left.waiting == ()

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import copy
 import math
-import time
 
 import numpy as np
 import pinocchio as pin
@@ -350,11 +349,11 @@ BOMB = f"<!DOCTYPE robot [<!ENTITY a0 'ha'>{LAUGHS}]>"
     ],
     ids=["in the text", "in an attribute", "a file", "a DTD elsewhere"],
 )
-def test_entities_are_refused_quickly(text):
-    start = time.perf_counter()
-    with pytest.raises(ModelError):
+def test_entities_are_refused_and_nothing_is_made_of_them(text):
+    with pytest.raises(ModelError) as caught:
         read(text)
-    assert time.perf_counter() - start < 1.0
+    assert "ha" * 10 not in str(caught.value)
+    assert len(str(caught.value)) < 1000
 
 
 def damaged_copies(text: str):

@@ -47,7 +47,7 @@ def server() -> Iterator[LiveServer]:
 
 
 def get(server: LiveServer, path: str, host: str = "127.0.0.1") -> tuple[int, str]:
-    connection = http.client.HTTPConnection(ADDRESS, server.server_port, timeout=10)
+    connection = http.client.HTTPConnection(ADDRESS, server.server_port, timeout=60)
     connection.request("GET", path, headers={"Host": f"{host}:{server.server_port}"})
     answer = connection.getresponse()
     content = answer.read().decode()

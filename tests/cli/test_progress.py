@@ -1,0 +1,76 @@
+"""What is shown while a problem is made ready: how far it is, and the time left as far as it can be told."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from io import StringIO
+from types import SimpleNamespace
+
+import pytest
+from rich.cells import cell_len
+from rich.console import Console
+
+from evodesign.api import progress_lines
+from evodesign.api.progress_lines import PrecomputeLines
+from evodesign.cli import progress
+from evodesign.cli.progress import PrecomputeBar
+from evodesign.problem.precompute import COMPILING
+from evodesign.problem.progress import PrecomputeProgress
+from evodesign.problem.time_left import PendingPiece
+
+PIECES = [
+    PendingPiece("starts of the highest load", "highest", 1.0, 0),
+    PendingPiece("starts of the lowest load", "lowest", 1.0, 0),
+    PendingPiece("the person's part at 0.75 m, a tall person [1], a box with brush", "person", 0.3, 0),
+    PendingPiece("starts of postures at 0.75 m", "posture", 1.7, 1),
+    PendingPiece("starts of postures at 1.25 m", "posture", 1.7, 1),
+    COMPILING,
+]
+LEFT = "(?:about [0-9.]+ (?:s|min|h)|a few seconds) left"
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
+    """A list whose only element is the time of both displays [s]."""
+    now = [100.0]
+    for module in (progress, progress_lines):
+        monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    return now
+
+
+def make_ready(shown: PrecomputeProgress, clock: list[float]) -> None:
+    """Two processes, 40 s for a unit of work."""
+    shown.missing(PIECES, 2)
+    for piece, moment in zip(PIECES, (140.0, 150.0, 152.0, 218.0, 220.0, 221.0), strict=True):
+        clock[0] = moment
+        shown.done(piece, 40.0 * piece.work)
+
+
+def test_lines_tell_the_time_left_from_when_there_is_ground_for_it(clock: list[float]) -> None:
+    stream = StringIO()
+    make_ready(PrecomputeLines(stream), clock)
+    head, *lines = stream.getvalue().splitlines()
+    assert head == "making the problem ready, once; the next time it is read from the cache"
+    assert lines[0] == "ready 1/6: starts of the highest load (40 s, about 1.5 min left)"
+    assert re.search(rf"^ready 5/6: .* 1.25 m \(120 s, {LEFT}\)$", lines[4])
+    assert lines[5] == "ready 6/6: compiled inner problems (121 s)"
+
+
+def test_a_bar_of_80_columns_shows_all_of_it(clock: list[float], monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = StringIO()
+    terminal = Console(file=stream, width=80, force_terminal=True, color_system=None, legacy_windows=False)
+    monkeypatch.setattr(progress, "console", lambda **_: terminal)
+    bar = PrecomputeBar()
+    make_ready(bar, clock)
+    bar.close()
+    shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", stream.getvalue()).replace("\r", "\n")
+    assert max(map(cell_len, shown.splitlines())) <= 80
+    assert "…" not in shown
+    lines = [line for line in shown.splitlines() if "making ready, once" in line]
+    assert all(re.search(r" [0-6]/6 [0-9]:[0-9]{2}:[0-9]{2}", line) for line in lines)
+    assert any(re.search(rf" 1/6 .* {LEFT}", line) for line in lines)
+    assert not re.search(LEFT, lines[0])
+    assert not re.search(LEFT, lines[-1])
+    assert "the person's part at 0.75 m, a tall person [1], a box with brush" in shown
+    assert shown.rstrip().endswith("compiled inner problems")
