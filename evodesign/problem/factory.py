@@ -23,7 +23,7 @@ import msgspec
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.nlp.codegen import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
-from evodesign.nlp.solver import IpoptOptions
+from evodesign.nlp.solver import SolverOptions
 from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
@@ -162,7 +162,7 @@ class _Compilation:
 
 
 def _compilation(
-    kind: type[Evaluations], name: str, options: IpoptOptions, progress: PrecomputeProgress
+    kind: type[Evaluations], name: str, options: SolverOptions, progress: PrecomputeProgress
 ) -> _Compilation | None:
     """What is to be compiled of a problem; None if that is done, not wanted, or not possible.
 

@@ -1,4 +1,4 @@
-"""The method in C against IPOPT, closed forms and brute force; its failures; and its memory under sanitizers."""
+"""The method in C against IPOPT and closed forms; its failures; and its memory under sanitizers."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def test_a_thousand_random_programs_as_ipopt_has_them(convex: bool) -> None:
 
 
 def compare(seed: int, *, convex: bool, draws: int) -> None:
-    """A convex program has one optimum; of curved ones a few may lead elsewhere, but not to worse in the mean."""
+    """A convex program has one optimum; of curved ones a few may lead elsewhere."""
     random = random_program(seed, convex=convex)
     native, ipopt = both(random.program)
     rng = np.random.default_rng(seed)
@@ -301,7 +301,8 @@ const Problem *evodesign_problem(void);
 int main(void) {
     const Problem *problem = evodesign_problem();
     Solver *solver = create(problem);
-    double *x = calloc(problem->variables, sizeof(double)), *bounds = calloc(problem->variables, sizeof(double));
+    double *x = calloc(problem->variables, sizeof(double));
+    double *bounds = calloc(problem->variables, sizeof(double));
     double *rows = calloc(problem->rows + 1, sizeof(double)), *given = calloc(NUMBERS, sizeof(double));
     double *slopes = calloc(NUMBERS, sizeof(double)), fixed[64];
     Options options = {1e-8, 20, 0.1, 1e-2, 1e-8, HUGE_VAL, 300, 0};
