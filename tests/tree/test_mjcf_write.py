@@ -227,9 +227,7 @@ def test_links_that_only_lie_between_joints_are_joints_of_one_body(problem: Desi
 def test_link_that_moves_without_mass_is_refused_by_name() -> None:
     links = (Link("body", (Solid(Sphere(0.1), Placement(), 1000.0),)), Link("flag"))
     joint = Joint("mast", JointKind.REVOLUTE, "body", "flag", Placement(), lower=-1.0, upper=1.0)
-    with pytest.raises(
-        ModelError, match="flag: wanted mass, which MuJoCo asks of every link that moves"
-    ):
+    with pytest.raises(ModelError, match="flag: wanted mass, which MuJoCo asks of every link that moves"):
         mjcf_text(Tree("robot", links, (joint,)), GRAVITY, {})
 
 
