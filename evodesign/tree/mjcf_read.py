@@ -1,7 +1,7 @@
 """An MJCF robot as URDF text, by way of MuJoCo's own compiler, which resolves includes, defaults and angles.
 
     body             link of the same name and frame; the one below the world that carries joints is the root
-                     and floats
+                     and floats; if it is turned in the file, it is fixed to a root with the world's axes
     hinge, slide     joint at its anchor, with MuJoCo's positions (also where `ref` is not zero); links
                      without mass lie between joints of one body, and between an anchor and a body's origin
     joint equality   mimic joint, or a fixed one where it follows nothing
@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 import re
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -67,24 +68,32 @@ def translated(path: Path, source: str) -> TranslatedRobot:
     """
     import mujoco
 
-    try:
-        spec = mujoco.MjSpec.from_file(str(path))
-        touching = [geom for geom in spec.geoms if geom.contype or geom.conaffinity]
-        for geom in touching:  # else convex hulls are made of all meshes that touch, for seconds
-            geom.contype = geom.conaffinity = 0
-        spec.compiler.discardvisual = False
-        model = spec.compile()
-    except (ValueError, mujoco.FatalError) as error:
-        found = " ".join(str(error).split())
-        raise ModelError(source, "", "an MJCF file that MuJoCo compiles", found) from error
+    model, touching, said = _compiled(mujoco, path, source)
     root = _root(model, source)
     bodies = tuple(body for body in range(1, model.nbody) if model.body_rootid[body] == root)
     moving = [joint for joint in range(model.njnt) if model.jnt_bodyid[joint] in bodies[1:]]
     of_links, of_joints = _Names(set()), _Names(set())
     links = {body: of_links.of(model.body(body).name or f"body_{body}") for body in bodies}
     joints = {joint: of_joints.of(model.joint(joint).name or f"joint_{joint}") for joint in moving}
-    touch = frozenset(geom.id for geom in touching)
-    return _Translation(mujoco, model, source, links, joints, of_links, of_joints, touch).result()
+    return _Translation(mujoco, model, source, links, joints, of_links, of_joints, touching, said).result()
+
+
+def _compiled(mujoco: Any, path: Path, source: str) -> tuple[Any, frozenset[int], tuple[str, ...]]:
+    """A model whose geoms touch nothing, those that touch in the file, and what MuJoCo warns of."""
+    try:
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            spec = mujoco.MjSpec.from_file(str(path))
+            touching = [geom for geom in spec.geoms if geom.contype or geom.conaffinity]
+            for geom in touching:  # else convex hulls are made of all meshes that touch, for seconds
+                geom.contype = geom.conaffinity = 0
+            spec.compiler.discardvisual = False
+            model = spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        found = " ".join(str(error).split())
+        raise ModelError(source, "", "an MJCF file that MuJoCo compiles", found) from error
+    said = tuple(" ".join(f"MuJoCo says: {each.message}".split()) for each in warned)
+    return model, frozenset(geom.id for geom in touching), said
 
 
 def _root(model: Any, source: str) -> int:
@@ -115,7 +124,7 @@ class _Names:
 class _Translation:
     """A compiled model, names of its robot's links by body, the root first, and of its joints.
 
-    `touching` are the geoms that touch others.
+    `touching` are the geoms that touch others, `said` what MuJoCo warned of.
     """
 
     mujoco: Any
@@ -126,6 +135,7 @@ class _Translation:
     link_names: _Names
     joint_names: _Names
     touching: frozenset[int]
+    said: tuple[str, ...]
 
     def result(self) -> TranslatedRobot:
         """The robot."""
@@ -135,7 +145,12 @@ class _Translation:
             link = etree.SubElement(robot, "link", name=name)
             add_inertial(link, self._inertia(body))
             meshes |= add_geoms(link, self.mujoco, self.model, body, self.touching)
-        coupled = self._coupled()
+        coupled, root = self._coupled(), next(iter(self.links))
+        turned = placement((0.0, 0.0, 0.0), self.model.body_quat[root])
+        if turned != Placement():
+            upright = self.link_names.of(f"{self.links[root]}_upright")
+            etree.SubElement(robot, "link", name=upright)
+            add_joint(robot, self._weld(upright, self.links[root], turned))
         for body in [*self.links][1:]:
             for joint in self._above(body):
                 self._add(robot, joint, coupled)
@@ -271,4 +286,5 @@ class _Translation:
         }
         if not len(model.actuator_trntype):
             del left_out["no actuator acts directly on"]
+        yield from self.said
         yield from (f"{what}: {listed(names)}" for what, names in left_out.items() if names)

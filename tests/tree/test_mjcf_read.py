@@ -65,9 +65,9 @@ def posed(file: Path, tree: Tree, locked: dict[str, float], rng: np.random.Gener
     data = mujoco.MjData(model)
     joints = {name: float(rng.uniform(-1.0, 1.0)) for name in tree.actuated}
     place = Placement.from_xyz_rpy(rng.normal(size=3).tolist(), rng.uniform(-1.4, 1.4, 3).tolist())
-    adr = model.jnt_qposadr[model.body(tree.root).jntadr[0]]
-    data.qpos[adr : adr + 3] = place.translation
-    mujoco.mju_mat2Quat(data.qpos[adr + 3 : adr + 7], np.array(place.rotation).ravel())
+    trunk = link_frames(tree, place, {})["trunk"]
+    data.qpos[:3] = trunk.translation
+    mujoco.mju_mat2Quat(data.qpos[3:7], np.array(trunk.rotation).ravel())
     for name, position in {**joints, **locked}.items():
         data.qpos[model.joint(name).qposadr[0]] = position
     mujoco.mj_forward(model, data)
@@ -88,6 +88,15 @@ def test_bodies_and_sites_stand_where_mujoco_puts_them(file: Path, tree: Tree) -
             ours = frames[theirs.name]
             np.testing.assert_allclose(ours.translation, theirs.xpos, atol=1e-12)
             np.testing.assert_allclose(np.array(ours.rotation).ravel(), theirs.xmat, atol=1e-12)
+
+
+def test_the_root_has_the_axes_of_the_world(file: Path, tree: Tree) -> None:
+    assert tree.root == "trunk_upright"
+    model = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    ours = link_frames(tree, Placement(), {})["trunk"]
+    np.testing.assert_allclose(np.array(ours.rotation).ravel(), data.body("trunk").xmat, atol=1e-12)
 
 
 def test_torques_against_gravity_and_masses_are_those_of_mujoco(file: Path, tree: Tree) -> None:
@@ -137,7 +146,7 @@ def test_limits_efforts_and_kinds(tree: Tree) -> None:
 
 def test_several_joints_of_a_body_and_anchors_elsewhere_lie_between_links_without_mass(tree: Tree) -> None:
     chain, link = [], "palm"
-    while link != tree.root:
+    while link != "trunk":
         chain.append(link)
         link = tree.parent_joint[link].parent
     assert [(name, bool(tree.link_by_name[name].inertia.mass)) for name in reversed(chain)] == [
