@@ -73,6 +73,7 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
 	$(BIN)/python -m benchmarks.public_robots
+	$(BIN)/python -m benchmarks.averaging
 
 faults: $(VENV)/installed-dev  ## kill searches and commands 1,000 times, damage logs (KILLS=, FOLDER= to go on)
 	$(BIN)/python -m tests.faults.campaign --kills $(KILLS) $(if $(FOLDER),--folder $(FOLDER))
