@@ -40,7 +40,7 @@ def effort_limit(mujoco: Any, model: Any, joint: int) -> float:
 
 def _largest(mujoco: Any, model: Any, actuator: int) -> float:
     """Of an actuator, at the joint."""
-    every = range(len(model.actuator_trntype))  # before MuJoCo 3.6 each had one control and one output
+    every = range(len(model.actuator_trntype))  # before MuJoCo 4 each has one control and one output
     control, output = (getattr(model, f"actuator_{part}adr", every)[actuator] for part in ("ctrl", "out"))
     gear = abs(float(model.actuator_gear[output, 0]))
     if model.actuator_forcelimited[actuator]:
