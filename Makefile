@@ -74,6 +74,8 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python benchmarks/overhead.py
 	$(BIN)/python -m benchmarks.public_robots
 	$(BIN)/python -m benchmarks.cold_start
+	$(BIN)/python -m benchmarks.averaging
+	$(BIN)/python -m benchmarks.native_solver
 
 faults: $(VENV)/installed-dev  ## kill searches and commands 1,000 times, damage logs (KILLS=, FOLDER= to go on)
 	$(BIN)/python -m tests.faults.campaign --kills $(KILLS) $(if $(FOLDER),--folder $(FOLDER))

@@ -61,7 +61,7 @@ def evaluate(
 def _chosen(problem: DesignProblem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:
     """Name and parameter values of the design that the options ask for."""
     from evodesign.problem.designs import read_designs
-    from evodesign.problem.source import read_text
+    from evodesign.problem.named_files import read_text
 
     tree = problem.scene.robot.tree
     if file is None:

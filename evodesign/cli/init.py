@@ -12,7 +12,7 @@ __all__ = ["init"]
 
 
 def init(
-    robot: Annotated[Path, typer.Argument(metavar="ROBOT", help="URDF of a humanoid robot.")],
+    robot: Annotated[Path, typer.Argument(metavar="ROBOT", help="URDF or MJCF of a humanoid robot.")],
     to: Annotated[
         Path | None,
         typer.Option(
@@ -31,17 +31,17 @@ def init(
     from evodesign.files import is_there
     from evodesign.problem.guess.problem_text import FILL_IN, guessed_problem, inertia_rule
     from evodesign.problem.meshes import with_meshes_beside
-    from evodesign.problem.source import read_text
+    from evodesign.problem.named_files import read_robot
     from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
     file = to or Path(f"{robot.stem}.toml")
     if is_there(file):
         raise InputError("--to", "", "a new file", f"'{file}', which exists")
-    text = read_text(robot, "ROBOT", "")
-    tree = read_urdf(text, str(robot), InertiaRule.AUTO)
-    tree = read_urdf(text, str(robot), inertia_rule(tree))
+    model = read_robot(robot, str(robot), "ROBOT", "")
+    tree = read_urdf(model.urdf, str(robot), InertiaRule.AUTO)
+    tree = read_urdf(model.urdf, str(robot), inertia_rule(tree))
     urdf = Path(os.path.relpath(robot.resolve(), file.resolve().parent)).as_posix()
-    tree = with_meshes_beside(tree, robot, text)
+    tree = with_meshes_beside(tree, robot, model)
     guessed = guessed_problem(tree, urdf)
     write_text(file, guessed.text, "--to")
     show_notes(tree.notes)

@@ -90,7 +90,7 @@ class TorqueLimits(StrEnum):
 
 
 class RobotTable(Table, frozen=True):
-    """`[robot]`: a URDF, and the parts of it that matter.
+    """`[robot]`: a URDF (or MJCF, which MuJoCo reads), and the parts of it that matter.
 
     `inertia` says where masses come from; see `InertiaRule`. `facing` is the direction in the root's axes in
     which the robot looks. `packages` are folders in which `package://` and `model://` are found, beside those

@@ -14,7 +14,7 @@ import os
 import struct
 import warnings
 from contextlib import suppress
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from evodesign.identity import code_digest, digest
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.tree.surface import Surface, read_surface, surface_of, surface_text
 
-__all__ = ["KINDS", "read_mesh"]
+__all__ = ["KINDS", "few_triangles", "read_mesh"]
 
 KINDS = (".stl", ".dae", ".obj", ".ply")
 """Suffixes of the files that are read."""
@@ -69,6 +69,16 @@ def read_mesh(path: Path, most: int, source: str, key: str) -> Surface:
         raise InputError(source, key, "a readable file", f"'{path}' ({error.strerror})") from error
     if len(content) > MOST_BYTES:
         raise InputError(source, key, f"a file of at most {MOST_BYTES} bytes", f"a larger '{path}'")
+    return few_triangles(content, str(path), most, source, key)
+
+
+def few_triangles(content: bytes, name: str, most: int, source: str, key: str) -> Surface:
+    """The bytes of a mesh file of a kind that is read, as in `read_mesh`.
+
+    Raises:
+        InputError: they hold no triangles.
+    """
+    kind = PurePath(name).suffix.lower()
     cache = _cache()
     entry = digest((kind, most, content, code_digest(__name__)))
     kept = cache.read(entry) if cache else None
@@ -78,7 +88,7 @@ def read_mesh(path: Path, most: int, source: str, key: str) -> Surface:
     try:
         surface = _simplified(content, kind, most)
     except ValueError as error:
-        raise InputError(source, key, "a mesh of triangles", f"'{path}' ({error})") from error
+        raise InputError(source, key, "a mesh of triangles", f"'{name}' ({error})") from error
     if cache:
         with suppress(OSError):
             cache.store(entry, surface_text(surface).encode())

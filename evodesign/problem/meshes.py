@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
@@ -18,8 +19,9 @@ from pathlib import Path, PurePosixPath
 from evodesign.errors import InputError, ModelError
 from evodesign.problem.file import RobotTable
 from evodesign.problem.mesh_places import MeshPlaces
-from evodesign.problem.mesh_reading import read_mesh
+from evodesign.problem.mesh_reading import few_triangles, read_mesh
 from evodesign.problem.mesh_upright import says_y_up, stood_upright
+from evodesign.tree.mjcf_read import TranslatedRobot
 from evodesign.tree.model import Mesh, Tree
 from evodesign.tree.surface import Surface, read_surface, surface_text
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
@@ -52,36 +54,44 @@ def is_kept_name(name: str) -> bool:
     return re.fullmatch(r"meshes/[A-Za-z0-9_-]*-[0-9a-f]{12}\.json", name) is not None
 
 
-def mesh_texts(table: RobotTable, urdf: Path, text: str, folder: Path, source: str) -> dict[str, str]:
-    """The meshes that a robot's URDF shows, as texts by the names under which the problem keeps them.
+def mesh_texts(
+    table: RobotTable, file: Path, robot: TranslatedRobot, folder: Path, source: str
+) -> dict[str, str]:
+    """The meshes that a robot shows, as texts by the names under which the problem keeps them.
 
     Args:
         table: `[robot]` of the problem.
-        urdf: path of the robot's file.
-        text: its content. Nothing is read if it is no usable URDF, of which building the problem tells.
+        file: path of the robot's file.
+        robot: its content. Nothing is read if it is no usable URDF, of which building the problem tells.
         folder: of the problem.
         source: the problem's name, for messages.
     Raises:
         InputError: a mesh is nowhere, cannot be read, or there are too many.
     """
-    if not table.meshes or "<mesh" not in text:
+    if not table.meshes or "<mesh" not in robot.urdf:
         return {}
     try:
-        tree = read_urdf(text, table.urdf, InertiaRule.FILE)
+        tree = read_urdf(robot.urdf, table.urdf, InertiaRule.FILE)
     except ModelError:
         return {}
-    links = {mesh.file: link.name for link in reversed(tree.links) for mesh in link.meshes}
+    links = {
+        mesh.file: link.name for link in reversed(tree.links) for mesh in link.meshes if not mesh.surface
+    }
     if len(links) > MOST_MESHES:
         wanted = f"at most {MOST_MESHES} mesh files; [robot] meshes = false leaves them out"
         raise InputError(source, KEY, wanted, f"{len(links)} in '{table.urdf}'")
     packages = [folder / place for place in table.packages]
-    places = MeshPlaces(urdf.absolute().parent, packages, os.environ)
+    places = MeshPlaces(file.absolute().parent, packages, os.environ)
     uses = sum(len(link.meshes) for link in tree.links)
     most = max(FEWEST, min(OF_ONE, OF_ALL // max(len(links), 1), MOST_SHOWN // max(uses, 1)))
     kept = {mesh: _kept(folder / kept_name(mesh)) for mesh in sorted(links)}
-    paths = {mesh: _found(mesh, links[mesh], places, source) for mesh in kept if kept[mesh] is None}
-    read = {mesh: read_mesh(path, most, source, f"{KEY}, link {links[mesh]}") for mesh, path in paths.items()}
+    missing = [mesh for mesh in kept if kept[mesh] is None]
+    keys = {mesh: f"{KEY}, link {links[mesh]}" for mesh in missing}
+    own = [mesh for mesh in missing if mesh in robot.meshes]
+    paths = {mesh: _found(mesh, links[mesh], places, source) for mesh in missing if mesh not in robot.meshes}
+    read = {mesh: read_mesh(path, most, source, keys[mesh]) for mesh, path in paths.items()}
     read = stood_upright(tree, read, [mesh for mesh, path in paths.items() if says_y_up(path)])
+    read |= {mesh: few_triangles(robot.meshes[mesh], mesh, most, source, keys[mesh]) for mesh in own}
     return {
         kept_name(mesh): surface_text(read[mesh]) if text is None else text for mesh, text in kept.items()
     }
@@ -123,33 +133,31 @@ def with_surfaces(tree: Tree, files: Mapping[str, str], source: str) -> Tree:
         kept = kept_name(name)
         if kept in files:
             surfaces[name] = read_surface(files[kept], source, kept)
-    if not surfaces:
-        return tree
-    triangles = {name: len(surface.faces) for name, surface in surfaces.items()}
-    shown = sum(triangles.get(mesh.file, 0) for link in tree.links for mesh in link.meshes)
-    if shown > MOST_SHOWN:
+
+    def seen(mesh: Mesh) -> Mesh:
+        return mesh if mesh.surface else replace(mesh, surface=surfaces.get(mesh.file))
+
+    links = tuple(replace(link, meshes=tuple(map(seen, link.meshes))) for link in tree.links)
+    shown = Counter(mesh.surface for link in links for mesh in link.shown)
+    triangles = sum(len(surface.faces) * count for surface, count in shown.items() if surface)
+    if triangles > MOST_SHOWN:
         wanted = (
             f"meshes of at most {MOST_SHOWN} triangles in all links; [robot] meshes = false leaves them out"
         )
-        raise InputError(source, KEY, wanted, f"{shown}")
-
-    def seen(mesh: Mesh) -> Mesh:
-        return replace(mesh, surface=surfaces.get(mesh.file))
-
-    links = (replace(link, meshes=tuple(map(seen, link.meshes))) for link in tree.links)
-    return replace(tree, links=tuple(links))
+        raise InputError(source, KEY, wanted, f"{triangles}")
+    return replace(tree, links=links)
 
 
-def with_meshes_beside(tree: Tree, urdf: Path, text: str) -> Tree:
+def with_meshes_beside(tree: Tree, file: Path, robot: TranslatedRobot) -> Tree:
     """The tree of a robot that no problem names yet with its meshes; with a note if one cannot be had.
 
     Args:
-        tree: of the robot's URDF.
-        urdf: path of the URDF.
-        text: its content.
+        tree: of the robot.
+        file: path of its file.
+        robot: its content.
     """
     try:
-        texts = mesh_texts(RobotTable(urdf=str(urdf)), urdf, text, urdf.parent, str(urdf))
+        texts = mesh_texts(RobotTable(urdf=str(file)), file, robot, file.parent, str(file))
     except InputError as error:
         return replace(tree, notes=(*tree.notes, str(error)))
-    return with_surfaces(tree, texts, str(urdf))
+    return with_surfaces(tree, texts, str(file))

@@ -10,9 +10,10 @@ import msgspec
 from evodesign.errors import InputError
 from evodesign.files import is_there
 from evodesign.problem.meshes import is_kept_name
+from evodesign.problem.named_files import read_text
 from evodesign.problem.shipped import SHIPPED
-from evodesign.problem.source import read_text
 from evodesign.records import ProblemSource
+from evodesign.tree.mjcf_read import is_mjcf
 
 __all__ = ["reread"]
 
@@ -22,7 +23,7 @@ COME_WITH_EVODESIGN = (SHIPPED, SHIPPED.parent / "populations")
 
 
 def reread(source: ProblemSource, folder: Path) -> ProblemSource:
-    """The files of a problem as they are now; what it keeps of meshes is not looked at again.
+    """The files of a problem as they are now; what it keeps of meshes and of MJCF is not looked at again.
 
     Args:
         source: from a log, which may come from elsewhere and name any file.
@@ -39,7 +40,8 @@ def reread(source: ProblemSource, folder: Path) -> ProblemSource:
             continue
         named = _within(path.parent / name, folder, source)
         found = named if is_there(named) else _within(SHIPPED / name, folder, source)
-        files[name] = read_text(found, source.path, name)
+        text_now = read_text(found, source.path, name)
+        files[name] = before if is_mjcf(text_now) else text_now
     return msgspec.structs.replace(source, text=text, files=files)
 
 

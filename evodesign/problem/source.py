@@ -21,10 +21,11 @@ from evodesign.errors import InputError, nearest_name, shortened
 from evodesign.files import is_there, write_folder
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.meshes import mesh_texts
+from evodesign.problem.named_files import read_robot, read_text
 from evodesign.problem.shipped import SHIPPED, problem_path
 from evodesign.records import ProblemSource
 
-__all__ = ["copy_source", "decode_toml", "read_source", "read_text", "source_of"]
+__all__ = ["copy_source", "decode_toml", "read_source", "source_of"]
 
 GIVEN = "the problem given"
 """What messages call a problem that no file holds."""
@@ -73,16 +74,18 @@ def _plain(value: Any) -> Any:
 
 def _source(text: str, source: str, folder: Path, symmetry: str | None) -> ProblemSource:
     tables = decode_toml(text, source, ProblemFile)
-    named = {
-        "robot.urdf": tables.robot.urdf,
-        **{f"{key}.urdf": table.urdf for key, table in tables.people.items()},
-        "search.start": tables.search.start,
+    people = {f"{key}.urdf": table.urdf for key, table in tables.people.items()}
+    models = {
+        name: read_robot(_named(folder, name), name, source, key)
+        for key, name in {"robot.urdf": tables.robot.urdf, **people}.items()
+        if name is not None
     }
-    files = {
-        name: read_text(_named(folder, name), source, key) for key, name in named.items() if name is not None
-    }
+    files = {name: model.urdf for name, model in models.items()}
+    if tables.search.start is not None:
+        start = tables.search.start
+        files[start] = read_text(_named(folder, start), source, "search.start")
     robot = tables.robot.urdf
-    files |= mesh_texts(tables.robot, _named(folder, robot), files[robot], folder, source)
+    files |= mesh_texts(tables.robot, _named(folder, robot), models[robot], folder, source)
     return ProblemSource(path=source, text=text, files=files, symmetry=symmetry)
 
 
@@ -114,37 +117,8 @@ def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
     return tuple(folder / name for name in files)
 
 
-def read_text(path: Path, source: str, key: str) -> str:
-    """A UTF-8 text file.
-
-    Args:
-        path: of the file.
-        source: who names it, for messages.
-        key: where in the source, empty for the whole.
-    Raises:
-        InputError: it cannot be read, or is longer than `LONGEST_FILE`.
-    """
-    try:
-        if path.exists() and not path.is_file():  # reading a device or a pipe might never end
-            raise InputError(source, key, "a file", f"'{path}', which is none")
-        with path.open(encoding="utf-8") as file:
-            text = file.read(LONGEST_FILE + 1)
-    except FileNotFoundError as error:
-        raise InputError(source, key, "an existing file", f"no file '{path}'") from error
-    except UnicodeDecodeError as error:
-        raise InputError(source, key, "UTF-8 text", f"other bytes in '{path}'") from error
-    except (OSError, ValueError) as error:
-        raise InputError(source, key, "a readable file", f"'{path}' ({error})") from error
-    if len(text) > LONGEST_FILE:
-        raise InputError(source, key, f"a file of at most {LONGEST_FILE} letters", f"a longer '{path}'")
-    return text
-
-
 RENAMED = {"policy": "allocation", "seeds": "start_portfolio"}
 """Keys of earlier versions, and what they are called now."""
-
-LONGEST_FILE = 10_000_000
-"""Letters of a file that a problem names: a robot of 100 links has 100 kB."""
 
 LONGEST_TEXT, LONGEST_LINE, MOST_DOTS = 1_000_000, 10_000, 100_000
 """Letters of a TOML file and of its lines, and dots in all its keys: each takes 1 kB to read."""

@@ -109,7 +109,7 @@ def _largest(pairs: Pairs) -> tuple[Difference, ...]:
     found: dict[Figure, Difference] = {}
     for each in pairs.differences:
         known = found.get(each.figure)
-        if known is None or each.excess > known.excess + SAME:
+        if known is None or each.size > known.size + SAME:
             found[each.figure] = each
     return tuple(
         sorted((each for each in found.values() if each.excess > ROUNDING), key=lambda each: -each.excess)

@@ -57,7 +57,7 @@ def mesh_files(tree: Tree, folder: str) -> tuple[dict[tuple[str, int], str], dic
     contents: dict[str, bytes] = {}
     of_content: dict[bytes, str] = {}
     for link in tree.links:
-        for position, mesh in enumerate(link.meshes):
+        for position, mesh in enumerate(link.shown):
             if mesh.surface is None:
                 continue
             turned = np.array(mesh.link_from_mesh.rotation, float).T @ _linear(mesh)

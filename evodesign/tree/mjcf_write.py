@@ -4,6 +4,8 @@
     asset    <mesh> for each mesh file
     key      position and quaternion of the root, then the joints in the order in which the file holds them
 
+A link that is nothing but what lies between two joints is no body: its joint stands in the next one.
+
 The robot's geoms touch the ground and not each other: neighbouring shapes overlap at the joints. A link of
 solids that meshes show touches with its solids, which stand in group 3; one of meshes alone with their hulls.
 
@@ -19,7 +21,7 @@ from dataclasses import dataclass
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, quaternion_wxyz
+from evodesign.body.placement import Placement, quaternion_wxyz, rotate
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.mesh_write import NO_MESHES, MeshNames, has_hull, named_meshes
@@ -73,7 +75,7 @@ def mjcf_text(
     etree.SubElement(world, "light", pos="0 -2 4", dir="0 0.5 -1", directional="true")
     ground = {"contype": "1", "conaffinity": "0", "rgba": "0.9 0.9 0.9 1"}
     etree.SubElement(world, "geom", type="plane", size="3 3 0.1", **ground)
-    _add_body(world, tree, tree.root, Placement(), None, meshes)
+    _add_body(world, tree, tree.root, Placement(), (), meshes)
     if postures:
         frame = etree.SubElement(model, "keyframe")
         for name, posture in postures.items():
@@ -88,9 +90,19 @@ def _check(tree: Tree) -> None:
             tree.name, "link world", "another name, as MuJoCo has a 'world' of its own", "'world'"
         )
     for joint in tree.joints:
-        if joint.kind is not JointKind.FIXED and not _carried_mass(tree, joint.child):
+        if joint.kind is JointKind.FIXED or _beyond_nothing(tree, joint.child):
+            continue
+        if not _carried_mass(tree, joint.child):
             wanted = "mass, which MuJoCo asks of every link that moves"
             raise ModelError(tree.name, f"link {joint.child}", wanted, "none")
+
+
+def _beyond_nothing(tree: Tree, name: str) -> Joint | None:
+    """The one joint of a link that has neither mass nor looks, if it moves."""
+    link, below = tree.link_by_name[name], tree.child_joints[name]
+    if len(below) != 1 or below[0].kind is JointKind.FIXED or link.looks or link.meshes:
+        return None
+    return None if float(link.inertia.mass) else below[0]
 
 
 def _carried_mass(tree: Tree, link: str) -> float:
@@ -99,25 +111,37 @@ def _carried_mass(tree: Tree, link: str) -> float:
     return float(tree.link_by_name[link].inertia.mass) + sum(_carried_mass(tree, child) for child in welded)
 
 
+PlacedJoints = tuple[tuple[Joint, Placement], ...]
+"""Joints of a body, each with its frame's place in the body's."""
+
+
 def _add_body(
-    above: etree._Element, tree: Tree, name: str, place: Placement, joint: Joint | None, meshes: MeshNames
+    above: etree._Element, tree: Tree, name: str, place: Placement, joints: PlacedJoints, meshes: MeshNames
 ) -> None:
-    link = tree.link_by_name[name]
+    link, following = tree.link_by_name[name], _beyond_nothing(tree, name)
+    if joints and following:
+        next_from_here = following.parent_from_child.inverse
+        moved = tuple((joint, next_from_here @ at) for joint, at in joints)
+        place = place @ following.parent_from_child
+        _add_body(above, tree, following.child, place, (*moved, (following, Placement())), meshes)
+        return
     body = etree.SubElement(above, "body", name=name, **_pose(place))
-    if joint is None:
+    if name == tree.root:
         etree.SubElement(body, "freejoint")
-    elif joint.kind is not JointKind.FIXED:
-        _add_joint(body, joint)
+    for joint, at in joints:
+        _add_joint(body, joint, at)
     _add_inertial(body, link.inertia)
     _add_geoms(body, link, meshes)
     for below in tree.child_joints[name]:
-        _add_body(body, tree, below.child, below.parent_from_child, below, meshes)
+        own = () if below.kind is JointKind.FIXED else ((below, Placement()),)
+        _add_body(body, tree, below.child, below.parent_from_child, own, meshes)
 
 
-def _add_joint(body: etree._Element, joint: Joint) -> None:
-    element = etree.SubElement(
-        body, "joint", name=joint.name, type=KINDS[joint.kind], axis=numbers_text(joint.axis)
-    )
+def _add_joint(body: etree._Element, joint: Joint, body_from_joint: Placement) -> None:
+    element = etree.SubElement(body, "joint", name=joint.name, type=KINDS[joint.kind])
+    if any(body_from_joint.translation):
+        element.set("pos", numbers_text(body_from_joint.translation))
+    element.set("axis", numbers_text(rotate(body_from_joint.rotation, joint.axis)))
     if joint.kind is not JointKind.CONTINUOUS and math.isfinite(joint.upper - joint.lower):
         element.set("range", numbers_text([joint.lower, joint.upper]))
     if math.isfinite(joint.effort) and joint.effort > 0.0:

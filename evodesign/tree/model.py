@@ -109,8 +109,8 @@ class Link:
 
     @property
     def shown(self) -> tuple[Mesh, ...]:
-        """Its meshes of which the triangles are known; where there are any, shapes are not shown."""
-        return tuple(mesh for mesh in self.meshes if mesh.surface is not None)
+        """Its meshes, if the triangles of all are known; where there are any, shapes are not shown."""
+        return self.meshes if all(mesh.surface is not None for mesh in self.meshes) else ()
 
     @property
     def volume(self) -> Scalar:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from evodesign.errors import ModelError, shortened
+from evodesign.errors import ModelError, on_one_line, shortened
 from evodesign.tree.model import JointKind
 
 __all__ = ["checked_urdf"]
@@ -78,7 +78,7 @@ def checked_urdf(text: str, source: str, notes: list[str]) -> etree._Element:
     Args:
         text: the URDF.
         source: the file's name, for messages.
-        notes: takes a sentence for each shape that is left out.
+        notes: takes a sentence for each shape that is left out, and the file's own.
     Returns:
         Links and joints in file order, their numbers as the shortest text that reads back to the same
         double. A mesh may stand where a shape does.
@@ -118,11 +118,14 @@ def _parsed(text: str, source: str) -> etree._Element:
 def _check(root: etree._Element, source: str, notes: list[str]) -> None:
     """Refuse what cannot be read, and strip what is not, so that only checked elements remain."""
     if root.tag != "robot":
-        raise ModelError(source, "", "<robot> as the outermost element", f"<{root.tag}>")
+        raise ModelError(
+            source, "", "<robot> (URDF) or <mujoco> (MJCF) as the outermost element", f"<{root.tag}>"
+        )
     _check_name(root, source)
     count = len(root.findall("link"))
     if not 0 < count <= MOST_LINKS:
         raise ModelError(source, "robot", f"links, at most {MOST_LINKS}", f"{count or 'none'}")
+    notes += [on_one_line(shortened(note.get("text", ""), LONGEST_NAME)) for note in root.findall("note")]
     _strip(root, ("link", "joint"))
     for element in root:
         _check_name(element, source)

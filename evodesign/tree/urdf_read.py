@@ -2,7 +2,8 @@
 
 `urdf_check` vets the XML first; here its elements become links and joints.
 
-    shape of a link    its visuals; its collisions if there is none; no shape if there is a mesh among them
+    shape of a link    its visuals; its collisions if there is none; no shape if there is a mesh among them:
+                       what is seen beside a mesh is a mesh then, too
     robot's link       with a shape and mass: solids of one density, mass / volume (`InertiaRule.SHAPES`)
                        with a mesh, or no shape: the file's mass, centre of mass and tensor
                        with a shape alone: only seen
@@ -10,8 +11,8 @@
     mimic joint        locked where its formula puts it while the joint that it follows is at zero
 
 What a file says and the tree does not take as it stands is told in `Tree.notes`: locked joints, shapes that
-were left out, and tensors that no body has (a principal moment is larger than the sum of the others). Such a
-tensor is kept: holding a load asks for mass and centre of mass alone.
+were left out, what <note> elements say, and tensors that no body has (a principal moment is larger than the
+sum of the others). Such a tensor is kept: holding a load asks for mass and centre of mass alone.
 
 Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III (tensors that bodies have).
 """
@@ -32,10 +33,11 @@ from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
+from evodesign.tree.triangulation import scaled_surface
 from evodesign.tree.urdf_check import checked_urdf
 from evodesign.tree.urdf_write import UNLIMITED
 
-__all__ = ["InertiaRule", "read_urdf"]
+__all__ = ["InertiaRule", "listed", "read_urdf"]
 
 LEAST_MASS = 1e-9
 """A link below a microgram [kg] has no mass: some files give their frames a tiny one."""
@@ -102,6 +104,16 @@ class Shapes:
     primitives: tuple[Look, ...]
     meshes: tuple[Mesh, ...]
 
+    @property
+    def all_meshes(self) -> tuple[Mesh, ...]:
+        """The meshes, and the primitives beside them as such."""
+        return (*self.meshes, *map(_as_mesh, self.primitives)) if self.meshes else ()
+
+
+def _as_mesh(look: Look) -> Mesh:
+    kind, surface, factors = scaled_surface(look.shape)
+    return Mesh(kind, factors, look.link_from_look, surface=surface)
+
 
 def _link(link: etree._Element, rule: InertiaRule) -> Link:
     seen, touched = (_shapes(link.findall(role)) for role in ("visual", "collision"))
@@ -112,8 +124,8 @@ def _link(link: etree._Element, rule: InertiaRule) -> Link:
     if rule is not InertiaRule.FILE and shapes and inertia.mass > 0.0:
         density = inertia.mass / sum(look.shape.volume for look in shapes)
         solids = tuple(Solid(look.shape, look.link_from_look, density) for look in shapes)
-        return Link(name, solids=solids, meshes=seen.meshes)
-    return Link(name, own_inertia=inertia, looks=shapes, meshes=seen.meshes)
+        return Link(name, solids=solids, meshes=seen.all_meshes)
+    return Link(name, own_inertia=inertia, looks=shapes, meshes=seen.all_meshes)
 
 
 def _shapes(looks: list[etree._Element]) -> Shapes:
@@ -152,17 +164,17 @@ def _strange(robot: etree._Element, links: Iterable[Link]) -> Iterator[str]:
     """Sentences for joints that are locked, and for kept tensors that no body has."""
     locked = [joint.get("name", "") for joint in robot.findall("joint") if joint.find("mimic") is not None]
     if locked:
-        yield f"locked where they are while the joints that they mimic are at zero: {_listed(locked)}"
+        yield f"locked where they are while the joints that they mimic are at zero: {listed(locked)}"
     impossible = [link.name for link in links if _is_impossible(link.own_inertia)]
     if impossible:
         yield (
             "no body has the inertia tensor (a principal moment is larger than the sum of the others; "
-            f"postures ask for mass and centre of mass alone): {_listed(impossible)}"
+            f"postures ask for mass and centre of mass alone): {listed(impossible)}"
         )
 
 
-def _listed(names: Sequence[str]) -> str:
-    """The first names, and how many there are beside them."""
+def listed(names: Sequence[str]) -> str:
+    """The first of some names, and how many there are beside them."""
     more = len(names) - LISTED
     return ", ".join(names[:LISTED]) + (f" and {more} more" if more > 0 else "")
 

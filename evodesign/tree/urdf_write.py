@@ -26,7 +26,16 @@ from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.mesh_write import NO_MESHES, MeshNames, named_meshes
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
-__all__ = ["UNLIMITED", "numbers_text", "urdf_text"]
+__all__ = [
+    "UNLIMITED",
+    "add_inertial",
+    "add_joint",
+    "add_mesh",
+    "add_shape",
+    "numbers_text",
+    "robot_text",
+    "urdf_text",
+]
 
 UNLIMITED = sys.float_info.max
 """An infinite limit as URDF text. Effort and velocity must be given, and urdfdom (pinocchio's parser) refuses
@@ -47,29 +56,33 @@ def urdf_text(tree: Tree, meshes: MeshNames = NO_MESHES) -> str:
     for link in tree.links:
         _add_link(robot, link, meshes)
     for joint in tree.joints:
-        _add_joint(robot, joint)
+        add_joint(robot, joint)
+    return robot_text(robot)
+
+
+def robot_text(robot: etree._Element) -> str:
+    """A <robot> as indented XML."""
     text: bytes = etree.tostring(robot, pretty_print=True, xml_declaration=True, encoding="utf-8")
     return text.decode("utf-8")
 
 
 def _add_link(robot: etree._Element, link: Link, meshes: MeshNames) -> None:
     element = etree.SubElement(robot, "link", name=link.name)
-    _add_inertial(element, link.inertia)
+    add_inertial(element, link.inertia)
     files = named_meshes(link, meshes)
     for mesh, file in files:
-        visual = etree.SubElement(element, "visual")
-        _add_origin(visual, mesh.link_from_mesh)
-        etree.SubElement(etree.SubElement(visual, "geometry"), "mesh", filename=file)
+        add_mesh(element, "visual", file, mesh.link_from_mesh)
     if not files:
         for solid in link.solids:
-            _add_shape(element, "visual", solid.shape, solid.link_from_solid)
+            add_shape(element, "visual", solid.shape, solid.link_from_solid)
         for look in link.looks:
-            _add_shape(element, "visual", look.shape, look.link_from_look)
+            add_shape(element, "visual", look.shape, look.link_from_look)
     for solid in link.solids:
-        _add_shape(element, "collision", solid.shape, solid.link_from_solid)
+        add_shape(element, "collision", solid.shape, solid.link_from_solid)
 
 
-def _add_inertial(link: etree._Element, inertia: Inertia) -> None:
+def add_inertial(link: etree._Element, inertia: Inertia) -> None:
+    """What a <link> weighs, unless it has no mass."""
     mass = numbers_text([inertia.mass])
     if float(mass) == 0.0:
         return
@@ -80,7 +93,15 @@ def _add_inertial(link: etree._Element, inertia: Inertia) -> None:
     etree.SubElement(element, "inertia", {name: numbers_text([moment]) for name, moment in upper.items()})
 
 
-def _add_shape(link: etree._Element, role: str, shape: Shape, link_from_shape: Placement) -> None:
+def add_mesh(link: etree._Element, role: str, file: str, link_from_mesh: Placement) -> None:
+    """A mesh file as <visual> or <collision> of a <link>."""
+    element = etree.SubElement(link, role)
+    _add_origin(element, link_from_mesh)
+    etree.SubElement(etree.SubElement(element, "geometry"), "mesh", filename=file)
+
+
+def add_shape(link: etree._Element, role: str, shape: Shape, link_from_shape: Placement) -> None:
+    """A shape as <visual> or <collision> of a <link>."""
     element = etree.SubElement(link, role)
     _add_origin(element, link_from_shape)
     geometry = etree.SubElement(element, "geometry")
@@ -95,13 +116,14 @@ def _add_shape(link: etree._Element, role: str, shape: Shape, link_from_shape: P
             etree.SubElement(geometry, "box", size=numbers_text(shape.sides))
 
 
-def _add_joint(robot: etree._Element, joint: Joint) -> None:
+def add_joint(robot: etree._Element, joint: Joint) -> etree._Element:
+    """A joint of a <robot>, which is given back."""
     element = etree.SubElement(robot, "joint", name=joint.name, type=joint.kind.value)
     _add_origin(element, joint.parent_from_child)
     etree.SubElement(element, "parent", link=joint.parent)
     etree.SubElement(element, "child", link=joint.child)
     if joint.kind is JointKind.FIXED:
-        return
+        return element
     etree.SubElement(element, "axis", xyz=numbers_text(joint.axis))
     limits = {"effort": joint.effort, "velocity": joint.velocity}
     if joint.kind is not JointKind.CONTINUOUS:
@@ -109,6 +131,7 @@ def _add_joint(robot: etree._Element, joint: Joint) -> None:
     etree.SubElement(
         element, "limit", {name: numbers_text([_bounded(limit)]) for name, limit in limits.items()}
     )
+    return element
 
 
 def _add_origin(element: etree._Element, placement: Placement) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.problem.source import LONGEST_FILE
+from evodesign.problem.named_files import LONGEST_FILE
 from tests.cli.bounded import evodesign_bounded
 from tests.cli.test_bad_input import PROBLEM, ROBOT, assert_explained, evodesign, place, spoil
 

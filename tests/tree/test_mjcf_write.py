@@ -112,7 +112,8 @@ def from_mjcf_in_mujoco(case: Case) -> tuple[float, Poses]:
 
 def told(case: Case, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, Poses]:
     mujoco.mj_kinematics(model, data)
-    frames = {name: matrix(data.body(name).xmat, data.body(name).xpos) for name in case.tree.link_by_name}
+    bodies = [model.body(number).name for number in range(1, model.nbody)]
+    frames = {name: matrix(data.body(name).xmat, data.body(name).xpos) for name in bodies}
     return float(model.body_mass.sum()), frames
 
 
@@ -211,9 +212,23 @@ def test_names_are_kept_as_they_are() -> None:
     assert model.key(0).name == "1 m"
 
 
-def test_link_that_moves_without_mass_is_refused_by_name(problem: DesignProblem) -> None:
-    with pytest.raises(ModelError, match="mass, which MuJoCo asks of every link that moves"):
-        mjcf_text(problem.scene.human.tree, GRAVITY, {})
+def test_links_that_only_lie_between_joints_are_joints_of_one_body(problem: DesignProblem) -> None:
+    tree = problem.scene.human.tree
+    case = Case.random(tree, 5)
+    mass, poses = from_mjcf_in_mujoco(case)
+    assert mass == pytest.approx(sum(link.inertia.mass for link in tree.links), abs=TOLERANCE)
+    assert {link.name for link in tree.links if link.inertia.mass} <= set(poses) < set(tree.link_by_name)
+    ours = link_frames(tree, case.posture.world_from_root, case.posture.joints)
+    for name, pose in poses.items():
+        expected = matrix(ours[name].rotation, ours[name].translation)
+        np.testing.assert_allclose(pose, expected, rtol=0.0, atol=TOLERANCE)
+
+
+def test_link_that_moves_without_mass_is_refused_by_name() -> None:
+    links = (Link("body", (Solid(Sphere(0.1), Placement(), 1000.0),)), Link("flag"))
+    joint = Joint("mast", JointKind.REVOLUTE, "body", "flag", Placement(), lower=-1.0, upper=1.0)
+    with pytest.raises(ModelError, match="flag: wanted mass, which MuJoCo asks of every link that moves"):
+        mjcf_text(Tree("robot", links, (joint,)), GRAVITY, {})
 
 
 def test_link_called_world_is_refused() -> None:

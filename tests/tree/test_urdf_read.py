@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import copy
 import math
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -10,8 +11,11 @@ from lxml import etree
 
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.errors import ModelError
+from evodesign.problem.meshes import with_surfaces
+from evodesign.tree.mesh_write import mesh_files, vertices_of
 from evodesign.tree.model import JointKind, Mesh, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
+from evodesign.tree.urdf_write import urdf_text
 from tests.oracles.pinocchio_model import floating_model
 
 TENSOR = '<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/>'
@@ -145,6 +149,21 @@ MESH, ROD = '<mesh filename="nowhere/a.stl" scale="1 -1 2"/>', '<cylinder radius
 def test_collision_shapes_stand_in_for_visuals_with_a_mesh(seen):
     body = one_link(inertial(3.0) + seen + look(ROD, "collision"))
     assert [solid.shape for solid in body.solids] == [Cylinder(0.1, 0.5)]
+
+
+def test_a_shape_that_is_seen_beside_a_mesh_is_a_mesh_itself() -> None:
+    body = one_link(inertial(3.0) + look(MESH) + look(ROD), InertiaRule.AUTO)
+    assert [mesh.file for mesh in body.meshes] == ["nowhere/a.stl", "cylinder"]
+    rod = body.meshes[1]
+    assert rod.volume == pytest.approx(0.1**2 * math.pi * 0.5)
+    assert np.abs(vertices_of(rod)).max(axis=0) == pytest.approx([0.1, 0.1, 0.25], rel=4e-3)
+    assert body.shown == (), "the file of the other is not known"
+    assert mesh_files(Tree("r", (body,), ()), "meshes") == ({}, {})
+    known = Tree("r", (replace(body, meshes=(replace(body.meshes[0], surface=rod.surface), rod)),), ())
+    assert with_surfaces(known, {}, "p.toml") == known
+    names, files = mesh_files(known, "meshes")
+    assert [*files] == ["meshes/a.stl", "meshes/cylinder.stl"]
+    assert all(f'filename="{file}"' in urdf_text(known, names) for file in files)
 
 
 @pytest.mark.parametrize("touched", ["", look(MESH, "collision"), look(MESH + "", "collision") * 2])

@@ -95,7 +95,8 @@ class BodyPlan:
     def joints(self) -> tuple[str, ...]:
         """Names of the joints between hands and feet, in the file's order."""
         moving = {joint for limb in (*self.legs.values(), *self.arms.values()) for joint in limb.joints}
-        moving |= {body.joint.name for body in self.trunk[1:] if body.joint is not None}
+        inside = {name for body in self.trunk for name in body.links}
+        moving |= {body.joint.name for body in self.trunk if body.joint and body.joint.parent in inside}
         return tuple(name for name in self.welded.tree.actuated if name in moving)
 
 

@@ -125,8 +125,9 @@ def _trunk(plan: BodyPlan) -> Group:
             break
         way: Vector = (0.0, 0.0, rises[i])
         joint = nexts[i].joint
-        links = _on_the_way(plan.welded, plan.trunk[i], joint.parent if joint else "", ends[i])
-        for link, _ in links:
+        if joint is None or joint.parent not in plan.trunk[i].links:
+            continue  # it hangs on the next one, where the root is the chest
+        for link, _ in _on_the_way(plan.welded, plan.trunk[i], joint.parent, ends[i]):
             if _grows_along(plan.welded, link, way):
                 return Group("trunk", (link,), rises[i])
     return Group("trunk", (), 0.0, "no link of the trunk grows upwards")

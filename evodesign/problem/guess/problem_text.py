@@ -1,4 +1,4 @@
-"""A problem file for a robot, from what its URDF says and what was guessed; each guess with its reason.
+"""A problem file for a robot, from what its file says and what was guessed; each guess with its reason.
 
 What could not be guessed is `FILL IN` in the file, which no link is called, so that `check` names its key.
 """
@@ -78,7 +78,7 @@ def _ground(plan: BodyPlan, found: Contacts) -> float:
 
 def _head(tree: Tree, urdf: str) -> Sequence[str]:
     return (
-        f"# A problem for {json.dumps(tree.name)}, guessed from its URDF by `evodesign init`.",
+        f"# A problem for {json.dumps(tree.name)}, guessed from its file by `evodesign init`.",
         "# `evodesign check` shows what the guesses mean; evodesign's README describes all keys.",
         f"name = {json.dumps(tree.name)}",
         "",

@@ -72,6 +72,22 @@ def test_joints_are_those_between_hands_and_feet() -> None:
     assert plan.arms["right"].bodies[plan.arms["right"].bend].name == "right_forearm"
 
 
+def test_a_robot_whose_root_is_its_chest_has_the_same_limbs_and_joints() -> None:
+    tree = humanoid(Build())
+    waist = tree.joint_by_name["waist"]
+    hanging = replace(
+        waist, parent="chest", child="pelvis", parent_from_child=waist.parent_from_child.inverse
+    )
+    others = (joint for joint in tree.joints if joint.name not in ("waist", "turn"))
+    links = tuple(link for link in tree.links if link.name != "base")
+    plan, usual = body_plan(Tree("hanging", links, (hanging, *others))), body_plan(tree)
+    assert sorted(plan.joints) == sorted(usual.joints)
+    assert foot_names(plan) == foot_names(usual)
+    assert [body.name for body in plan.trunk] == ["pelvis", "chest"]
+    named = {group.name: group.links for group in groups(plan)}
+    assert named == {group.name: group.links for group in groups(usual)}
+
+
 def test_nothing_says_where_it_looks() -> None:
     plan = body_plan(humanoid(Build(named=left, knee=NO_KNEE, toe=0.0)))
     assert (plan.facing, plan.why) == (None, "knees, names and feet do not say where it looks")

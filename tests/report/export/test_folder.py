@@ -13,6 +13,7 @@ import pytest
 import yourdfpy
 from mcap.reader import make_reader
 
+from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.build import DesignProblem
@@ -28,6 +29,7 @@ from evodesign.records import (
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
 from evodesign.report.scene_models import SceneModels, SceneSet
+from evodesign.tree.model import Joint, JointKind, Link, Tree
 from tests.report.scenes import hold_json, random_detail, random_values
 from tests.tree.crane import crane
 
@@ -202,7 +204,10 @@ def test_robot_that_mujoco_cannot_hold_is_exported_as_urdf_only(
     problem: DesignProblem, tmp_path: Path
 ) -> None:
     design = design_of(problem, Detail(evaluation=0, cases=()))
-    trees = {ROBOT: problem.scene.human.tree, "human": crane()}
+    bare = crane()
+    mast = Joint("mast", JointKind.REVOLUTE, bare.root, "pennant", Placement(), lower=-1.0, upper=1.0)
+    robot = Tree("crane", (*bare.links, Link("pennant")), (*bare.joints, mast))
+    trees = {ROBOT: robot, "human": bare}
     (only,) = design.scene_set.models
     scene_set = SceneSet((SceneModels(only.agents, trees, only.payload),))
     other = ExportedDesign(design.run, design.header, design.evaluation, scene_set, ())

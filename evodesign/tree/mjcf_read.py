@@ -1,0 +1,290 @@
+"""An MJCF robot as URDF text, by way of MuJoCo's own compiler, which resolves includes, defaults and angles.
+
+    body             link of the same name and frame; the one below the world that carries joints is the root
+                     and floats; if it is turned in the file, it is fixed to a root with the world's axes
+    hinge, slide     joint at its anchor, with MuJoCo's positions (also where `ref` is not zero); links
+                     without mass lie between joints of one body, and between an anchor and a body's origin
+    joint equality   mimic joint, or a fixed one where it follows nothing
+    actuators        effort limit (`mjcf_effort`)
+    site             link without mass
+    geom             visual and collision (`mjcf_geoms`)
+
+What a tree does not have is told in <note>, which `read_urdf` passes on; a robot with ball joints is refused.
+Nobody who reads the URDF needs MuJoCo: a run or a copied problem is read without it.
+
+Source: MuJoCo XML reference (body, joint, equality); MuJoCo's mj_kinematics.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lxml import etree
+
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Placement, scale
+from evodesign.errors import ModelError
+from evodesign.tree.frames import parent_from_child
+from evodesign.tree.mjcf_effort import acts_on, effort_limit
+from evodesign.tree.mjcf_geoms import add_geoms, is_left_out, placement, vector
+from evodesign.tree.model import Joint, JointKind
+from evodesign.tree.urdf_read import listed
+from evodesign.tree.urdf_write import add_inertial, add_joint, numbers_text, robot_text
+
+__all__ = ["TranslatedRobot", "is_mjcf", "translated"]
+
+FIRST_ELEMENT = re.compile(r"\ufeff?(?:\s+|<\?.*?\?>|<!--.*?-->)*+<mujoco\b", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class TranslatedRobot:
+    """A robot's URDF, and the meshes that came with it, as binary STL [m] by their names in it."""
+
+    urdf: str
+    meshes: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def is_mjcf(text: str) -> bool:
+    """Whether the outermost element of an XML text is <mujoco>."""
+    return FIRST_ELEMENT.match(text) is not None
+
+
+def translated(path: Path, source: str) -> TranslatedRobot:
+    """The robot of an MJCF file.
+
+    Args:
+        path: of the file; what it includes and its meshes are found from there.
+        source: the file's name, for messages.
+    Raises:
+        ImportError: MuJoCo is not installed.
+        ModelError: MuJoCo cannot compile the file, or it holds no robot, several, or one with ball joints.
+    """
+    import mujoco
+
+    model, touching, said = _compiled(mujoco, path, source)
+    root = _root(model, source)
+    bodies = tuple(body for body in range(1, model.nbody) if model.body_rootid[body] == root)
+    moving = [joint for joint in range(model.njnt) if model.jnt_bodyid[joint] in bodies[1:]]
+    of_links, of_joints = _Names(set()), _Names(set())
+    links = {body: of_links.of(model.body(body).name or f"body_{body}") for body in bodies}
+    joints = {joint: of_joints.of(model.joint(joint).name or f"joint_{joint}") for joint in moving}
+    return _Translation(mujoco, model, source, links, joints, of_links, of_joints, touching, said).result()
+
+
+def _compiled(mujoco: Any, path: Path, source: str) -> tuple[Any, frozenset[int], tuple[str, ...]]:
+    """A model whose geoms touch nothing, those that touch in the file, and what MuJoCo warns of."""
+    try:
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            spec = mujoco.MjSpec.from_file(str(path))
+            touching = [geom for geom in spec.geoms if geom.contype or geom.conaffinity]
+            for geom in touching:  # else convex hulls are made of all meshes that touch, for seconds
+                geom.contype = geom.conaffinity = 0
+            spec.compiler.discardvisual = False
+            model = spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        found = " ".join(str(error).split())
+        raise ModelError(source, "", "an MJCF file that MuJoCo compiles", found) from error
+    said = tuple(" ".join(f"MuJoCo says: {each.message}".split()) for each in warned)
+    return model, frozenset(geom.id for geom in touching), said
+
+
+def _root(model: Any, source: str) -> int:
+    """The body below the world that carries joints."""
+    roots = model.body_rootid[model.jnt_bodyid]
+    carrying = sorted(set(roots[model.jnt_bodyid != roots].tolist()))
+    if len(carrying) != 1:
+        found = ", ".join(f"'{model.body(body).name}'" for body in carrying) or "none"
+        raise ModelError(source, "worldbody", "one body that carries others on hinges or slides", found)
+    return int(carrying[0])
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """Names that are taken."""
+
+    taken: set[str]
+
+    def of(self, name: str, suffix: str = "_") -> str:
+        """The name, or a longer one where another has it."""
+        while name in self.taken:
+            name += suffix
+        self.taken.add(name)
+        return name
+
+
+@dataclass(frozen=True, slots=True)
+class _Translation:
+    """A compiled model, names of its robot's links by body, the root first, and of its joints.
+
+    `touching` are the geoms that touch others, `said` what MuJoCo warned of.
+    """
+
+    mujoco: Any
+    model: Any
+    source: str
+    links: Mapping[int, str]
+    joints: Mapping[int, str]
+    link_names: _Names
+    joint_names: _Names
+    touching: frozenset[int]
+    said: tuple[str, ...]
+
+    def result(self) -> TranslatedRobot:
+        """The robot."""
+        robot = etree.Element("robot", name=self.model.names.split(b"\0")[0].decode(errors="replace"))
+        meshes: dict[str, bytes] = {}
+        for body, name in self.links.items():
+            link = etree.SubElement(robot, "link", name=name)
+            add_inertial(link, self._inertia(body))
+            meshes |= add_geoms(link, self.mujoco, self.model, body, self.touching)
+        coupled, root = self._coupled(), next(iter(self.links))
+        turned = placement((0.0, 0.0, 0.0), self.model.body_quat[root])
+        if turned != Placement():
+            upright = self.link_names.of(f"{self.links[root]}_upright")
+            etree.SubElement(robot, "link", name=upright)
+            add_joint(robot, self._weld(upright, self.links[root], turned))
+        for body in [*self.links][1:]:
+            for joint in self._above(body):
+                self._add(robot, joint, coupled)
+        for site in range(self.model.nsite):
+            body, name = int(self.model.site_bodyid[site]), self.model.site(site).name
+            if name and body in self.links:
+                place = placement(self.model.site_pos[site], self.model.site_quat[site])
+                self._add(robot, self._weld(self.links[body], self.link_names.of(name, "_site"), place), {})
+        for note in self._notes():
+            etree.SubElement(robot, "note", text=note)
+        return TranslatedRobot(robot_text(robot), meshes)
+
+    def _inertia(self, body: int) -> Inertia:
+        """In the body's frame, of principal moments along axes of their own."""
+        model = self.model
+        x, y, z = model.body_inertia[body].tolist()
+        principal = Inertia(float(model.body_mass[body]), about_center=((x, 0, 0), (0, y, 0), (0, 0, z)))
+        return principal.moved(placement(model.body_ipos[body], model.body_iquat[body]))
+
+    def _above(self, body: int) -> Iterator[Joint]:
+        """The joints of a body, from its parent on; a fixed one where it has none."""
+        model, name = self.model, self.links[body]
+        parent = self.links[int(model.body_parentid[body])]
+        place = placement(model.body_pos[body], model.body_quat[body])
+        end = model.body_jntadr[body] + model.body_jntnum[body]
+        for number in range(end - model.body_jntnum[body], end):
+            anchor = vector(model.jnt_pos[number])
+            at_origin = number == end - 1 and not any(anchor)
+            child = name if at_origin else self.link_names.of(f"{name}_below_{self.joints[number]}")
+            yield self._joint(number, parent, child, place @ Placement(translation=anchor))
+            parent, place = child, Placement(translation=scale(-1.0, anchor))
+        if parent != name:
+            yield self._weld(parent, name, place)
+
+    def _weld(self, parent: str, child: str, place: Placement) -> Joint:
+        return Joint(self.joint_names.of(f"{child}_fixed_joint"), JointKind.FIXED, parent, child, place)
+
+    def _joint(self, number: int, parent: str, child: str, place: Placement) -> Joint:
+        """A hinge or slide; `place` is where it puts the child at its `ref`."""
+        model, name = self.model, self.joints[number]
+        kinds = {
+            int(self.mujoco.mjtJoint.mjJNT_HINGE): JointKind.REVOLUTE,
+            int(self.mujoco.mjtJoint.mjJNT_SLIDE): JointKind.PRISMATIC,
+        }
+        kind = kinds.get(int(model.jnt_type[number]))
+        if kind is None:
+            wanted = "hinges and slides (three hinges turn as a ball joint does)"
+            raise ModelError(self.source, f"joint {name}", wanted, "a ball joint")
+        lower, upper = -math.inf, math.inf
+        if model.jnt_limited[number]:
+            lower, upper = model.jnt_range[number].tolist()
+        elif kind is JointKind.REVOLUTE:
+            kind = JointKind.CONTINUOUS
+        effort, axis = effort_limit(self.mujoco, model, number), vector(model.jnt_axis[number])
+        at_ref = Joint(name, kind, parent, child, place, axis, lower, upper, effort)
+        return replace(at_ref, parent_from_child=parent_from_child(at_ref, -self._ref(number)))
+
+    def _ref(self, joint: int) -> float:
+        return float(self.model.qpos0[self.model.jnt_qposadr[joint]])
+
+    def _coupled(self) -> dict[str, tuple[str, float, float]]:
+        """By the name of a joint that an equality moves, the one that it follows, if any, slope and offset.
+
+        With references r and coefficients c:  q - r = sum c_k (p - r_p)^k, of which q at p = 0 is the offset.
+        """
+        found = {}
+        for number in self._equalities(self.mujoco.mjtEq.mjEQ_JOINT):
+            moved, followed = int(self.model.eq_obj1id[number]), int(self.model.eq_obj2id[number])
+            if moved in self.joints:
+                leader, at = self.joints.get(followed, ""), 0.0
+                if leader:
+                    at = -self._ref(followed)
+                coefficients = self.model.eq_data[number, :5]
+                offset = self._ref(moved) + float(np.polynomial.polynomial.polyval(at, coefficients))
+                found[self.joints[moved]] = (leader, float(coefficients[1]), offset)
+        return found
+
+    def _equalities(self, *kinds: Any) -> list[int]:
+        """Constraints of some kinds that hold from the beginning."""
+        model, wanted = self.model, {int(kind) for kind in kinds}
+        return [
+            each for each in range(model.neq) if model.eq_active0[each] and int(model.eq_type[each]) in wanted
+        ]
+
+    def _add(
+        self, robot: etree._Element, joint: Joint, coupled: Mapping[str, tuple[str, float, float]]
+    ) -> None:
+        """A joint, and its child where that is no body's."""
+        if joint.child not in self.links.values():
+            etree.SubElement(robot, "link", name=joint.child)
+        leader, slope, offset = coupled.get(joint.name, ("", 0.0, 0.0))
+        if joint.name in coupled and not leader:
+            held = parent_from_child(joint, offset)
+            joint = Joint(joint.name, JointKind.FIXED, joint.parent, joint.child, held)
+        element = add_joint(robot, joint)
+        if leader:
+            multiplier, start = numbers_text([slope]), numbers_text([offset])
+            etree.SubElement(element, "mimic", joint=leader, multiplier=multiplier, offset=start)
+
+    def _notes(self) -> Iterator[str]:
+        """Sentences on what a tree does not have."""
+        model, kinds = self.model, self.mujoco.mjtEq
+        left_out = {
+            "no part of the robot, and left out": [
+                model.body(body).name or f"body {body}"
+                for body in range(1, model.nbody)
+                if model.body_rootid[body] == body and body not in self.links
+            ],
+            "the robot floats without its joints to the world": [
+                model.joint(joint).name
+                for joint in range(model.njnt)
+                if model.jnt_bodyid[joint] == next(iter(self.links))
+                and model.jnt_type[joint] != self.mujoco.mjtJoint.mjJNT_FREE
+            ],
+            "locked where an equality holds them": [
+                name for name, (leader, _, _) in self._coupled().items() if not leader
+            ],
+            "what these equalities tie together moves freely": [
+                model.equality(each).name or f"equality {each}"
+                for each in self._equalities(kinds.mjEQ_CONNECT, kinds.mjEQ_WELD, kinds.mjEQ_TENDON)
+            ],
+            "no actuator acts directly on": [
+                name for joint, name in self.joints.items() if not acts_on(self.mujoco, model, joint)
+            ],
+            "geoms that are left out, as they have no size": [
+                model.geom(geom).name or f"geom {geom}"
+                for geom in range(model.ngeom)
+                if int(model.geom_bodyid[geom]) in self.links and is_left_out(self.mujoco, model, geom)
+            ],
+            "weights that MuJoCo compensates count nevertheless": [
+                name for body, name in self.links.items() if model.body_gravcomp[body]
+            ],
+        }
+        if not len(model.actuator_trntype):
+            del left_out["no actuator acts directly on"]
+        yield from self.said
+        yield from (f"{what}: {listed(names)}" for what, names in left_out.items() if names)
