@@ -124,13 +124,17 @@ class NativeMethod:
         vectors = [vector.ctypes.data for vector in (self._parameters, *self._vectors)]
         self._addresses = (solver, None, *vectors, ctypes.addressof(self._outcome))
 
-    def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
-        """Solve from a start, in the program's own units."""
+    def solve(
+        self, options: SolverOptions, start: Array, parameters: Array, hopeless: float = math.inf
+    ) -> Ending:
+        """Solve from a start, in the program's own units, unless that turns out hopeless."""
         x, bounds, rows, given, fixed = self._vectors
         x[:] = start[self._free]
         self._parameters[:] = parameters
         solver, _, *rest = self._addresses
-        self._solve(solver, ctypes.addressof(_settings(options)), *rest)
+        settings = _settings(options)
+        settings.hopeless = hopeless
+        self._solve(solver, ctypes.addressof(settings), *rest)
         symbols, forces = np.empty(len(start)), np.empty(len(start))
         symbols[self._free], symbols[self._fixed] = x, self._values
         forces[self._free], forces[self._fixed] = bounds, -fixed
@@ -156,7 +160,6 @@ def _settings(options: SolverOptions) -> _Options:
         barrier=NEAR_BARRIER if near else BARRIER,
         push=NEAR_PUSH if near else PUSH,
         relaxation=0.0 if near else min(options.tolerance, RELAXATION),
-        hopeless=math.inf,
         iterations=options.iterations,
         near=near,
     )

@@ -144,7 +144,9 @@ class JointPostures:
         self, design: Sequence[float], task: Task, starts: Sequence[tuple[str, Start]], checker: Checker
     ) -> Trial:
         parameters, program = {"design": design, **self._beside(task)}, self._solver.program
-        ends = [(name, self._solver.solve(parameters, filled(start, program))) for name, start in starts]
+        names = [name for name, _ in starts]
+        solves = self._solver.solve_all(parameters, (filled(start, program) for _, start in starts))
+        ends = list(zip(names, solves, strict=True))
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             layout, scene = layout_of(program), self._setting.scene
