@@ -116,7 +116,7 @@ class Solver:
     def solve_all(
         self, parameters: Mapping[str, Any], starts: Iterable[Mapping[str, Array]]
     ) -> list[RawSolution]:
-        """Solve from each start; the least cost counts, which is positive: what will be dearer is given up."""
+        """Solve from each start; the least cost counts (it is positive): what is dearer is given up."""
         ends: list[RawSolution] = []
         for start in starts:
             costs = [end.cost for end in ends if end.status is Status.SOLVED]

@@ -23,7 +23,8 @@ import msgspec
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.nlp.codegen import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import MethodName, SolverOptions
+from evodesign.nlp.native.library import method_library
 from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
@@ -176,10 +177,10 @@ def _compilation(
         return None
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
-        progress.note(
-            f"{compiler.reason}: solving on CasADi's virtual machine, slower and with equal results"
-        )
+        progress.note(f"{compiler.reason}: IPOPT solves, on CasADi's virtual machine, many times slower")
         return None
+    if options.method is MethodName.IPOPT and isinstance(native := method_library(), NotCompiled):
+        progress.note(f"{native.reason}: IPOPT solves, several times slower")
     cache, key = _cache("ready", progress), digest((name, code_digest(kind.__module__), compiler))
     return None if cache is not None and cache.read(key) else _Compilation(cache, key)
 
