@@ -90,8 +90,9 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="session")
 def known(problem: DesignProblem) -> Precomputed:
     """What is worked out of the default problem beforehand, where commands started by tests find it too."""
-    cache = user_cache("precomputed", os.environ)
+    cache, compiled = user_cache("precomputed", os.environ), build_problem(problem.source)
     with cache.lock("default"), JoblibPool(2) as pool:
+        precomputed(compiled, cache, pool, PrecomputeProgress())
         return precomputed(problem, cache, pool, PrecomputeProgress())
 
 

@@ -39,7 +39,7 @@ class SolverOptions:
         compiled: whether the program's functions run as machine code; results are the same, sooner.
         near: whether solves begin at a solution, to be found again more exactly: the barrier starts small,
             and bounds are taken as they are.
-        method: who solves compiled programs; IPOPT solves the others.
+        method: who solves; IPOPT, whatever is asked for, where nothing is compiled.
     """
 
     tolerance: float = 1e-8
@@ -48,6 +48,11 @@ class SolverOptions:
     compiled: bool = False
     near: bool = False
     method: MethodName = MethodName.IPOPT
+
+    def __post_init__(self) -> None:
+        """Native is compiled."""
+        if not self.compiled:
+            object.__setattr__(self, "method", MethodName.IPOPT)
 
 
 @dataclass(frozen=True, slots=True)

@@ -101,7 +101,7 @@ class Solver:
     @cached_property
     def by_ipopt(self) -> Solver:
         """The same program for what the native method does not solve; too seldom to compile for."""
-        return Solver(self.program, replace(self.options, method=MethodName.IPOPT, compiled=False))
+        return Solver(self.program, replace(self.options, compiled=False))
 
     @property
     def native(self) -> bool:
@@ -148,7 +148,7 @@ def _made(
     program: Program, options: SolverOptions
 ) -> tuple[CompiledFunctions | Library | NotCompiled, Method]:
     """A program's machine code, or why there is none, and who solves it."""
-    if options.compiled and options.method is MethodName.NATIVE:
+    if options.method is MethodName.NATIVE:
         native = native_method(program)
         if not isinstance(native, NotCompiled):
             return native.functions, native
@@ -157,11 +157,10 @@ def _made(
 
 
 def available(options: SolverOptions) -> SolverOptions:
-    """The options with the method that can be had here: IPOPT where nothing is, or can be, compiled."""
-    native = options.method is MethodName.NATIVE and options.compiled
-    if native and not isinstance(method_library(), NotCompiled):
-        return options
-    return replace(options, method=MethodName.IPOPT)
+    """The options with the method that can be had here: IPOPT where nothing can be compiled."""
+    if options.method is MethodName.NATIVE and isinstance(method_library(), NotCompiled):
+        return replace(options, method=MethodName.IPOPT)
+    return options
 
 
 class SolverCache:

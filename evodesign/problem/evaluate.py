@@ -128,7 +128,7 @@ class Evaluator:
     @cached_property
     def _judge(self) -> Evaluator:
         """The same, solved by IPOPT; too seldom to compile for."""
-        options = replace(self.problem.options, method=MethodName.IPOPT, compiled=False)
+        options = replace(self.problem.options, compiled=False)
         return Evaluator(replace(self.problem, options=options), self.known)
 
     def assess_values(self, values: Sequence[float]) -> Assessed:

@@ -107,7 +107,9 @@ NO_PART_OF_PIECES: Exceptions = {
     Piece: {"pair": "says which scene that is"},
     Agent: {"label": "is a word for results"},
     Payload: {"label": "is a word for results"},
-    SolverOptions: {"compiled": "machine code gives the same bits"},
+    SolverOptions: {
+        "compiled": "IPOPT gives the same bits with machine code, and the native method has no other"
+    },
 }
 
 NO_PART_OF_A_PERSONS: Exceptions = {
