@@ -273,13 +273,21 @@ class BodyState:
         """J, shape (6, v), and dJ/dt nu of a frame's linear and angular velocity in the frame's own axes."""
         identity = self._identity(frame)
         drift = pin.getFrameAcceleration(self.body.model, self.data, identity, pin.LOCAL)
-        return self._jacobian(identity, pin.LOCAL), np.array(drift.vector)
+        return self.jacobian_in_frame(frame), np.array(drift.vector)
 
     def twist_in_world(self, frame: str) -> tuple[Array, Array]:
         """J, shape (6, v), and dJ/dt nu of a frame's linear and angular velocity in world axes."""
         identity, axes = self._identity(frame), pin.LOCAL_WORLD_ALIGNED
         drift = pin.getFrameClassicalAcceleration(self.body.model, self.data, identity, axes)
-        return self._jacobian(identity, axes), np.array(drift.vector)
+        return self.jacobian_in_world(frame), np.array(drift.vector)
+
+    def jacobian_in_frame(self, frame: str) -> Array:
+        """J, shape (6, v), of a frame's linear and angular velocity in the frame's own axes."""
+        return self._jacobian(frame, pin.LOCAL)
+
+    def jacobian_in_world(self, frame: str) -> Array:
+        """J, shape (6, v), of a frame's linear and angular velocity in world axes."""
+        return self._jacobian(frame, pin.LOCAL_WORLD_ALIGNED)
 
     def pose(self, frame: str) -> tuple[Array, Array]:
         """Rotation, shape (3, 3), and origin [m], shape (3,), of a frame in the world."""
@@ -289,6 +297,6 @@ class BodyState:
     def _identity(self, frame: str) -> int:
         return int(self.body.model.getFrameId(frame, pin.FrameType.BODY))
 
-    def _jacobian(self, identity: int, axes: Any) -> Array:
-        jacobian = np.array(pin.getFrameJacobian(self.body.model, self.data, identity, axes))
-        return jacobian[:, self.body.order]
+    def _jacobian(self, frame: str, axes: Any) -> Array:
+        jacobian = pin.getFrameJacobian(self.body.model, self.data, self._identity(frame), axes)
+        return np.asarray(jacobian[:, self.body.order])

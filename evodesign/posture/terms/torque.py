@@ -97,10 +97,10 @@ def residuals(body: MeasuredBody) -> Iterator[Residual]:
     push = np.array(body.disturbance.push_on(PushedAt(agent.name)))
     if push.any():
         in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ push
-        rows -= state.twist_in_world(agent.pushed_frame)[0][:3].T @ in_agent
+        rows -= state.jacobian_in_world(agent.pushed_frame)[:3].T @ in_agent
     for side in SIDES:
-        rows -= state.twist_in_world(agent.hands[side])[0].T @ posture.hand_wrenches[side]
-        rows -= state.twist_in_frame(agent.soles[side])[0].T @ posture.foot_wrenches[side]
+        rows -= state.jacobian_in_world(agent.hands[side]).T @ posture.hand_wrenches[side]
+        rows -= state.jacobian_in_frame(agent.soles[side]).T @ posture.foot_wrenches[side]
     base, joints = np.abs(rows[:ROOT]), rows[ROOT:]
     wrong = float(np.abs(joints - [posture.torques[name] for name in agent.joints]).max())
     yield Residual("torque", wrong, "N m", "joint torques")
