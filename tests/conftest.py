@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import pytest
 from hypothesis import settings
 
@@ -67,7 +68,8 @@ def repository() -> Path:
 @pytest.fixture(scope="session")
 def problem() -> DesignProblem:
     """The default problem, without compiling what tests make of it: that takes longer than it saves them."""
-    built = build_problem(read_source(REPOSITORY / "problems" / "icub_lifting.toml"))
+    source = read_source(REPOSITORY / "problems" / "icub_lifting.toml")
+    built = build_problem(msgspec.structs.replace(source, method="ipopt"))
     return replace(built, options=replace(built.options, compiled=False))
 
 
@@ -90,7 +92,8 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="session")
 def known(problem: DesignProblem) -> Precomputed:
     """What is worked out of the default problem beforehand, where commands started by tests find it too."""
-    cache, compiled = user_cache("precomputed", os.environ), build_problem(problem.source)
+    cache = user_cache("precomputed", os.environ)
+    compiled = build_problem(msgspec.structs.replace(problem.source, method=None))
     with cache.lock("default"), JoblibPool(2) as pool:
         precomputed(compiled, cache, pool, PrecomputeProgress())
         return precomputed(problem, cache, pool, PrecomputeProgress())
