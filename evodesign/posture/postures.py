@@ -152,6 +152,8 @@ class PostureProblem:
         portfolio = self._known.starts(task)
         if self._symmetry is Symmetry.OFF:
             yield WHOLE, portfolio
+            if portfolio:
+                yield WHOLE, ()
             return
         if task in self._values:
             yield DECOUPLED, portfolio

@@ -10,23 +10,30 @@ import pytest
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
+from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 
 
-def solve(problem: DesignProblem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
+def solve(
+    problem: DesignProblem,
+    symmetry: Symmetry,
+    height: float = 1.0,
+    known: Precomputed = NOTHING_PRECOMPUTED,
+) -> CaseSolution:
     scene, space = problem.scene, problem.space
     values = space.unscaled(scene.robot.tree)
     checker = Checker(
         scene, space.resized(scene.robot.tree, values), AgentModel.of(scene.human, scene.human.tree)
     )
-    return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry).solve(
+    return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry, known).solve(
         values, Hold(height_m=height), checker
     )
 
@@ -73,6 +80,17 @@ def test_symmetric_reach_is_the_whole_reach(problem: DesignProblem) -> None:
         for symmetric in (True, False)
     ]
     assert highest[0] == pytest.approx(highest[1], abs=1e-3)
+
+
+def test_a_whole_posture_that_no_known_start_leads_to_is_sought_from_the_fixed_starts(
+    problem: DesignProblem,
+) -> None:
+    hurried = replace(problem, options=replace(problem.options, iterations=2))
+    joints = {"robot.joints": np.zeros(len(problem.scene.robot.joints))}
+    portfolio = StartPortfolio((joints,), Coverage(0, 0, 0.0))
+    solution = solve(hurried, Symmetry.OFF, known=Precomputed(postures={Hold(height_m=1.0): portfolio}))
+    starts = ["whole: start 1", "whole: fixed start 1", "whole: fixed start 2"]
+    assert [attempt.name for attempt in solution.attempts] == starts
 
 
 def test_half_holds_the_left_and_the_middle(problem: DesignProblem) -> None:
