@@ -25,6 +25,7 @@ from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
+from evodesign.posture.starts import PEOPLE
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.tasks import Task, TaskRecord
 
@@ -54,7 +55,8 @@ def _whole(
     name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
 ) -> JointPostures:
     forms = (whole(setting.scene.robot), whole(setting.scene.human))
-    return JointPostures(name, forms, setting, solvers, kind)
+    people = [start for found in known.postures.values() for start in found.starts[:PEOPLE]]
+    return JointPostures(name, forms, setting, solvers, kind, people)
 
 
 FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}

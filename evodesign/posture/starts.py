@@ -12,11 +12,14 @@ from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 
-__all__ = ["STARTS_BESIDE", "fixed_starts", "named_starts", "person_starts"]
+__all__ = ["PEOPLE", "STARTS_BESIDE", "beside_people", "fixed_starts", "named_starts", "person_starts"]
 
 
 STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
+
+PEOPLE = 4
+"""Starts of each portfolio whose people are put beside the best robot found so far."""
 
 SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
 """Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.
@@ -53,6 +56,26 @@ def named_starts(
     fitting = [start for start in portfolio if all(len(v) == rows[n] for n, v in start.items() if n in rows)]
     kind, starts = ("start", fitting) if fitting else ("fixed start", fixed)
     return [(f"{kind} {number}", start) for number, start in enumerate(starts, 1)]
+
+
+def beside_people(program: Program, found: Start, people: Sequence[Start]) -> list[Start]:
+    """A solution's values with the person of other starts in place of its own.
+
+    Robot and person have several ways to stand each, and only the load couples them: starts of both together
+    hold few of all the pairs.
+
+    Args:
+        program: of both agents.
+        found: a solution's values.
+        people: starts; those that do not fit the person's variables, made for another form, are left out.
+    """
+    rows = {
+        variable.name: variable.symbol.numel()
+        for variable in program.variables
+        if isinstance(variable.key, Slot) and variable.key.party == HUMAN
+    }
+    fitting = [start for start in people if all(len(start.get(name, ())) == n for name, n in rows.items())]
+    return [{**found, **{name: start[name] for name in rows}} for start in fitting]
 
 
 def _joints(program: Program) -> list[tuple[str, Variable]]:

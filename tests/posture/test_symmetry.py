@@ -17,6 +17,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
+from evodesign.posture.starts import beside_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
@@ -91,6 +92,39 @@ def test_a_whole_posture_that_no_known_start_leads_to_is_sought_from_the_fixed_s
     solution = solve(hurried, Symmetry.OFF, known=Precomputed(postures={Hold(height_m=1.0): portfolio}))
     starts = ["whole: start 1", "whole: fixed start 1", "whole: fixed start 2"]
     assert [attempt.name for attempt in solution.attempts] == starts
+
+
+def test_the_people_of_all_starts_are_tried_beside_the_best_robot(problem: DesignProblem) -> None:
+    space, task, other = problem.space, Hold(height_m=1.0), Hold(height_m=1.1)
+    landscape = PostureProblem(
+        Setting(problem.scene, space, problem.weights, problem.options), Symmetry.OFF
+    ).landscape(task)
+    ends = [landscape.solve(space.unscaled(problem.scene.robot.tree), start) for start in landscape.starts]
+    first, second = (StartPortfolio((end.values,), Coverage(0, 0, 0.0)) for end in ends)
+    solution = solve(problem, Symmetry.OFF, known=Precomputed(postures={task: first, other: second}))
+    names = ["whole: start 1", "whole: start 1, person 1", "whole: start 1, person 2"]
+    assert [attempt.name for attempt in solution.attempts] == names
+    assert solution.attempt is not None
+    assert solution.attempt.cost == cost(solution)
+
+
+def test_a_person_of_another_form_is_not_put_beside_a_robot(problem: DesignProblem) -> None:
+    setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
+    half_program, program = (
+        PostureProblem(setting, symmetry).landscape(Hold(height_m=1.0)).solver.program
+        for symmetry in (Symmetry.ON, Symmetry.OFF)
+    )
+    half_start, start = (
+        {variable.name: variable.start for variable in each.variables} for each in (half_program, program)
+    )
+    raised = {
+        **start,
+        "human.joints": start["human.joints"] + 0.1,
+        "robot.joints": start["robot.joints"] + 0.1,
+    }
+    (beside,) = beside_people(program, start, [half_start, raised, {"robot.joints": start["robot.joints"]}])
+    assert np.array_equal(beside["human.joints"], raised["human.joints"])
+    assert np.array_equal(beside["robot.joints"], start["robot.joints"])
 
 
 def test_half_holds_the_left_and_the_middle(problem: DesignProblem) -> None:

@@ -31,11 +31,12 @@ from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import aggregated, with_worst
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
+from evodesign.posture.starts import STARTS_BESIDE, beside_people, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, instants_of, layout_of, start_from
+from evodesign.records import Status
 from evodesign.tasks import Hold, Task, TaskRecord
 
 __all__ = ["JointPostures", "posture_program"]
@@ -50,6 +51,7 @@ class JointPostures:
         setting: of the problem.
         solvers: of other scenes.
         kind: of the tasks.
+        people: starts whose people are put beside the best robot that the starts of a design lead to.
     """
 
     def __init__(
@@ -59,8 +61,9 @@ class JointPostures:
         setting: Setting,
         solvers: SolverCache,
         kind: type[TaskRecord] = Hold,
+        people: Sequence[Start] = (),
     ) -> None:
-        self.name = name
+        self.name, self._people = name, people
         self._forms, self._setting, self._solvers, self._kind = forms, setting, solvers, kind
 
     @cached_property
@@ -87,7 +90,8 @@ class JointPostures:
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the portfolio leads to, or the fixed starts if none of it fits."""
-        return self._trial(design, task, named_starts(self._solver, portfolio, self._fixed), checker)
+        starts = named_starts(self._solver, portfolio, self._fixed)
+        return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
     def solve_beside(
         self,
@@ -141,10 +145,23 @@ class JointPostures:
         return {**task.given, "mass": self._setting.scene.payload.mass}
 
     def _trial(
-        self, design: Sequence[float], task: Task, starts: Sequence[tuple[str, Start]], checker: Checker
+        self,
+        design: Sequence[float],
+        task: Task,
+        starts: Sequence[tuple[str, Start]],
+        checker: Checker,
+        people: Sequence[Start] = (),
     ) -> Trial:
         parameters, program = {"design": design, **self._beside(task)}, self._solver.program
         ends = [(name, self._solver.solve(parameters, filled(start, program))) for name, start in starts]
+        solved = [end for end in ends if end[1].status is Status.SOLVED]
+        if solved:
+            name, best = min(solved, key=lambda end: end[1].cost)
+            beside = beside_people(program, best.values, people)
+            ends += [
+                (f"{name}, person {number}", self._solver.solve(parameters, start))
+                for number, start in enumerate(beside, 1)
+            ]
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             layout, scene = layout_of(program), self._setting.scene
