@@ -25,7 +25,6 @@ from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
-from evodesign.posture.starts import PEOPLE
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.tasks import Task, TaskRecord
 
@@ -55,7 +54,7 @@ def _whole(
     name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
 ) -> JointPostures:
     forms = (whole(setting.scene.robot), whole(setting.scene.human))
-    people = [start for found in known.postures.values() for start in found.starts[:PEOPLE]]
+    people = [start for found in known.postures.values() for start in found.starts]
     return JointPostures(name, forms, setting, solvers, kind, people)
 
 

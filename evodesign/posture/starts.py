@@ -12,14 +12,14 @@ from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 
-__all__ = ["PEOPLE", "STARTS_BESIDE", "beside_people", "fixed_starts", "named_starts", "person_starts"]
+__all__ = ["PEOPLE", "STARTS_BESIDE", "different_people", "fixed_starts", "named_starts", "person_starts"]
 
 
 STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
 
-PEOPLE = 4
-"""Starts of each portfolio whose people are put beside the best robot found so far."""
+PEOPLE = 8
+"""People of other starts who are put beside the best robot found so far (docs/benchmarks.md)."""
 
 SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
 """Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.
@@ -58,24 +58,30 @@ def named_starts(
     return [(f"{kind} {number}", start) for number, start in enumerate(starts, 1)]
 
 
-def beside_people(program: Program, found: Start, people: Sequence[Start]) -> list[Start]:
-    """A solution's values with the person of other starts in place of its own.
+def different_people(program: Program, starts: Sequence[Start]) -> list[Start]:
+    """The people of starts, by variable name: those who stand most differently, as a few stand for all.
 
     Robot and person have several ways to stand each, and only the load couples them: starts of both together
-    hold few of all the pairs.
+    hold few of all the pairs. Each next person is the one whose joints are farthest from all before.
 
     Args:
         program: of both agents.
-        found: a solution's values.
-        people: starts; those that do not fit the person's variables, made for another form, are left out.
+        starts: those that do not fit the person's variables, made for another form, are left out.
     """
-    rows = {
-        variable.name: variable.symbol.numel()
-        for variable in program.variables
-        if isinstance(variable.key, Slot) and variable.key.party == HUMAN
-    }
-    fitting = [start for start in people if all(len(start.get(name, ())) == n for name, n in rows.items())]
-    return [{**found, **{name: start[name] for name in rows}} for start in fitting]
+    slots = {v.name: (v.key, v.symbol.numel()) for v in program.variables if isinstance(v.key, Slot)}
+    own = {name: (slot, rows) for name, (slot, rows) in slots.items() if slot.party == HUMAN}
+    people = [
+        {name: start[name] for name in own}
+        for start in starts
+        if all(len(start.get(name, ())) == rows for name, (_, rows) in own.items())
+    ]
+    joints = [name for name, (slot, _) in own.items() if slot.part == "joints"]
+    places = [np.concatenate([person[name] for name in joints]) for person in people]
+    chosen = list(range(len(people)))[:1]
+    while len(chosen) < min(PEOPLE, len(people)):
+        apart = [min(np.linalg.norm(place - places[index]) for index in chosen) for place in places]
+        chosen.append(int(np.argmax(apart)))
+    return [people[index] for index in chosen]
 
 
 def _joints(program: Program) -> list[tuple[str, Variable]]:

@@ -17,7 +17,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
-from evodesign.posture.starts import beside_people
+from evodesign.posture.starts import different_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
@@ -108,7 +108,7 @@ def test_the_people_of_all_starts_are_tried_beside_the_best_robot(problem: Desig
     assert solution.attempt.cost == cost(solution)
 
 
-def test_a_person_of_another_form_is_not_put_beside_a_robot(problem: DesignProblem) -> None:
+def test_people_who_stand_most_differently_stand_for_all(problem: DesignProblem) -> None:
     setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
     half_program, program = (
         PostureProblem(setting, symmetry).landscape(Hold(height_m=1.0)).solver.program
@@ -117,14 +117,13 @@ def test_a_person_of_another_form_is_not_put_beside_a_robot(problem: DesignProbl
     half_start, start = (
         {variable.name: variable.start for variable in each.variables} for each in (half_program, program)
     )
-    raised = {
-        **start,
-        "human.joints": start["human.joints"] + 0.1,
-        "robot.joints": start["robot.joints"] + 0.1,
-    }
-    (beside,) = beside_people(program, start, [half_start, raised, {"robot.joints": start["robot.joints"]}])
-    assert np.array_equal(beside["human.joints"], raised["human.joints"])
-    assert np.array_equal(beside["robot.joints"], start["robot.joints"])
+    turns = [0.1 * number for number in range(12)]
+    starts = [{**start, "human.joints": start["human.joints"] + turn} for turn in turns]
+    found = different_people(program, [half_start, *starts, {"robot.joints": start["robot.joints"]}])
+    assert len(found) == 8
+    assert [person["human.joints"][0] for person in found[:2]] == [turns[0], turns[-1]]
+    assert abs(found[2]["human.joints"][0] - 0.55) < 0.1
+    assert not any(name.startswith("robot") for person in found for name in person)
 
 
 def test_half_holds_the_left_and_the_middle(problem: DesignProblem) -> None:

@@ -31,7 +31,7 @@ from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import aggregated, with_worst
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import STARTS_BESIDE, beside_people, fixed_starts, named_starts
+from evodesign.posture.starts import STARTS_BESIDE, different_people, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -51,7 +51,7 @@ class JointPostures:
         setting: of the problem.
         solvers: of other scenes.
         kind: of the tasks.
-        people: starts whose people are put beside the best robot that the starts of a design lead to.
+        others: starts of which some people are put beside the best robot that a design's own starts lead to.
     """
 
     def __init__(
@@ -61,9 +61,9 @@ class JointPostures:
         setting: Setting,
         solvers: SolverCache,
         kind: type[TaskRecord] = Hold,
-        people: Sequence[Start] = (),
+        others: Sequence[Start] = (),
     ) -> None:
-        self.name, self._people = name, people
+        self.name, self._others = name, others
         self._forms, self._setting, self._solvers, self._kind = forms, setting, solvers, kind
 
     @cached_property
@@ -74,6 +74,10 @@ class JointPostures:
     @cached_property
     def _fixed(self) -> tuple[Start, ...]:
         return fixed_starts(self._solver.program)
+
+    @cached_property
+    def _people(self) -> list[Start]:
+        return different_people(self._solver.program, self._others)
 
     @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
@@ -157,10 +161,9 @@ class JointPostures:
         solved = [end for end in ends if end[1].status is Status.SOLVED]
         if solved:
             name, best = min(solved, key=lambda end: end[1].cost)
-            beside = beside_people(program, best.values, people)
             ends += [
-                (f"{name}, person {number}", self._solver.solve(parameters, start))
-                for number, start in enumerate(beside, 1)
+                (f"{name}, person {number}", self._solver.solve(parameters, {**best.values, **person}))
+                for number, person in enumerate(people, 1)
             ]
 
         def finish(start: str, raw: RawSolution) -> Candidate:
