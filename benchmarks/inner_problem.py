@@ -1,9 +1,9 @@
-"""What benchmarks of the inner solver share: the problem at four heights, made ready, and random designs."""
+"""What benchmarks of the inner solver share: a problem at four heights, made ready, and random designs."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -15,20 +15,58 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
+from evodesign.records import ProblemSource
+from evodesign.tree.resize import resize
+from evodesign.tree.urdf_write import urdf_text
 
 HERE = Path(__file__).parent
 PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
+ROBOT = "robots/icub_shapes.urdf"
 HEIGHTS = (0.8, 1.0, 1.2, 1.5)
 
 Design = tuple[float, ...]
 
 
-def problem_at(heights: Sequence[float]) -> DesignProblem:
-    """The default problem, its load at other heights."""
-    source = read_source(PROBLEM)
+def longer_arm(source: ProblemSource) -> ProblemSource:
+    """The robot's left forearm is 1.15 times as long as its right one."""
+    tree = resize(build_problem(source).scene.robot.tree, {"l_forearm": 1.15}, {})
+    return msgspec.structs.replace(source, files={**source.files, ROBOT: urdf_text(tree)})
+
+
+def load_aside(source: ProblemSource) -> ProblemSource:
+    """The load's centre of mass is 0.1 m to the robot's left of its middle."""
+    text = source.text.replace("[payload]", "[payload]\ncenter_of_mass_m = [0.0, 0.1, 0.0]")
+    return msgspec.structs.replace(source, text=text)
+
+
+def pushed_aside(source: ProblemSource) -> ProblemSource:
+    """The postures also withstand a push of 20 N on the robot's trunk from its right."""
+    text = f'{source.text}\n[[disturbance]]\nat = "robot"\npush_n = [0.0, 20.0, 0.0]\n'
+    return msgspec.structs.replace(source, text=text)
+
+
+DEFAULT = "default"
+
+VARIANTS: Mapping[str, Callable[[ProblemSource], ProblemSource]] = {
+    DEFAULT: lambda source: source,
+    "longer_arm": longer_arm,
+    "load_aside": load_aside,
+    "pushed_aside": pushed_aside,
+}
+"""The default problem, and what makes it one that is not its own mirror image."""
+
+
+def problem_at(heights: Sequence[float], variant: str = DEFAULT) -> DesignProblem:
+    """A variant of the default problem, its load at other heights."""
+    source = VARIANTS[variant](read_source(PROBLEM))
     wanted = f"heights_m = {list(heights)}"
     lines = [wanted if line.startswith("heights_m") else line for line in source.text.splitlines()]
     return build_problem(msgspec.structs.replace(source, text="\n".join(lines)))
+
+
+def problem_named(name: str) -> DesignProblem:
+    """A variant at the heights of the benchmarks, or the problem of a file at its own."""
+    return problem_at(HEIGHTS, name) if name in VARIANTS else build_problem(read_source(name))
 
 
 def known_at(problem: DesignProblem, jobs: int) -> Precomputed:

@@ -1,11 +1,15 @@
 """How much does the result of a design depend on the starting points?
 
-Random designs of the default problem, the load at four heights. Of the heights that reach says can be held:
-how many are solved and pass the check; how many solved ones lie within 1 % of the best of 25 random starts of
-the same program; and how far robot and person solved one after the other lie from the best of 25 random
-starts of both together. Results go to benchmarks/results/inner_quality.json and are printed as a table.
+Random designs of a problem, the load at four heights (at its own for the problem of a file). Of the heights
+that reach says can be held: how many are solved and pass the check; how many solved ones lie within 1 % of
+the best of 25 random starts of the same program; and, for the first designs of a symmetric problem, how far
+robot and person solved one after the other lie from the best of 25 random starts of both together. The lowest
+and highest heights are compared with the best of 25 random starts of the reach problem. Results go to
+benchmarks/results/inner_quality.json (of another problem, to inner_quality_NAME.json) and are printed as
+tables.
 
-    python -m benchmarks.inner_quality [--designs 200] [--joint-designs 50] [--starts 25] [--jobs 2]
+    python -m benchmarks.inner_quality [--problem default|longer_arm|load_aside|pushed_aside|FILE]
+        [--designs 200] [--joint-designs 50] [--starts 25] [--jobs 2]
 """
 
 from __future__ import annotations
@@ -13,14 +17,16 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from joblib import Parallel, delayed
 
-from benchmarks.inner_problem import HEIGHTS, HERE, Design, known_at, problem_at, random_designs
+from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
 from evodesign.nlp.start_portfolio import Landscape, random_start
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.postures import PostureProblem
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, Reach, ReachProblem
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
@@ -48,6 +54,26 @@ class Row:
     joint: float
 
 
+@dataclass(frozen=True, slots=True)
+class Ends:
+    """The reach of one design: that of the evaluation and that of the random starts.
+
+    Args:
+        lowest, highest: of the evaluation [m].
+        best_lowest, best_highest: of the random starts [m], infinite where nothing was found.
+    """
+
+    lowest: float
+    highest: float
+    best_lowest: float
+    best_highest: float
+
+    @property
+    def short(self) -> tuple[float, float]:
+        """How much farther the random starts reach down and up [m]; negative where the evaluation does."""
+        return self.lowest - self.best_lowest, self.best_highest - self.highest
+
+
 class Judge:
     """Evaluates designs, and searches for something better with many random starts."""
 
@@ -56,19 +82,21 @@ class Judge:
         self._starts = starts
         self._evaluator = Evaluator(problem, known)
         setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
-        self._decoupled, self._joint = (
+        self._first, self._joint = (
             PostureProblem(setting, problem.symmetry, given) for given in (known, Precomputed())
         )
+        self._reach = ReachProblem(setting, symmetric=problem.symmetry is not Symmetry.OFF)
 
-    def rows(self, number: int, design: Design, joint: bool) -> list[Row]:
-        """A row for each height that the design can reach."""
+    def judged(self, number: int, design: Design, joint: bool) -> tuple[Ends, list[Row]]:
+        """The reach of a design, and a row for each height that it can reach."""
         result = self._evaluator.solve(design)
         rng = np.random.default_rng(number)
+        ends = self._ends(result.reach, design, rng)
         found = []
         for solution in result.cases:
             if result.reach.distance(solution.case.task.height_m) != 0.0:
                 continue
-            own = self._decoupled.landscape(solution.case.task)
+            own = self._first.landscape(solution.case.task)
             costs = [attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED]
             best = self._best(own, design, rng)
             both = self._best(self._joint.landscape(solution.case.task), design, rng) if joint else np.nan
@@ -81,22 +109,33 @@ class Judge:
                 both,
             )
             found.append(row)
-        return found
+        return ends, found
+
+    def _ends(self, reach: Reach, design: Design, rng: np.random.Generator) -> Ends:
+        up, down = (self._best(self._reach.landscape(sense), design, rng) for sense in (HIGHEST, LOWEST))
+        low, high = reach.lowest, reach.highest
+        return Ends(np.inf if low is None else low, -np.inf if high is None else high, down, -up)
 
     def _best(self, landscape: Landscape, design: Design, rng: np.random.Generator) -> float:
         ends = [landscape.solve(design, random_start(landscape, rng)) for _ in range(self._starts)]
         return min((end.cost for end in ends if end.status is Status.SOLVED), default=np.inf)
 
 
-def judge(first: int, designs: list[Design], joint: int, starts: int) -> list[Row]:
-    """The rows of some designs, numbered from `first`; the first `joint` of all are also solved jointly."""
-    problem = problem_at(HEIGHTS)
-    here = Judge(problem, known_at(problem, 1), starts)
-    return [
-        row
-        for number, design in enumerate(designs, first)
-        for row in here.rows(number, design, number < joint)
-    ]
+def judge(
+    first: int, designs: list[Design], joint: int, starts: int, problem: str = DEFAULT
+) -> list[tuple[Ends, list[Row]]]:
+    """What is found of some designs, numbered from `first`; the first `joint` of all are also solved jointly.
+
+    Args:
+        first: number of the first design, which seeds its random starts.
+        designs: to be judged.
+        joint: how many of all are solved jointly as well.
+        starts: random ones of each program.
+        problem: name of a variant of the default problem, or a problem file.
+    """
+    built = problem_named(problem)
+    here = Judge(built, known_at(built, 1), starts)
+    return [here.judged(number, design, number < joint) for number, design in enumerate(designs, first)]
 
 
 def summary(rows: list[Row]) -> dict[str, float]:
@@ -119,29 +158,48 @@ def summary(rows: list[Row]) -> dict[str, float]:
     }
 
 
+def reach_summary(ends: list[Ends]) -> dict[str, float]:
+    """The figures of a set of reaches; the costs of the random starts hold up to 0.1 mm of regularisation."""
+    down, up = np.array([each.short for each in ends]).T
+    return {
+        "designs": len(ends),
+        "lowest_within_5_mm_share": float(np.mean(down <= NEAR_HEIGHT)),
+        "highest_within_5_mm_share": float(np.mean(up <= NEAR_HEIGHT)),
+        "worst_lowest_short_m": max(0.0, float(down.max())),
+        "worst_highest_short_m": max(0.0, float(up.max())),
+    }
+
+
 def main() -> None:
     """Judge all designs, write and print."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("--problem", default=DEFAULT)
     parser.add_argument("--designs", type=int, default=200)
     parser.add_argument("--joint-designs", type=int, default=50)
     parser.add_argument("--starts", type=int, default=25)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
-    problem = problem_at(HEIGHTS)
+    problem = problem_named(options.problem)
     known_at(problem, options.jobs)
     designs = random_designs(problem, options.designs)
+    joint = 0 if problem.symmetry is Symmetry.OFF else options.joint_designs
     chunks = [(first, designs[first : first + 5]) for first in range(0, len(designs), 5)]
-    work = (delayed(judge)(first, chunk, options.joint_designs, options.starts) for first, chunk in chunks)
-    rows = [row for part in Parallel(options.jobs)(work) for row in part]
+    work = (delayed(judge)(first, chunk, joint, options.starts, options.problem) for first, chunk in chunks)
+    judged = [each for part in Parallel(options.jobs)(work) for each in part]
+    rows = [row for _, found in judged for row in found]
     by_height = {
-        f"{height:g} m": summary([row for row in rows if row.height == height]) for height in HEIGHTS
+        f"{height:g} m": summary([row for row in rows if row.height == height])
+        for height in sorted({row.height for row in rows})
     }
     figures = {**by_height, "all": summary(rows)}
-    target = HERE / "results" / "inner_quality.json"
-    target.write_text(json.dumps({**vars(options), "figures": figures}, indent=2) + "\n")
+    reach = reach_summary([ends for ends, _ in judged])
+    name = "" if options.problem == DEFAULT else f"_{Path(options.problem).stem}"
+    target = HERE / "results" / f"inner_quality{name}.json"
+    target.write_text(json.dumps({**vars(options), "figures": figures, "reach": reach}, indent=2) + "\n")
     print(_table(figures))
+    print(json.dumps(reach, indent=2))
 
 
 def _table(figures: dict[str, dict[str, float]]) -> str:

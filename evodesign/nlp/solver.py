@@ -114,13 +114,14 @@ class Solver:
         return {variable.name: variable.start for variable in self.program.variables}
 
     def solve_all(
-        self, parameters: Mapping[str, Any], starts: Iterable[Mapping[str, Array]]
+        self, parameters: Mapping[str, Any], starts: Iterable[Mapping[str, Array]], least: float = math.inf
     ) -> list[RawSolution]:
         """Solve from each start; the least cost counts (it is positive): what is dearer is given up."""
         ends: list[RawSolution] = []
         for start in starts:
-            costs = [end.cost for end in ends if end.status is Status.SOLVED]
-            ends.append(self.solve(parameters, start, DEARER * min(costs, default=math.inf)))
+            ends.append(self.solve(parameters, start, DEARER * least))
+            if ends[-1].status is Status.SOLVED:
+                least = min(least, ends[-1].cost)
         return ends
 
     def solve(

@@ -12,7 +12,7 @@ Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
 
@@ -49,6 +49,7 @@ class Training:
     Args:
         designs: for training, and as many fresh ones in each round.
         starts: random ones per design, beside the fixed ones, to find its best optimum.
+        crossed: optima of other designs that each design is tried from as well, to find its best one.
         candidates: tried for each start.
         portfolio: the most starts that a portfolio holds.
         rounds: of fresh designs, at most.
@@ -57,6 +58,7 @@ class Training:
 
     designs: int = 64
     starts: int = 10
+    crossed: int = 0
     candidates: int = 8
     portfolio: int = 6
     rounds: int = 3
@@ -129,14 +131,16 @@ def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: T
     def studies(known: Sequence[Start]) -> list[_Study]:
         batch = islice(designs, training.designs)
         found = (_study(landscape, design, known, training.starts, rng) for design in batch)
-        return [study for study in found if study is not None]
+        made = [study for study in found if study is not None]
+        offered = [made[place] for place in _spread(len(made), training.crossed)]
+        return [_crossed(landscape, study, offered) for study in made]
 
     learned = studies(landscape.starts)
     chosen = _grown(landscape, (), learned, training)
     coverage = Coverage(0, 0, 0.0)
     for _ in range(training.rounds):
         fresh = studies(chosen)
-        least = _least_costs(landscape, chosen, fresh)
+        least = np.array([study.known for study in fresh])
         good = landscape.good(least, _best(fresh))
         coverage = Coverage(len(fresh), int(good.sum()), float(np.max(least - _best(fresh), initial=0.0)))
         if coverage.share >= training.share or len(chosen) == training.portfolio:
@@ -174,11 +178,21 @@ def spread_designs(
 
 @dataclass(frozen=True, slots=True)
 class _Study:
-    """A design with the best optimum that is known of it, as starting values."""
+    """What is known of a design.
+
+    Args:
+        design: it.
+        cost: of its best optimum.
+        optimum: as starting values.
+        start: that led to it.
+        known: least cost that the known starts lead to; infinite if none converges.
+    """
 
     design: Design
     cost: float
     optimum: Start
+    start: Start
+    known: float
 
 
 def _study(
@@ -187,11 +201,27 @@ def _study(
     """The best of some known and some random starts; None where none converges."""
     starts = [*known, *(random_start(landscape, rng) for _ in range(count))]
     ends = [landscape.solve(design, start) for start in starts]
-    solved = [end for end in ends if end.status is Status.SOLVED]
-    if not solved:
+    costs = [_cost(end) for end in ends]
+    best = int(np.argmin(costs))
+    if costs[best] == np.inf:
         return None
-    best = min(solved, key=lambda end: end.cost)
-    return _Study(design, best.cost, best.values)
+    return _Study(
+        design, costs[best], ends[best].values, starts[best], min(costs[: len(known)], default=np.inf)
+    )
+
+
+def _crossed(landscape: Landscape, study: _Study, others: Sequence[_Study]) -> _Study:
+    """The study with a better optimum, if those of others lead to one."""
+    for other in others:
+        end = landscape.solve(study.design, other.optimum)
+        if _cost(end) < study.cost:
+            study = replace(study, cost=end.cost, optimum=end.values, start=other.optimum)
+    return study
+
+
+def _cost(end: RawSolution) -> float:
+    """Cost of a solve that converged; infinite for one that did not."""
+    return end.cost if end.status is Status.SOLVED else np.inf
 
 
 def _best(studies: Sequence[_Study]) -> Costs:
@@ -203,9 +233,7 @@ def _least_costs(landscape: Landscape, chosen: Sequence[Start], studies: Sequenc
     costs = np.full((len(studies), 1 + len(chosen)), np.inf)
     for row, study in enumerate(studies):
         for column, start in enumerate(chosen):
-            end = landscape.solve(study.design, start)
-            if end.status is Status.SOLVED:
-                costs[row, column] = end.cost
+            costs[row, column] = _cost(landscape.solve(study.design, start))
     least: Costs = costs.min(axis=1)
     return least
 
@@ -213,19 +241,30 @@ def _least_costs(landscape: Landscape, chosen: Sequence[Start], studies: Sequenc
 def _grown(
     landscape: Landscape, chosen: tuple[Start, ...], studies: Sequence[_Study], training: Training
 ) -> tuple[Start, ...]:
-    """The starts with others added until every study is served, or there are as many as there may be."""
+    """The starts with others added until every study is served, or there are as many as there may be.
+
+    A study offers its optimum, and then the start that led to it: a solver begun at an optimum may leave it
+    for another. An offer that serves no study is not tried again.
+    """
     best, least = _best(studies), np.full(len(studies), np.inf)
+    offers = [[study.optimum, study.start] for study in studies]
     while len(chosen) < training.portfolio:
         open_ones = np.flatnonzero(~landscape.good(least, best)).tolist()
-        if not open_ones:
+        offering = [index for index in open_ones if offers[index]]
+        if not offering:
             break
         left = [studies[index] for index in open_ones]
-        tried = [left[index] for index in _spread(len(left), training.candidates)]
-        costs = np.array([_least_costs(landscape, [study.optimum], left) for study in tried])
+        tried = [offering[place] for place in _spread(len(offering), training.candidates)]
+        costs = np.array([_least_costs(landscape, [offers[index][0]], left) for index in tried])
         best[open_ones] = np.minimum(best[open_ones], costs.min(axis=0))
-        winner = int(np.argmax(landscape.good(costs, best[open_ones]).sum(axis=1)))
-        least[open_ones] = np.minimum(least[open_ones], costs[winner])
-        chosen = (*chosen, tried[winner].optimum)
+        served = landscape.good(costs, best[open_ones]).sum(axis=1)
+        winner = int(np.argmax(served))
+        if served[winner]:
+            least[open_ones] = np.minimum(least[open_ones], costs[winner])
+            chosen = (*chosen, offers[tried[winner]].pop(0))
+        for index, many in zip(tried, served.tolist(), strict=True):
+            if not many:
+                offers[index].pop(0)
     return chosen
 
 

@@ -55,7 +55,8 @@ def _whole(
     name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
 ) -> JointPostures:
     forms = (whole(setting.scene.robot), whole(setting.scene.human))
-    return JointPostures(name, forms, setting, solvers, kind)
+    people = [start for found in known.postures.values() for start in found.starts]
+    return JointPostures(name, forms, setting, solvers, kind, people)
 
 
 FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
@@ -154,6 +155,8 @@ class PostureProblem:
         portfolio = self._known.starts(task)
         if self._symmetry is Symmetry.OFF:
             yield WHOLE, portfolio
+            if portfolio:
+                yield WHOLE, ()
             return
         if task in self._values:
             yield DECOUPLED, portfolio

@@ -12,11 +12,14 @@ from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 
-__all__ = ["STARTS_BESIDE", "fixed_starts", "named_starts", "person_starts"]
+__all__ = ["PEOPLE", "STARTS_BESIDE", "different_people", "fixed_starts", "named_starts", "person_starts"]
 
 
 STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
+
+PEOPLE = 8
+"""People of other starts who are put beside the best robot found so far (docs/benchmarks.md)."""
 
 SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
 """Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.
@@ -53,6 +56,32 @@ def named_starts(
     fitting = [start for start in portfolio if all(len(v) == rows[n] for n, v in start.items() if n in rows)]
     kind, starts = ("start", fitting) if fitting else ("fixed start", fixed)
     return [(f"{kind} {number}", start) for number, start in enumerate(starts, 1)]
+
+
+def different_people(program: Program, starts: Sequence[Start]) -> list[Start]:
+    """The people of starts, by variable name: those who stand most differently, as a few stand for all.
+
+    Robot and person have several ways to stand each, and only the load couples them: starts of both together
+    hold few of all the pairs. Each next person is the one whose joints are farthest from all before.
+
+    Args:
+        program: of both agents.
+        starts: those that do not fit the person's variables, made for another form, are left out.
+    """
+    slots = {v.name: (v.key, v.symbol.numel()) for v in program.variables if isinstance(v.key, Slot)}
+    own = {name: (slot, rows) for name, (slot, rows) in slots.items() if slot.party == HUMAN}
+    people = [
+        {name: start[name] for name in own}
+        for start in starts
+        if all(len(start.get(name, ())) == rows for name, (_, rows) in own.items())
+    ]
+    joints = [name for name, (slot, _) in own.items() if slot.part == "joints"]
+    places = [np.concatenate([person[name] for name in joints]) for person in people]
+    chosen = list(range(len(people)))[:1]
+    while len(chosen) < min(PEOPLE, len(people)):
+        apart = [min(np.linalg.norm(place - places[index]) for index in chosen) for place in places]
+        chosen.append(int(np.argmax(apart)))
+    return [people[index] for index in chosen]
 
 
 def _joints(program: Program) -> list[tuple[str, Variable]]:

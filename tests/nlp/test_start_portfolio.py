@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
@@ -15,6 +16,7 @@ from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spr
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.records import Status
 
 FIXED = ({"robot.joints": [0.0]}, {"robot.joints": [0.5]})
 WELLS = (-2.0, -0.5, 1.0, 2.5)
@@ -68,6 +70,27 @@ def test_a_small_portfolio_tells_what_it_misses() -> None:
     assert found.coverage.good < found.coverage.designs
     assert found.coverage.worst > 0.1
     assert found.coverage.share == found.coverage.good / found.coverage.designs
+
+
+class LeavingSolver:
+    """Random starts lead to 2.0, where the cost is least; all others, 2.0 itself among them, lead to 1.0."""
+
+    program = SimpleNamespace(variables=landscape().solver.program.variables)
+
+    def solve(self, parameters: dict, start: dict) -> SimpleNamespace:
+        (begun,) = start["robot.joints"]
+        found = 1.0 if begun in {0.0, 0.5, 1.0, 2.0} else 2.0
+        return SimpleNamespace(
+            status=Status.SOLVED, cost=3.0 - found, values={"robot.joints": np.array([found])}
+        )
+
+
+def test_an_optimum_that_the_solver_leaves_is_found_again_from_where_it_was_found() -> None:
+    leaving = replace(landscape(), solver=LeavingSolver())
+    found = start_portfolio(leaving, designs(), TRAINING)
+    (start,) = found.starts
+    assert start["robot.joints"][0] not in {1.0, 2.0}
+    assert found.coverage.share == 1.0
 
 
 def test_the_same_landscape_gets_the_same_seeds() -> None:

@@ -10,17 +10,25 @@ import pytest
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
+from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
+from evodesign.posture.starts import different_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 
 
-def solve(problem: DesignProblem, symmetry: Symmetry, height: float = 1.0) -> CaseSolution:
+def solve(
+    problem: DesignProblem,
+    symmetry: Symmetry,
+    height: float = 1.0,
+    known: Precomputed = NOTHING_PRECOMPUTED,
+) -> CaseSolution:
     scene, space = problem.scene, problem.space
     values = space.unscaled(scene.robot.tree)
     checker = Checker(
@@ -28,7 +36,7 @@ def solve(problem: DesignProblem, symmetry: Symmetry, height: float = 1.0) -> Ca
         AgentModel.of(scene.robot, space.resized(scene.robot.tree, values)),
         AgentModel.of(scene.human, scene.human.tree),
     )
-    return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry).solve(
+    return PostureProblem(Setting(scene, space, problem.weights, problem.options), symmetry, known).solve(
         values, Hold(height_m=height), checker
     )
 
@@ -75,6 +83,49 @@ def test_symmetric_reach_is_the_whole_reach(problem: DesignProblem) -> None:
         for symmetric in (True, False)
     ]
     assert highest[0] == pytest.approx(highest[1], abs=1e-3)
+
+
+def test_a_whole_posture_that_no_known_start_leads_to_is_sought_from_the_fixed_starts(
+    problem: DesignProblem,
+) -> None:
+    hurried = replace(problem, options=replace(problem.options, iterations=2))
+    joints = {"robot.joints": np.zeros(len(problem.scene.robot.joints))}
+    portfolio = StartPortfolio((joints,), Coverage(0, 0, 0.0))
+    solution = solve(hurried, Symmetry.OFF, known=Precomputed(postures={Hold(height_m=1.0): portfolio}))
+    starts = ["whole: start 1", "whole: fixed start 1", "whole: fixed start 2"]
+    assert [attempt.name for attempt in solution.attempts] == starts
+
+
+def test_the_people_of_all_starts_are_tried_beside_the_best_robot(problem: DesignProblem) -> None:
+    space, task, other = problem.space, Hold(height_m=1.0), Hold(height_m=1.1)
+    landscape = PostureProblem(
+        Setting(problem.scene, space, problem.weights, problem.options), Symmetry.OFF
+    ).landscape(task)
+    ends = [landscape.solve(space.unscaled(problem.scene.robot.tree), start) for start in landscape.starts]
+    first, second = (StartPortfolio((end.values,), Coverage(0, 0, 0.0)) for end in ends)
+    solution = solve(problem, Symmetry.OFF, known=Precomputed(postures={task: first, other: second}))
+    names = ["whole: start 1", "whole: start 1, person 1", "whole: start 1, person 2"]
+    assert [attempt.name for attempt in solution.attempts] == names
+    assert solution.attempt is not None
+    assert solution.attempt.cost == cost(solution)
+
+
+def test_people_who_stand_most_differently_stand_for_all(problem: DesignProblem) -> None:
+    setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
+    half_program, program = (
+        PostureProblem(setting, symmetry).landscape(Hold(height_m=1.0)).solver.program
+        for symmetry in (Symmetry.ON, Symmetry.OFF)
+    )
+    half_start, start = (
+        {variable.name: variable.start for variable in each.variables} for each in (half_program, program)
+    )
+    turns = [0.1 * number for number in range(12)]
+    starts = [{**start, "human.joints": start["human.joints"] + turn} for turn in turns]
+    found = different_people(program, [half_start, *starts, {"robot.joints": start["robot.joints"]}])
+    assert len(found) == 8
+    assert [person["human.joints"][0] for person in found[:2]] == [turns[0], turns[-1]]
+    assert abs(found[2]["human.joints"][0] - 0.55) < 0.1
+    assert not any(name.startswith("robot") for person in found for name in person)
 
 
 def test_half_holds_the_left_and_the_middle(problem: DesignProblem) -> None:

@@ -31,11 +31,12 @@ from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import aggregated, with_worst
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
+from evodesign.posture.starts import STARTS_BESIDE, different_people, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, instants_of, layout_of, start_from
+from evodesign.records import Status
 from evodesign.tasks import Hold, Task, TaskRecord
 
 __all__ = ["JointPostures", "posture_program"]
@@ -50,6 +51,7 @@ class JointPostures:
         setting: of the problem.
         solvers: of other scenes.
         kind: of the tasks.
+        others: starts of which some people are put beside the best robot that a design's own starts lead to.
     """
 
     def __init__(
@@ -59,8 +61,9 @@ class JointPostures:
         setting: Setting,
         solvers: SolverCache,
         kind: type[TaskRecord] = Hold,
+        others: Sequence[Start] = (),
     ) -> None:
-        self.name = name
+        self.name, self._others = name, others
         self._forms, self._setting, self._solvers, self._kind = forms, setting, solvers, kind
 
     @cached_property
@@ -71,6 +74,10 @@ class JointPostures:
     @cached_property
     def _fixed(self) -> tuple[Start, ...]:
         return fixed_starts(self._solver.program)
+
+    @cached_property
+    def _people(self) -> list[Start]:
+        return different_people(self._solver.program, self._others)
 
     @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
@@ -87,7 +94,8 @@ class JointPostures:
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the portfolio leads to, or the fixed starts if none of it fits."""
-        return self._trial(design, task, named_starts(self._solver, portfolio, self._fixed), checker)
+        starts = named_starts(self._solver, portfolio, self._fixed)
+        return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
     def solve_beside(
         self,
@@ -141,12 +149,23 @@ class JointPostures:
         return {**task.given, "mass": self._setting.scene.payload.mass}
 
     def _trial(
-        self, design: Sequence[float], task: Task, starts: Sequence[tuple[str, Start]], checker: Checker
+        self,
+        design: Sequence[float],
+        task: Task,
+        starts: Sequence[tuple[str, Start]],
+        checker: Checker,
+        people: Sequence[Start] = (),
     ) -> Trial:
         parameters, program = {"design": design, **self._beside(task)}, self._solver.program
         names = [name for name, _ in starts]
         solves = self._solver.solve_all(parameters, (filled(start, program) for _, start in starts))
         ends = list(zip(names, solves, strict=True))
+        solved = [end for end in ends if end[1].status is Status.SOLVED]
+        if solved:
+            name, best = min(solved, key=lambda end: end[1].cost)
+            names = [f"{name}, person {number}" for number, _ in enumerate(people, 1)]
+            beside = ({**best.values, **person} for person in people)
+            ends += zip(names, self._solver.solve_all(parameters, beside, best.cost), strict=True)
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             layout, scene = layout_of(program), self._setting.scene

@@ -6,7 +6,7 @@ piece and the code but for named exceptions; so a score depends neither on a cac
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -33,7 +33,15 @@ __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "
 REACH_TRAINING = Training(designs=32, starts=8)
 HALF_TRAINING = Training(designs=48, starts=8)
 DISTURBED_TRAINING = Training(designs=24, starts=6, rounds=2)
-WHOLE_TRAINING = Training(designs=16, starts=6)
+WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=8)
+WHOLE_REACH_TRAINING = Training(designs=48, starts=6, portfolio=8, rounds=2)
+
+STRICTER = 0.4
+"""Share of the usual distance from the best optimum that whole starts are chosen with.
+
+Whole postures have many optima that lie close to each other; from random starts the best one is rarely found,
+but the optima of other designs lead there.
+"""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -233,17 +241,19 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
     if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
-        return start_portfolio(
-            landscape, _designs(space, REACH_TRAINING, lambda design: True), REACH_TRAINING
-        )
-    problem = PostureProblem(own, setting.symmetry, known)
-    training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
-    training = training if setting.symmetric else WHOLE_TRAINING
-    designs = _designs(space, training, lambda design: reach.solve(design).beyond(task.heights) == 0.0)
-    return start_portfolio(problem.landscape(task), designs, training)
+        training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
+    else:
+        landscape = PostureProblem(own, setting.symmetry, known).landscape(task)
+        training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
+        training = training if setting.symmetric else WHOLE_TRAINING
+    if not setting.symmetric:
+        near = STRICTER * landscape.relative, STRICTER * landscape.absolute
+        landscape = replace(landscape, relative=near[0], absolute=near[1])
 
+    def wanted(design: tuple[float, ...]) -> bool:
+        return task is None or reach.solve(design).beyond(task.heights) == 0.0
 
-def _designs(
-    space: DesignSpace, training: Training, wanted: Callable[[tuple[float, ...]], bool]
-) -> Iterator[tuple[float, ...]]:
-    return spread_designs(len(space.parameters), space.values, wanted, LOOKED_AT * training.designs)
+    looked_at = LOOKED_AT * training.designs
+    return start_portfolio(
+        landscape, spread_designs(len(space.parameters), space.values, wanted, looked_at), training
+    )
