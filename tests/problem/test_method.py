@@ -10,9 +10,11 @@ import pytest
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.library import NativeMethod
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome
 from evodesign.problem.judge import ONE_IN, is_judged, judged_notes
+from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Assessment, Evaluation, Status
 from evodesign.runlog.header import header_of
 from evodesign.runlog.upgrade import upgraded
@@ -107,3 +109,20 @@ def test_ipopt_takes_over_where_the_native_method_fails(
         assert one.attempt.method is MethodName.IPOPT
         assert one.attempt.cost == other.attempt.cost
         assert case_outcome(one, native=True).fallbacks >= len(other.attempts)
+
+
+@pytest.mark.needs_compiler
+def test_derivatives_of_native_solutions_are_those_of_ipopt(
+    native: Evaluator, evaluator: Evaluator, known: Precomputed
+) -> None:
+    values = unscaled_values(native.problem)
+    ours, theirs = (
+        Sensitivities(each.problem, known).at(values, each.solve(values)) for each in (native, evaluator)
+    )
+    for one, other in zip(ours.cases, theirs.cases, strict=True):
+        assert isinstance(one, PostureDerivative)
+        assert isinstance(other, PostureDerivative)
+        assert one.cost_slope == pytest.approx(other.cost_slope, rel=1e-6, abs=1e-6)
+    assert isinstance(ours.highest, ReachDerivative)
+    assert isinstance(theirs.highest, ReachDerivative)
+    assert ours.highest.slope == pytest.approx(theirs.highest.slope, rel=1e-6, abs=1e-6)
