@@ -10,6 +10,7 @@ Source: Sartore et al. 2022, Eq. 5; pinocchio `crba`, `nonLinearEffects`, `getFr
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -46,12 +47,12 @@ class Configuration:
     joints: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(slots=True, eq=False)
-class _Workspace:
+class _Workspace(threading.local):
     """Pinocchio's memory, which takes longer to make than to fill, and whose kinematics it holds."""
 
-    data: Any
-    holds: BodyState | None = None
+    def __init__(self, model: Any) -> None:
+        self.data = model.createData()
+        self.holds: BodyState | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,7 +183,7 @@ class FloatingBody:
         columns = [model.joints[model.getJointId(name)].idx_v for name in joints]
         places = np.array([model.joints[model.getJointId(name)].idx_q for name in joints], int)
         order = np.array([*range(ROOT), *columns])
-        workspace = _Workspace(model.createData())
+        workspace = _Workspace(model)
         return cls(model, tuple(joints), order, places, world_from_given, workspace, built)
 
     def at(self, configuration: Configuration, velocity: Array) -> BodyState:

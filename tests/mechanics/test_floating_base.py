@@ -60,3 +60,41 @@ def test_mass_matrix_bias_and_frames_are_those_of_the_urdf(name: str, problem: D
         placement = data.oMf[model.getFrameId(link.name, pin.FrameType.BODY)]
         assert np.allclose(state.pose(link.name)[1], placement.translation, atol=1e-10)
         assert np.allclose(state.pose(link.name)[0], placement.rotation, atol=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_resized_body_is_the_one_that_is_built_anew(seed: int, problem: DesignProblem) -> None:
+    """The built one is held against the URDF above; here half of the joints are welded at zero, too."""
+    tree, rng = problem.scene.robot.tree, np.random.default_rng(seed)
+    point = rng.uniform(size=len(problem.space.parameters))
+    resized = problem.space.resized(tree, problem.space.values(tuple(point.tolist())))
+    moving = tree.actuated[:: 1 + seed % 2]
+    template = FloatingBody.of_tree(tree, moving, np.eye(3))
+    ours, anew = template.resized(resized), FloatingBody.of_tree(resized, moving, np.eye(3))
+    angles = dict(zip(moving, rng.uniform(-0.6, 0.6, len(moving)), strict=True))
+    configuration = Configuration(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3), angles)
+    velocity = rng.uniform(-1, 1, anew.size)
+    one, other = ours.at(configuration, velocity), anew.at(configuration, velocity)
+    unscaled = template.at(configuration, velocity)
+    assert one.bias == pytest.approx(other.bias, rel=1e-12, abs=1e-10)
+    assert one.mass == pytest.approx(other.mass, rel=1e-12, abs=1e-12)
+    for link in tree.links:
+        for mine, its in zip(one.pose(link.name), other.pose(link.name), strict=True):
+            assert np.allclose(mine, its, rtol=0.0, atol=1e-13)
+    assert np.abs(unscaled.bias - other.bias).max() > 1.0  # and is not the unscaled one
+
+
+def test_states_of_one_body_do_not_mix(problem: DesignProblem) -> None:
+    """They compute in the same memory."""
+    tree = problem.scene.robot.tree
+    body, rng = FloatingBody.of_tree(tree, tree.actuated, np.eye(3)), np.random.default_rng(0)
+    link, still = problem.scene.robot.hands["left"], np.zeros(body.size)
+    places = [
+        Configuration(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3), dict.fromkeys(tree.actuated, 0.1 * k))
+        for k in range(2)
+    ]
+    alone = [body.at(place, still).pose(link)[1] for place in places]
+    states = [body.at(place, still) for place in places]
+    for _ in range(2):
+        for state, expected in zip(states, alone, strict=True):
+            assert state.pose(link)[1].tolist() == expected.tolist()

@@ -11,6 +11,7 @@ import math
 import os
 import weakref
 from collections.abc import Callable
+from threading import Lock
 
 import casadi as ca
 import numpy as np
@@ -86,7 +87,7 @@ class _Outcome(ctypes.Structure):
 class NativeMethod:
     """A program ready to be solved by the method in C.
 
-    Not for several threads at once: solves share memory.
+    Solves share memory, so that threads take turns.
 
     Args:
         program: what is solved.
@@ -116,42 +117,40 @@ class NativeMethod:
         self._free, self._fixed = np.flatnonzero(~held), np.flatnonzero(held)
         self._values = program.bounds[0][held]
         self._parameters = np.zeros(program.given.numel())
-        self._outcome = _Outcome()
+        self._outcome, self._alone = _Outcome(), Lock()
         rows, given = program.rows.numel(), program.given.numel()
         self._vectors = [
             np.zeros(n) for n in (len(self._free), len(self._free), rows, given, len(self._fixed))
         ]
         vectors = [vector.ctypes.data for vector in (self._parameters, *self._vectors)]
-        self._addresses = (solver, None, *vectors, ctypes.addressof(self._outcome))
+        self._addresses = (solver, *vectors, ctypes.addressof(self._outcome))
 
     def solve(
         self, options: SolverOptions, start: Array, parameters: Array, hopeless: float = math.inf
     ) -> Ending:
         """Solve from a start, in the program's own units, unless that turns out hopeless."""
-        x, bounds, rows, given, fixed = self._vectors
-        x[:] = start[self._free]
-        self._parameters[:] = parameters
-        solver, _, *rest = self._addresses
-        settings = _settings(options)
-        settings.hopeless = hopeless
-        self._solve(solver, ctypes.addressof(settings), *rest)
         symbols, forces = np.empty(len(start)), np.empty(len(start))
-        symbols[self._free], symbols[self._fixed] = x, self._values
-        forces[self._free], forces[self._fixed] = bounds, -fixed
-        outcome = self._outcome
-        return Ending(
-            symbols,
-            outcome.cost,
-            WORDS[outcome.status],
-            outcome.iterations + outcome.restorations,
-            forces,
-            rows.copy(),
-            given.copy(),
-        )
+        x, bounds, rows, given, fixed = self._vectors
+        solver, *rest = self._addresses
+        settings, outcome = _settings(options, hopeless), self._outcome
+        with self._alone:
+            x[:] = start[self._free]
+            self._parameters[:] = parameters
+            self._solve(solver, ctypes.addressof(settings), *rest)
+            symbols[self._free], symbols[self._fixed] = x, self._values
+            forces[self._free], forces[self._fixed] = bounds, -fixed
+            return Ending(
+                symbols,
+                outcome.cost,
+                WORDS[outcome.status],
+                outcome.iterations + outcome.restorations,
+                forces,
+                rows.copy(),
+                given.copy(),
+            )
 
 
-@functools.lru_cache(maxsize=64)
-def _settings(options: SolverOptions) -> _Options:
+def _settings(options: SolverOptions, hopeless: float) -> _Options:
     """The options in C."""
     near = options.near
     return _Options(
@@ -160,6 +159,7 @@ def _settings(options: SolverOptions) -> _Options:
         barrier=NEAR_BARRIER if near else BARRIER,
         push=NEAR_PUSH if near else PUSH,
         relaxation=0.0 if near else min(options.tolerance, RELAXATION),
+        hopeless=hopeless,
         iterations=options.iterations,
         near=near,
     )

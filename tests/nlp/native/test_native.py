@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import casadi as ca
@@ -243,6 +244,16 @@ def test_the_same_bits_every_time() -> None:
     one, other = first.solve(given, {}), second.solve(given, {})
     assert one.values["x"].tobytes() == other.values["x"].tobytes()
     assert (one.cost, one.iterations) == (other.cost, other.iterations)
+
+
+def test_threads_take_turns() -> None:
+    random = random_program(3, convex=False)
+    rng = np.random.default_rng(1)
+    given = [{"numbers": rng.normal(size=random.numbers)} for _ in range(40)]
+    solver = Solver(random.program, NATIVE)
+    alone = [solver.solve(each, {}).cost for each in given]
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(lambda each: solver.solve(each, {}).cost, given * 5)) == alone * 5
 
 
 def test_near_solves_keep_the_solution() -> None:
