@@ -70,7 +70,8 @@ class WholePostures:
             "whole", (whole(scene.robot), whole(scene.human)), setting, SolverCache()
         )
         tree = space.resized(scene.robot.tree, self._design)
-        self._checker = Checker(scene, tree, AgentModel.of(scene.human, scene.human.tree))
+        robot, human = AgentModel.of(scene.robot, tree), AgentModel.of(scene.human, scene.human.tree)
+        self._checker = Checker(scene, robot, human)
 
     def best(self, task: Task, starts: Sequence[Instants]) -> Candidate:
         """The posture of least cost that known ones lead to."""

@@ -35,7 +35,7 @@ def header_fault(header: RunHeader) -> str:
         return "a parameter or objective stands twice"
     if not objectives or search.objectives != len(objectives):
         return f"its search is of {search.objectives} objectives, and it has {len(objectives)}"
-    if {search.dimension, len(search.counts), *lengths} != {len(parameters)}:
+    if search.dimension != len(parameters) or {len(search.counts), *lengths} != {len(parameters)}:
         return f"its search has other dimensions than its {len(parameters)} parameters"
     if not parameters:
         return "it has no parameters"
