@@ -130,11 +130,9 @@ def _timed_solves(inside: dict[str, float]) -> Iterator[None]:
     """Add the time of every solve to `inside`."""
     solve = Solver.solve
 
-    def timed(
-        self: Solver, parameters: Sequence[float], start: Mapping[str, Any], *rest: float
-    ) -> RawSolution:
+    def timed(self: Solver, parameters: Sequence[float], start: Mapping[str, Any]) -> RawSolution:
         wall, processor = time.perf_counter(), time.process_time()
-        end = solve(self, parameters, start, *rest)
+        end = solve(self, parameters, start)
         inside["wall"] += time.perf_counter() - wall
         inside["processor"] += time.process_time() - processor
         return end

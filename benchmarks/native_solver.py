@@ -99,11 +99,9 @@ def _timed(times: Times) -> Iterator[None]:
     """Note the processor time [ms] of every solve that succeeds, by program and method."""
     solve = Solver.solve
 
-    def timed(
-        self: Solver, parameters: Mapping[str, Any], start: Mapping[str, Any], *rest: float
-    ) -> RawSolution:
+    def timed(self: Solver, parameters: Mapping[str, Any], start: Mapping[str, Any]) -> RawSolution:
         began = time.thread_time()
-        end = solve(self, parameters, start, *rest)
+        end = solve(self, parameters, start)
         if end.status is Status.SOLVED:
             name = self.program.name + (", near" if self.options.near else "")
             times[name, end.method].append(1e3 * (time.thread_time() - began))

@@ -63,7 +63,6 @@ class Status(StrEnum):
     """How a computation ended. The order is from best to worst."""
 
     SOLVED = "solved"
-    GIVEN_UP = "given up"
     INFEASIBLE = "infeasible"
     ITERATION_LIMIT = "iteration limit"
     TIME_LIMIT = "time limit"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import casadi as ca
@@ -33,10 +32,8 @@ class Ipopt:
         self._oracle = problem if isinstance(self.functions, NotCompiled) else self.functions.oracle
         self._solvers: dict[SolverOptions, Any] = {}
 
-    def solve(
-        self, options: SolverOptions, start: Array, parameters: Array, hopeless: float = math.inf
-    ) -> Ending:
-        """Solve from a start, in the program's own units, to the end: nothing is hopeless."""
+    def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
+        """Solve from a start, in the program's own units."""
         if options not in self._solvers:
             self._solvers[options] = ca.nlpsol(self._name, "ipopt", self._oracle, _casadi_options(options))
         solver = self._solvers[options]

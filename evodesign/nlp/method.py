@@ -5,7 +5,6 @@ Source: Waechter and Biegler, Mathematical Programming 106 (2006), 25-57, for bo
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -82,15 +81,6 @@ class Method(Protocol):
 
     name: MethodName
 
-    def solve(
-        self, options: SolverOptions, start: Array, parameters: Array, hopeless: float = math.inf
-    ) -> Ending:
-        """Solve from a start, in the program's own units.
-
-        Args:
-            options: of the solve.
-            start: of the symbols.
-            parameters: the program's `given`.
-            hopeless: cost above which a solve may be given up that is nearly done; a method may ignore it.
-        """
+    def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
+        """Solve from a start, in the program's own units."""
         ...

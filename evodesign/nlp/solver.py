@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -70,11 +69,7 @@ _STATUS = {
     "Maximum_Iterations_Exceeded": Status.ITERATION_LIMIT,
     "Maximum_CpuTime_Exceeded": Status.TIME_LIMIT,
     "Maximum_WallTime_Exceeded": Status.TIME_LIMIT,
-    "Cost_Above_Another": Status.GIVEN_UP,
 }
-
-DEARER = 1.02
-"""Cost of a nearly finished solve, relative to the least of other starts, above which it is given up."""
 
 
 class Solver:
@@ -113,24 +108,11 @@ class Solver:
         """The program's own starting values, SI units."""
         return {variable.name: variable.start for variable in self.program.variables}
 
-    def solve_all(
-        self, parameters: Mapping[str, Any], starts: Iterable[Mapping[str, Array]], least: float = math.inf
-    ) -> list[RawSolution]:
-        """Solve from each start; the least cost counts (it is positive): what is dearer is given up."""
-        ends: list[RawSolution] = []
-        for start in starts:
-            ends.append(self.solve(parameters, start, DEARER * least))
-            if ends[-1].status is Status.SOLVED:
-                least = min(least, ends[-1].cost)
-        return ends
-
-    def solve(
-        self, parameters: Mapping[str, Any], start: Mapping[str, Array], hopeless: float = math.inf
-    ) -> RawSolution:
+    def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Array]) -> RawSolution:
         """Solve for parameters, by name, from a start (variables left out begin at the program's own)."""
         began = time.perf_counter()
         ending = self._method.solve(
-            self.options, self.program.packed(start), self.program.packed_parameters(parameters), hopeless
+            self.options, self.program.packed(start), self.program.packed_parameters(parameters)
         )
         return RawSolution(
             values=self.program.unpacked(ending.symbols),

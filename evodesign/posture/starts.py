@@ -18,7 +18,7 @@ __all__ = ["PEOPLE", "STARTS_BESIDE", "different_people", "fixed_starts", "named
 STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
 
-PEOPLE = 8
+PEOPLE = 16
 """People of other starts who are put beside the best robot found so far (docs/benchmarks.md)."""
 
 SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})

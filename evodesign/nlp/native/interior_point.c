@@ -25,7 +25,6 @@
 #define INFEASIBLE_RESIDUAL 1e-6 /* IPOPT: 100 tolerances */
 #define RESTORATIONS 60
 #define MOST_RESTORATIONS 240
-#define DECIDED 1e-2            /* barrier and residual at which a cost is nearly that of the end */
 
 /* Errors of the optimality conditions: WB equations 5 and 6. */
 typedef struct {
@@ -172,11 +171,10 @@ static Status iterate(Solver *s, const Options *options) {
         Errors e = errors(s, 0);
         double infeasibility = largest(s->residuals, s->problem.rows), error = scaled(&e, infeasibility);
         o->infeasibility = infeasibility, o->dual_infeasibility = e.dual, o->complementarity = e.complementary;
-        int feasible = infeasibility <= NEARLY_FEASIBLE;
         if (error <= options->tolerance && e.dual <= LARGEST_DUAL && infeasibility <= LARGEST_RESIDUAL &&
             e.complementary <= LARGEST_PRODUCT)
             return SOLVED;
-        nearly = error <= NEARLY && feasible ? nearly + 1 : 0;
+        nearly = error <= NEARLY && infeasibility <= NEARLY_FEASIBLE ? nearly + 1 : 0;
         if (nearly == NEARLY_ITERATIONS)
             return ACCEPTABLE;
         if (!(error < DIVERGED) || !isfinite(s->now.cost))
@@ -185,8 +183,6 @@ static Status iterate(Solver *s, const Options *options) {
             return ITERATION_LIMIT;
         if (seconds() > until)
             return TIME_LIMIT;
-        if (feasible && s->barrier <= DECIDED && s->now.cost > options->hopeless)
-            return HOPELESS;
         lower_barrier(s, options->tolerance, infeasibility);
         double dual_shift;
         if (!find_direction(s, &dual_shift))

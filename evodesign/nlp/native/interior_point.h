@@ -35,7 +35,6 @@ typedef struct {
     double barrier;    /* mu at the start */
     double push;       /* least distance of the start from bounds, relative */
     double relaxation; /* of bounds, relative */
-    double hopeless;   /* cost above which a nearly feasible iterate is given up */
     int iterations;
     int near; /* whether multipliers of bounds follow from mu at the start */
 } Options;
@@ -49,8 +48,7 @@ typedef enum {
     INFEASIBLE,
     RESTORATION_FAILED,
     STEP_FAILED,
-    INVALID_NUMBER,
-    HOPELESS
+    INVALID_NUMBER
 } Status;
 
 typedef struct {

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import math
 import os
 import weakref
 from collections.abc import Callable
@@ -36,9 +35,8 @@ WORDS = (
     "Restoration_Failed",
     "Error_In_Step_Computation",
     "Invalid_Number_Detected",
-    "Cost_Above_Another",
 )
-"""IPOPT's words for the ends of a solve, in the order of the C's `Status`; the last is ours."""
+"""IPOPT's words for the ends of a solve, in the order of the C's `Status`."""
 
 
 NOT_LOADED = "the compiled functions could not be loaded"
@@ -62,7 +60,6 @@ class _Options(ctypes.Structure):
         ("barrier", ctypes.c_double),
         ("push", ctypes.c_double),
         ("relaxation", ctypes.c_double),
-        ("hopeless", ctypes.c_double),
         ("iterations", ctypes.c_int),
         ("near", ctypes.c_int),
     )
@@ -125,14 +122,12 @@ class NativeMethod:
         vectors = [vector.ctypes.data for vector in (self._parameters, *self._vectors)]
         self._addresses = (solver, *vectors, ctypes.addressof(self._outcome))
 
-    def solve(
-        self, options: SolverOptions, start: Array, parameters: Array, hopeless: float = math.inf
-    ) -> Ending:
-        """Solve from a start, in the program's own units, unless that turns out hopeless."""
+    def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
+        """Solve from a start, in the program's own units."""
         symbols, forces = np.empty(len(start)), np.empty(len(start))
         x, bounds, rows, given, fixed = self._vectors
         solver, *rest = self._addresses
-        settings, outcome = _settings(options, hopeless), self._outcome
+        settings, outcome = _settings(options), self._outcome
         with self._alone:
             x[:] = start[self._free]
             self._parameters[:] = parameters
@@ -150,7 +145,8 @@ class NativeMethod:
             )
 
 
-def _settings(options: SolverOptions, hopeless: float) -> _Options:
+@functools.cache
+def _settings(options: SolverOptions) -> _Options:
     """The options in C."""
     near = options.near
     return _Options(
@@ -159,7 +155,6 @@ def _settings(options: SolverOptions, hopeless: float) -> _Options:
         barrier=NEAR_BARRIER if near else BARRIER,
         push=NEAR_PUSH if near else PUSH,
         relaxation=0.0 if near else min(options.tolerance, RELAXATION),
-        hopeless=hopeless,
         iterations=options.iterations,
         near=near,
     )

@@ -120,9 +120,9 @@ class DecoupledPostures:
     ) -> Trial:
         """What the portfolio (or else the fixed starts) leads the robot to, with the person beside it."""
         parameters = {"design": design, **self._beside(task)}
-        names, starts = zip(*named_starts(self._robot, portfolio, self._fixed), strict=True)
-        ends = zip(names, self._robot.solve_all(parameters, starts), strict=True)
-        return self._trial(task, list(ends), checker)
+        starts = named_starts(self._robot, portfolio, self._fixed)
+        ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
+        return self._trial(task, ends, checker)
 
     def solve_beside(
         self,

@@ -157,15 +157,14 @@ class JointPostures:
         people: Sequence[Start] = (),
     ) -> Trial:
         parameters, program = {"design": design, **self._beside(task)}, self._solver.program
-        names = [name for name, _ in starts]
-        solves = self._solver.solve_all(parameters, (filled(start, program) for _, start in starts))
-        ends = list(zip(names, solves, strict=True))
+        ends = [(name, self._solver.solve(parameters, filled(start, program))) for name, start in starts]
         solved = [end for end in ends if end[1].status is Status.SOLVED]
         if solved:
             name, best = min(solved, key=lambda end: end[1].cost)
-            names = [f"{name}, person {number}" for number, _ in enumerate(people, 1)]
-            beside = ({**best.values, **person} for person in people)
-            ends += zip(names, self._solver.solve_all(parameters, beside, best.cost), strict=True)
+            ends += [
+                (f"{name}, person {number}", self._solver.solve(parameters, {**best.values, **person}))
+                for number, person in enumerate(people, 1)
+            ]
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             layout, scene = layout_of(program), self._setting.scene

@@ -33,7 +33,7 @@ __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "
 REACH_TRAINING = Training(designs=32, starts=8)
 HALF_TRAINING = Training(designs=48, starts=8)
 DISTURBED_TRAINING = Training(designs=24, starts=6, rounds=2)
-WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=8)
+WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=6, portfolio=8, rounds=2)
 
 STRICTER = 0.4

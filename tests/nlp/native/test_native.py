@@ -316,7 +316,7 @@ int main(void) {
     double *bounds = calloc(problem->variables, sizeof(double));
     double *rows = calloc(problem->rows + 1, sizeof(double)), *given = calloc(NUMBERS, sizeof(double));
     double *slopes = calloc(NUMBERS, sizeof(double)), fixed[64];
-    Options options = {1e-8, 20, 0.1, 1e-2, 1e-8, HUGE_VAL, 300, 0};
+    Options options = {1e-8, 20, 0.1, 1e-2, 1e-8, 300, 0};
     int ends[2] = {0, 0};
     for (int draw = 0; draw < 300; draw++) {
         for (int k = 0; k < NUMBERS; k++)
