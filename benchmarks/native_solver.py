@@ -112,12 +112,13 @@ def _timed(times: Times) -> Iterator[None]:
 
 
 def _programs(times: Times) -> dict[str, dict[str, float]]:
-    """Medians by program, and their ratio."""
+    """Medians by program, and their ratio, where both methods solved it."""
     rows = {}
     for name in sorted({program for program, _ in times}):
+        if not all((name, method) in times for method in MethodName):
+            continue
         native, ipopt = (
-            float(np.median(times[name, method])) if times[name, method] else float("nan")
-            for method in (MethodName.NATIVE, MethodName.IPOPT)
+            float(np.median(times[name, method])) for method in (MethodName.NATIVE, MethodName.IPOPT)
         )
         rows[name] = {"native": native, "ipopt": ipopt, "ratio": ipopt / native}
     return rows
