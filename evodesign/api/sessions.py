@@ -14,7 +14,10 @@ from typing import Protocol
 import msgspec
 
 from evodesign import evolve
-from evodesign.errors import InputError, Interrupted, ResumeMismatch
+from evodesign.errors import InputError, Interrupted, ResumeMismatch, RunError
+from evodesign.nlp.codegen import NotCompiled
+from evodesign.nlp.method import MethodName
+from evodesign.nlp.native.library import method_library
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import DesignProblem
@@ -183,9 +186,10 @@ def proceed(
         workers: as in `begin`.
         display: as in `begin`.
         make_stop: as in `begin`.
-        accept_versions: go on although packages that decide results have other versions.
+        accept_versions: go on although packages that decide results have other versions, or another method
+            solves.
     Raises:
-        RunError: not a run, another process is writing it, or packages have other versions.
+        RunError: not a run, another process is writing it, or packages or the solver are others.
         ResumeMismatch: the log holds a genome that the rebuilt search does not ask for.
         Interrupted: as in `begin`.
     """
@@ -197,6 +201,8 @@ def proceed(
         return budgets.of(new)
 
     logged = read_run(directory).header
+    if not accept_versions:
+        _refuse_other_method(logged, directory)
     _note_changed_problem(logged.problem, display)
     stop = make_stop(budgets.of(logged).hours)
     with (
@@ -242,6 +248,16 @@ def _resumable(directory: Path, stop: Stop) -> Iterator[None]:
         raise Interrupted(f"stopped; go on with: evodesign resume {directory}") from None
     except Interrupted as interrupted:
         raise Interrupted(f"{stop.why}: {interrupted}" if stop.why else f"{interrupted}") from None
+
+
+def _refuse_other_method(header: RunHeader, directory: Path) -> None:
+    """Refuse a run of the native method where only IPOPT can solve: results differ in their last digits."""
+    native = header.problem.method == MethodName.NATIVE
+    if native and isinstance(lacking := method_library(), NotCompiled):
+        raise RunError(
+            f"{directory}: its designs were solved by the native method, which is not to be had here "
+            f"({lacking.reason}); mend that, or go on with IPOPT all the same with --accept-versions"
+        )
 
 
 def _note_changed_problem(source: ProblemSource, display: Display) -> None:
