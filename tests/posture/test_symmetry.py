@@ -17,7 +17,7 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
-from evodesign.posture.starts import different_people
+from evodesign.posture.starts import PEOPLE, different_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
@@ -119,10 +119,10 @@ def test_people_who_stand_most_differently_stand_for_all(problem: DesignProblem)
     half_start, start = (
         {variable.name: variable.start for variable in each.variables} for each in (half_program, program)
     )
-    turns = [0.1 * number for number in range(12)]
+    turns = [0.05 * number for number in range(24)]
     starts = [{**start, "human.joints": start["human.joints"] + turn} for turn in turns]
     found = different_people(program, [half_start, *starts, {"robot.joints": start["robot.joints"]}])
-    assert len(found) == 8
+    assert len(found) == PEOPLE == 16
     assert [person["human.joints"][0] for person in found[:2]] == [turns[0], turns[-1]]
     assert abs(found[2]["human.joints"][0] - 0.55) < 0.1
     assert not any(name.startswith("robot") for person in found for name in person)
