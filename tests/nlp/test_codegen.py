@@ -244,8 +244,10 @@ def test_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert solved(solver).status is Status.SOLVED
 
 
-def test_compiler_that_writes_nothing_is_a_reason(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("CC", "true")
+def test_compiler_that_writes_nothing_is_a_reason(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", str(script(tmp_path / "lazy-cc", "exit 0")))
     found = compiled_functions(nlp(1.0))
     assert isinstance(found, NotCompiled)
     assert "No such file" in found.reason
