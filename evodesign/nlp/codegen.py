@@ -2,7 +2,7 @@
 
 The C holds the very expression graphs that CasADi's virtual machine would run (objective, constraints, exact
 first derivatives and Hessian of the Lagrangian), and is compiled without rearranging sums, so that both give
-the same bits: a design's value does not depend on whether there is a compiler. (Eliminating common
+the same bits: what IPOPT finds does not depend on whether there is a compiler. (Eliminating common
 subexpressions once more in the derivatives would save 2 % of their operations and cost that equality.)
 
 Threat model: see `cache`: a library is executed with the user's rights, so one that another user could have

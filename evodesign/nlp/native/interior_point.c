@@ -170,7 +170,6 @@ static Status iterate(Solver *s, const Options *options) {
     for (;;) {
         Errors e = errors(s, 0);
         double infeasibility = largest(s->residuals, s->problem.rows), error = scaled(&e, infeasibility);
-        o->infeasibility = infeasibility, o->dual_infeasibility = e.dual, o->complementarity = e.complementary;
         if (error <= options->tolerance && e.dual <= LARGEST_DUAL && infeasibility <= LARGEST_RESIDUAL &&
             e.complementary <= LARGEST_PRODUCT)
             return SOLVED;

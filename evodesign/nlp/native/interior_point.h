@@ -39,7 +39,7 @@ typedef struct {
     int near; /* whether multipliers of bounds follow from mu at the start */
 } Options;
 
-/* Numbers as Python's `Outcome` has them. */
+/* In the order of Python's WORDS. */
 typedef enum {
     SOLVED,
     ACCEPTABLE,
@@ -52,8 +52,8 @@ typedef enum {
 } Status;
 
 typedef struct {
-    double cost, infeasibility, dual_infeasibility, complementarity;
-    int status, iterations, factorisations, corrections, restorations;
+    double cost;
+    int status, iterations, restorations;
 } Outcome;
 
 typedef struct Solver Solver;

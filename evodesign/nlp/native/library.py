@@ -70,13 +70,8 @@ class _Outcome(ctypes.Structure):
 
     _fields_ = (
         ("cost", ctypes.c_double),
-        ("infeasibility", ctypes.c_double),
-        ("dual_infeasibility", ctypes.c_double),
-        ("complementarity", ctypes.c_double),
         ("status", ctypes.c_int),
         ("iterations", ctypes.c_int),
-        ("factorisations", ctypes.c_int),
-        ("corrections", ctypes.c_int),
         ("restorations", ctypes.c_int),
     )
 

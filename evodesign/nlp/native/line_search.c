@@ -90,7 +90,6 @@ static double corrected_share(Solver *s, const Here *here, double share, double 
         move(s->primals_now, s->corrected_step, corrected, s->primals, s->trial_primals);
         evaluate_values(s, s->trial_primals, &s->trial);
         measure_trial(s, trial);
-        s->outcome->corrections++;
         if (accepts(s, here, share, trial))
             return corrected;
     }

@@ -72,7 +72,6 @@ int factorise(Solver *s, const double *hessian, double dual_shift) {
         inverse[i] = 1.0 / pivot;
         positive += pivot > 0;
     }
-    s->outcome->factorisations++;
     return regular ? positive : -1;
 }
 
