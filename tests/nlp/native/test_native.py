@@ -95,7 +95,7 @@ def test_known_optimum_of_a_curved_program() -> None:
         for solver in both(program(cost, x, rows, bounds=(1.0, 5.0)))
     )
     assert ours.cost == pytest.approx(17.0140173, abs=1e-6)
-    assert abs(ours.iterations - theirs.iterations) <= 1
+    assert ours.iterations == theirs.iterations
     assert ours.multipliers.constraints == pytest.approx(theirs.multipliers.constraints, abs=1e-7)
     assert ours.multipliers.bounds == pytest.approx(theirs.multipliers.bounds, abs=1e-7)
 
@@ -103,18 +103,19 @@ def test_known_optimum_of_a_curved_program() -> None:
 @pytest.mark.parametrize("convex", [True, False], ids=["convex", "curved"])
 @pytest.mark.parametrize("seed", range(2))
 def test_random_programs_as_ipopt_has_them(seed: int, convex: bool) -> None:
-    compare(seed, convex=convex, draws=15)
+    assert compare(seed, convex=convex, draws=15) == 0
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("convex", [True, False], ids=["convex", "curved"])
 def test_a_thousand_random_programs_as_ipopt_has_them(convex: bool) -> None:
-    for seed in range(2, 12):
-        compare(seed, convex=convex, draws=50)
+    """At most 0.3 % of what IPOPT solves may be lost, and nothing convex."""
+    lost = sum(compare(seed, convex=convex, draws=50) for seed in range(2, 12))
+    assert lost <= (0 if convex else 0.003 * 500)
 
 
-def compare(seed: int, *, convex: bool, draws: int) -> None:
-    """A convex program has one optimum; of curved ones a few may lead elsewhere."""
+def compare(seed: int, *, convex: bool, draws: int) -> int:
+    """How many programs only IPOPT solves. A convex one has one optimum; curved ones may lead elsewhere."""
     random = random_program(seed, convex=convex)
     native, ipopt = both(random.program)
     rng = np.random.default_rng(seed)
@@ -133,8 +134,8 @@ def compare(seed: int, *, convex: bool, draws: int) -> None:
         if abs(gap) <= 1e-6:
             stationary(random.program, given["numbers"], ours)
     assert solved >= draws // 2
-    assert lost <= (0 if convex else draws // 15)
     assert worse == better == 0 if convex else worse <= 0.1 * draws
+    return lost
 
 
 def stationary(random: Program, numbers: np.ndarray, found: object) -> None:
