@@ -12,7 +12,9 @@ from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
+    from evodesign.collision.clearance import Gap
     from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.records import Case
     from evodesign.report.opened_design import OpenedDesign
 
 __all__ = ["show"]
@@ -32,6 +34,7 @@ def show(
     """One design of a run: objectives, parameters, torques, contact forces."""
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
+    from evodesign.problem.clearance import gap_json, overlaps
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
 
@@ -51,11 +54,13 @@ def show(
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in _ergonomics(opened)]
-        print_json({"run": str(run), **told, "ergonomics": asked})
+        gaps = [gap_json(gap) for gap in _gaps(opened).values()]
+        print_json({"run": str(run), **told, "ergonomics": asked, "clearances": gaps})
     else:
         from evodesign.cli.tables.card import card
 
         console().print(card(opened, _ergonomics(opened)))
+        show_notes(overlaps(_gaps(opened).items()))
     damage.end(logged, accepted=damaged)
 
 
@@ -68,6 +73,17 @@ def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
     except InputError as error:
         show_notes([f"what the postures ask of the person is left out ({error})"])
         return ()
+
+
+def _gaps(opened: OpenedDesign) -> dict[Case, Gap]:
+    """How near bodies come in its postures; none, and a note, if the problem cannot be built here."""
+    from evodesign.cli.output import show_notes
+
+    try:
+        return opened.gaps()
+    except InputError as error:
+        show_notes([f"how near bodies come to each other is left out ({error})"])
+        return {}
 
 
 def _make(directory: Path) -> None:

@@ -89,6 +89,7 @@ class StanceLimits:
         foot_yaw: largest turn of a foot against the agent's x [rad].
         base_tilt: largest roll, pitch and yaw of the root link [rad].
         push: largest horizontal force between the agents [N].
+        feet_gap: least sideways distance of the soles' edges [m]; None: feet may stand on each other.
     """
 
     trunk_clearance: float = 0.15
@@ -97,6 +98,7 @@ class StanceLimits:
     foot_yaw: float = 0.35
     base_tilt: float = 0.60
     push: float = 5.0
+    feet_gap: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

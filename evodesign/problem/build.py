@@ -226,6 +226,7 @@ def _stance(tables: ProblemFile, source: ProblemSource) -> StanceLimits:
         foot_yaw=limits.foot_yaw_rad,
         base_tilt=limits.base_tilt_rad,
         push=limits.push_n,
+        feet_gap=limits.feet_gap_m,
     )
 
 

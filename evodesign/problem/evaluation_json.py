@@ -12,6 +12,11 @@ joint needs, in the direction of `movement`; the rest is the revised NIOSH lifti
 has one, the `task`, and what came of it. `heights` tells the same of every load held still by its `height_m`
 and, where the problem has several people or loads, its `human_name` and `payload_name`.
 
+`clearance` tells of a posture which two bodies are the nearest of those that must not overlap, and how far
+they are apart, negative where they overlap:
+
+    {"bodies": ["robot l_foot", "robot r_foot"], "distance_m": -0.01}
+
 Where the problem has disturbances, a solved case's `disturbed` holds, by their names, torques and wrenches
 of the same posture under each. Residuals of such a case carry its name.
 
@@ -38,9 +43,11 @@ from typing import Any
 
 import msgspec
 
+from evodesign.collision.clearance import Gap
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.clearance import gap_json, solved_gaps
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
@@ -61,7 +68,8 @@ def evaluation_json(
     """The JSON object of one design."""
     design = dict(problem.space.named(values))
     materials = materials_of(problem.space.records, design)
-    shown = [_shown(solution, result) for solution in result.cases]
+    gaps = solved_gaps(result)
+    shown = [_shown(solution, result, gaps.get(solution.case)) for solution in result.cases]
     return {
         "problem": problem.name,
         "design": design,
@@ -89,7 +97,7 @@ def evaluation_json(
     }
 
 
-def _shown(solution: CaseSolution, result: DesignResult) -> dict[str, Any]:
+def _shown(solution: CaseSolution, result: DesignResult, gap: Gap | None) -> dict[str, Any]:
     """All of a case but its name."""
     shown: dict[str, Any] = {
         "status": str(solution.status),
@@ -103,6 +111,8 @@ def _shown(solution: CaseSolution, result: DesignResult) -> dict[str, Any]:
         if solution.disturbed:
             shown["disturbed"] = {name: _load_case(postures) for name, postures in solution.disturbed.items()}
         shown["residuals"] = dict(solution.residuals)
+        if gap is not None:
+            shown["clearance"] = gap_json(gap)
         person, posture = result.scene_of(solution.case).human, detail_of(solution).agents[HUMAN]
         shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
     return shown

@@ -205,6 +205,7 @@ class LimitsTable(Table, frozen=True):
     trunk_clearance_m: NotNegative = 0.15
     feet_apart_m: tuple[NotNegative, Positive] = (0.12, 0.50)
     feet_stagger_m: NotNegative = 0.30
+    feet_gap_m: NotNegative | None = None
     foot_yaw_rad: NotNegative = 0.35
     base_tilt_rad: Positive = 0.60
     push_n: NotNegative = 5.0

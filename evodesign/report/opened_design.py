@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 from evodesign.analysis.front import front
 from evodesign.errors import InputError, RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN
-from evodesign.records import CaseDetail, Evaluation, RunHeader
+from evodesign.records import Case, CaseDetail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
 
 if TYPE_CHECKING:
+    from evodesign.collision.clearance import Gap
     from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import DesignProblem
     from evodesign.problem.ergonomics import Ergonomics
@@ -75,6 +76,14 @@ class OpenedDesign:
         design = self.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
         values = [design[parameter.name] for parameter in problem.space.parameters]
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+
+    def gaps(self) -> dict[Case, Gap]:
+        """The nearest two bodies in each of its postures."""
+        from evodesign.problem.clearance import Clearances
+
+        problem, robot = self.rebuilt.problem, self.scene_set().robot
+        gaps = Clearances(problem.scenes).of(robot, self.cases)
+        return {detail.case: gap for detail, gap in zip(self.cases, gaps, strict=True)}
 
     def ergonomics(self) -> tuple[Ergonomics, ...]:
         """What the design's postures ask of the people, one for each.

@@ -52,7 +52,8 @@ SAME_MEASURE = {
 
 def scene_of(problem: DesignProblem) -> Scene:
     payload = replace(problem.scene.payload, grasp=Grasp.RIGID, hand_moment=5.0)
-    return replace(problem.scene, payload=payload, disturbances=DISTURBED)
+    stance = replace(problem.scene.stance, feet_gap=0.005)
+    return replace(problem.scene, payload=payload, stance=stance, disturbances=DISTURBED)
 
 
 def random_values(program: Program, rng: np.random.Generator) -> dict[str, np.ndarray]:

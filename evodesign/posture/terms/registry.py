@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from evodesign.posture.terms.base import BodyTerm, SystemTerm
 from evodesign.posture.terms.feet import FEET, UPRIGHT
+from evodesign.posture.terms.feet_gap import FEET_GAP
 from evodesign.posture.terms.floating_base import FLOATING_BASE
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.load import LOAD
@@ -20,6 +21,7 @@ TERMS: Mapping[str, BodyTerm | SystemTerm] = {
     "grasp": GRASP,
     "feet": FEET,
     "stance": STANCE,
+    "feet_gap": FEET_GAP,
     "torque": TORQUE,
     "posture_regularisation": POSTURE_REGULARISATION,
     "wrench_regularisation": WRENCH_REGULARISATION,

@@ -189,18 +189,28 @@ class Bodies(Part, frozen=True):
     surfaces: tuple[SurfaceBody, ...] = ()
 
 
+class ClearanceContent(Part, frozen=True):
+    """The two bodies that are nearest in a posture; the distance is negative where they overlap."""
+
+    first: str
+    second: str
+    distance_m: float
+
+
 class DesignContent(Part, frozen=True):
     """A design that can be opened.
 
     Attributes:
         cases: how each ended.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
+        clearances: as many as postures.
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
     """
 
     cases: tuple[CaseOutcome, ...]
     postures: tuple[CaseDetail, ...] = ()
+    clearances: tuple[ClearanceContent, ...] = ()
     links: dict[int, LinkBody] = {}
     joints: dict[int, JointBody] = {}
     gradients: dict[str, dict[str, float]] = {}

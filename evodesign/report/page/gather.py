@@ -10,13 +10,21 @@ from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.front import front
 from evodesign.errors import EvodesignError
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.clearance import Clearances
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Case, Detail, Evaluation
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
-from evodesign.report.page.content import CauseContent, Content, DesignContent, Facts, Mark
+from evodesign.report.page.content import (
+    CauseContent,
+    ClearanceContent,
+    Content,
+    DesignContent,
+    Facts,
+    Mark,
+)
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
@@ -151,21 +159,32 @@ def _designs(
     on_front: Collection[int],
 ) -> dict[int, DesignContent]:
     wanted = {*on_front, *(mark.number for mark in marked)}
+    clearances = None if problem is None else Clearances(problem.scenes)
     return {
-        evaluation.number: _design(problem, evaluation, opened.get(evaluation.number))
+        evaluation.number: _design(problem, clearances, evaluation, opened.get(evaluation.number))
         for evaluation in shown
         if evaluation.number in wanted
     }
 
 
-def _design(problem: DesignProblem | None, evaluation: Evaluation, detail: Detail | None) -> DesignContent:
+def _design(
+    problem: DesignProblem | None,
+    clearances: Clearances | None,
+    evaluation: Evaluation,
+    detail: Detail | None,
+) -> DesignContent:
     cases = evaluation.assessment.cases
-    if problem is None or detail is None:
+    if problem is None or clearances is None or detail is None:
         return DesignContent(cases=cases)
     parameters = problem.space.parameters
     values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
     links, joints = changes(problem, values)
-    return DesignContent(cases=cases, postures=detail.cases, links=links, joints=joints)
+    robot = problem.space.resized(problem.scene.robot.tree, values)
+    gaps = tuple(
+        ClearanceContent(first=gap.first, second=gap.second, distance_m=gap.distance)
+        for gap in clearances.of(robot, detail.cases)
+    )
+    return DesignContent(cases=cases, postures=detail.cases, clearances=gaps, links=links, joints=joints)
 
 
 def with_gradients(content: Content, run: RunLog, jobs: int, progress: PrecomputeProgress) -> Content:

@@ -15,6 +15,13 @@ const isOf = ({ case: { person = "", payload = "", task } }, at) =>
 const outcomeAt = (design, at) => design.cases.find((one) => isOf(one, at));
 const postureAt = (design, at) => design.postures.find((one) => isOf(one, at))?.instants[0];
 
+// The two bodies that are nearest in a posture; nothing if the page does not know.
+const clearanceAt = (design, at) => design.clearances[design.postures.findIndex((one) => isOf(one, at))];
+const clearanceText = ({ first, second, distance_m: distance }) =>
+  distance < -1e-4
+    ? `${capital(first)} and ${second} overlap by ${figure(-1e3 * distance, 2)} mm`
+    : `Nearest bodies: ${first} and ${second}, ${figure(1e3 * Math.max(distance, 0), 2)} mm apart`;
+
 const pairText = (at) => [at.person, at.payload].filter(Boolean).join(", ");
 const caseText = (at) => [pairText(at), heightText(at.height)].filter(Boolean).join(", ");
 

@@ -67,6 +67,7 @@ const heightControl = (design) => {
   const pair = pairControl();
   const output = element("output", { for: "height" });
   const detail = element("p", { id: "height-detail" });
+  const near = element("p", { id: "nearest-bodies" });
   const show = () => {
     const at = shownCase();
     const outcome = outcomeAt(design, at);
@@ -78,6 +79,8 @@ const heightControl = (design) => {
         ? `Solved: robot |torque| ${exact(outcome.robot_torque_norm)} N m, person ${exact(outcome.human_torque_norm)} N m; largest residual ${figure(outcome.residual, 2)}`
         : `${capital(outcome.status)}: ${outcome.reason}`
       : `The log holds no outcome for this ${severalPairs ? "case" : "height"}.`;
+    const gap = clearanceAt(design, at);
+    near.textContent = gap ? `${clearanceText(gap)}.` : "";
     slider.value = state.height;
     slider.setAttribute("aria-valuetext", `${heightText(at.height)}, ${outcome?.status ?? "unknown"}`);
   };
@@ -93,6 +96,7 @@ const heightControl = (design) => {
     slider,
     output,
     detail,
+    near,
   );
   return { box, show };
 };

@@ -1,0 +1,1 @@
+"""How far bodies are apart that must not pass through each other."""

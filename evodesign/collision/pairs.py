@@ -1,0 +1,111 @@
+"""Which bodies of an agent must not overlap: all but those that its build brings together.
+
+    neighbours     joined links, by way of at most one more with a body (an elbow's cross) or of three axes (a
+                   hip's, a shoulder's); bare frames do not count
+    always         pairs that overlap in most of the agent's postures
+    a hand         may touch the load that it holds, and so may links that begin less than a hand's length
+                   from the grasp, as wrists do
+
+So MoveIt fills its matrix of allowed collisions: adjacent, always, never.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
+from itertools import combinations
+
+import numpy as np
+
+from evodesign.body.placement import Placement
+from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import Joint, JointKind, Tree
+
+__all__ = ["holding_links", "watched_pairs"]
+
+BETWEEN, AXES = 1, 3
+"""Links with a body, or joints that move, between two neighbours."""
+
+HAND = 0.15
+"""A hand's length [m]."""
+
+SAMPLES, MOST = 100, 0.5
+"""Postures that are looked at, and the share of them in which a pair overlaps that always does."""
+
+TURN = np.pi  # [rad], of a joint without limits
+
+
+def watched_pairs(tree: Tree) -> tuple[tuple[str, str], ...]:
+    """Pairs of links that must not overlap, in the tree's order.
+
+    Args:
+        tree: of the agent, unscaled.
+    """
+    bodies = SolidBodies.of_tree(tree)
+    names = tuple(dict.fromkeys(bodies.names))
+    pairs = [pair for pair in combinations(names, 2) if not _near_by(tree, frozenset(names), *pair)]
+    always = _always_in_touch(tree, bodies, pairs)
+    return tuple(pair for pair in pairs if pair not in always)
+
+
+def holding_links(tree: Tree, hands: Mapping[str, str]) -> frozenset[str]:
+    """Links that may touch the load: those of hands, and the links near the grasp.
+
+    Args:
+        tree: of the agent, unscaled.
+        hands: frames at the grasp, by side.
+    """
+    frames = link_frames(tree, Placement(), {})
+    found: set[str] = set()
+    for hand in hands.values():
+        grasp, name = np.array(frames[hand].translation, float), hand
+        while np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
+            found |= {name, *_welded_below(tree, name)}
+            if name not in tree.parent_joint:
+                break
+            name = tree.parent_joint[name].parent
+    return frozenset(found)
+
+
+def _welded_below(tree: Tree, name: str) -> Iterator[str]:
+    """Links below one that nothing moves against it: fingers that stay."""
+    for joint in tree.child_joints[name]:
+        if joint.kind is JointKind.FIXED:
+            yield joint.child
+            yield from _welded_below(tree, joint.child)
+
+
+def _near_by(tree: Tree, bodies: frozenset[str], first: str, second: str) -> bool:
+    """Whether hardly anything is between two links."""
+    above, beyond = _to_root(tree, first), _to_root(tree, second)
+    common = next(link for link in above if link in beyond)
+    legs = above[: above.index(common)] + beyond[: beyond.index(common)]
+    moving = sum(tree.parent_joint[link].kind is not JointKind.FIXED for link in legs)
+    return moving <= AXES or len({*legs, common} & bodies - {first, second}) <= BETWEEN
+
+
+def _to_root(tree: Tree, name: str) -> list[str]:
+    found = [name]
+    while found[-1] in tree.parent_joint:
+        found.append(tree.parent_joint[found[-1]].parent)
+    return found
+
+
+def _always_in_touch(
+    tree: Tree, bodies: SolidBodies, pairs: Collection[tuple[str, str]]
+) -> frozenset[tuple[str, str]]:
+    """Pairs that overlap in most postures, drawn from the joints' ranges; always the same ones."""
+    rng = np.random.default_rng(0)
+    moving = [joint for joint in tree.joints if joint.kind is not JointKind.FIXED]
+    counts: Counter[tuple[str, str]] = Counter()
+    places = places_of(bodies.names, pairs)
+    for _ in range(SAMPLES):
+        positions = {joint.name: float(rng.uniform(*_range(joint))) for joint in moving}
+        placed = bodies.placed(link_frames(tree, Placement(), positions))
+        counts.update((gap.first, gap.second) for gap in placed.overlapping(places))
+    return frozenset(pair for pair, count in counts.items() if count > MOST * SAMPLES)
+
+
+def _range(joint: Joint) -> tuple[float, float]:
+    return max(joint.lower, -TURN), min(joint.upper, TURN)

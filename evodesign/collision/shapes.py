@@ -1,0 +1,111 @@
+"""Convex solids of links for coal: spheres, cylinders, boxes, and the convex hulls of meshes.
+
+A link's solids are what its mass is of; a link whose inertia is the file's has its meshes, or else the shapes
+that show it. A hull fills what is hollow, so that two links whose meshes fit into each other may be told to
+overlap.
+
+Source: coal (formerly hpp-fcl); convex hulls: Qhull, by scipy.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import coal
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.tree.model import Link, Mesh
+from evodesign.tree.surface import Surface
+
+__all__ = ["ConvexSolid", "box_solid", "solids_of"]
+
+Array = NDArray[np.float64]
+
+THIN = 1e-4  # [m]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ConvexSolid:
+    """A convex solid in a link.
+
+    Args:
+        geometry: coal's.
+        rotation: link_from_geometry, shape (3, 3).
+        position: of the geometry's origin in the link [m].
+        centre: of a ball about the solid, in the link [m].
+        radius: of the ball [m].
+    """
+
+    geometry: Any
+    rotation: Array
+    position: Array
+    centre: Array
+    radius: float
+
+
+def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
+    """The solids of a link of numbers; none for a bare frame."""
+    if link.solids:
+        return tuple(_of_shape(solid.shape, solid.link_from_solid) for solid in link.solids)
+    if link.shown:
+        return tuple(_of_mesh(mesh, mesh.surface) for mesh in link.shown if mesh.surface is not None)
+    return tuple(_of_shape(look.shape, look.link_from_look) for look in link.looks)
+
+
+def box_solid(shape: Box) -> ConvexSolid:
+    """A box about the origin."""
+    return _of_shape(shape, Placement())
+
+
+def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
+    rotation, position = np.array(place.rotation, float), np.array(place.translation, float)
+    if isinstance(shape, Sphere):
+        geometry, radius = coal.Sphere(float(shape.radius)), float(shape.radius)
+    elif isinstance(shape, Cylinder):
+        geometry = coal.Cylinder(float(shape.radius), float(shape.length))
+        radius = float(np.hypot(shape.radius, shape.length / 2.0))
+    else:
+        geometry, radius = coal.Box(*map(float, shape.sides)), float(np.linalg.norm(shape.sides) / 2.0)
+    return ConvexSolid(geometry, rotation, position, position, radius)
+
+
+def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
+    """The hull of a mesh at its place in its link."""
+    turn = np.array(mesh.stretch, float) @ np.array(mesh.link_from_mesh.rotation, float)
+    points = _corners(surface) * np.array(mesh.scale, float) @ turn.T
+    points = points + np.array(mesh.link_from_mesh.translation, float)
+    centre = (points.max(axis=0) + points.min(axis=0)) / 2.0
+    radius = float(np.linalg.norm(points - centre, axis=1).max())
+    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius)
+
+
+@functools.lru_cache(maxsize=1024)
+def _corners(surface: Surface) -> Array:
+    """The corners of a surface's convex hull, which scaling and stretching keep."""
+    from scipy.spatial import ConvexHull, QhullError  # takes a fifth of a second to load
+
+    vertices = np.array(surface.vertices, float)
+    try:
+        return np.asarray(vertices[np.sort(ConvexHull(vertices).vertices)])
+    except QhullError:  # in a plane, or on a line
+        return np.unique(vertices, axis=0)
+
+
+def _hull(points: Array) -> Any:
+    """A convex hull; points in a plane or on a line are thickened by a tenth of a millimetre."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(points)
+    except QhullError:
+        points = np.concatenate([points + sign * THIN * axis for sign in (-1.0, 1.0) for axis in np.eye(3)])
+        hull = ConvexHull(points)
+    corners, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    corners.extend(list(points))
+    faces.extend([coal.Triangle(*map(int, face)) for face in hull.simplices])
+    return coal.Convex(corners, faces)

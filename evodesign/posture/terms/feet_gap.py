@@ -1,0 +1,67 @@
+"""Feet that do not stand on each other: the inner corners of both soles are a gap apart, sideways.
+
+The sole is a rectangle about its frame, flat on the ground and turned by less than a right angle, so that its
+two inner corners are the ones nearest to the other foot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+import casadi as ca
+import numpy as np
+
+from evodesign.mechanics.contact import SoleSize
+from evodesign.mechanics.scene import SIDES
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.tree.kinematics import Expression
+
+__all__ = ["FEET_GAP"]
+
+NAME = "feet_gap"
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """Sideways distances of inner corners [m]; in a symmetric posture from those of the mirror image."""
+    gap = body.scene.stance.feet_gap
+    if gap is None:
+        return
+    inner = {side: _inner_corners(body, side) for side in body.form.sides}
+    if len(inner) == len(SIDES):
+        apart = [left - right for left, right in product(inner["left"], inner["right"])]
+    else:
+        apart = [2.0 * left for left in inner["left"]]
+    yield Row(NAME, ca.vertcat(*apart), gap, np.inf, (NAME,), group=LimitGroup.STANCE, posture_only=True)
+
+
+def _inner_corners(body: Body, side: str) -> list[Expression]:
+    """How far to the left the corners are."""
+    agent = body.form.agent
+    sole, inwards = body.poses[agent.soles[side]], -1.0 if side == "left" else 1.0
+    return [sole.point(ca.DM([x, y, 0.0]))[1] for x, y in _corners(agent.sole_size) if y * inwards > 0.0]
+
+
+def _corners(size: SoleSize) -> list[tuple[float, float]]:
+    return [(x * size.length / 2.0, y * size.width / 2.0) for x, y in product((-1.0, 1.0), (-1.0, 1.0))]
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """By how much the soles come too near [m], from all their corners."""
+    gap = body.scene.stance.feet_gap
+    if gap is None:
+        return
+    left, right = (
+        [_place(body, side, corner) for corner in _corners(body.agent.sole_size)] for side in SIDES
+    )
+    missing = max(0.0, gap - (min(left) - max(right)))
+    yield Residual(NAME, missing, "m", "the gap between the feet", LimitGroup.STANCE, posture_only=True)
+
+
+def _place(body: MeasuredBody, side: str, corner: tuple[float, float]) -> float:
+    rotation, origin = body.state.pose(body.agent.soles[side])
+    return float((origin + rotation @ np.array([*corner, 0.0]))[1])
+
+
+FEET_GAP = BodyTerm("feet_gap", rows=rows, residuals=residuals)

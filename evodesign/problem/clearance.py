@@ -1,0 +1,120 @@
+"""Whether bodies pass through each other in a posture: the smallest clearance of all pairs that must not.
+
+Postures are solved with bodies that may pass through anything but where a limit says otherwise (the feet, the
+trunk and the load); this tells by how much they do. Watched are an agent's own pairs (`collision.pairs`), all
+links and the load but for those that hold it, and all links of robot and person against each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Box
+from evodesign.collision.clearance import Gap, PlacedSolids, Places, SolidBodies, places_of
+from evodesign.collision.pairs import holding_links, watched_pairs
+from evodesign.collision.shapes import box_solid
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.problem.evaluate import detail_of
+from evodesign.problem.objectives import DesignResult
+from evodesign.records import AgentDetail, Case, CaseDetail
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import Tree
+
+__all__ = ["LOAD", "Clearances", "gap_json", "overlaps", "solved_gaps"]
+
+LOAD = "load"
+"""Name of the load beside `robot` and `person` followed by a link."""
+
+WHO: Mapping[str, str] = {ROBOT: "robot", HUMAN: "person"}
+
+Pairs = tuple[tuple[str, str], ...]
+
+OVERLAP = 1e-4
+"""Depth [m] from which an overlap is told."""
+
+
+class Clearances:
+    """The smallest clearance in any posture of a problem.
+
+    Args:
+        scenes: every person with every load, all with the same robot.
+    """
+
+    def __init__(self, scenes: Sequence[Scene]) -> None:
+        self._scenes = {scene.pair: scene for scene in scenes}
+        self._own: dict[int, Pairs] = {}
+        self._places: dict[tuple[str, str], Places] = {}
+        self._people = {scene.human.label: SolidBodies.of_tree(scene.human.tree) for scene in scenes}
+
+    def of(self, robot: Tree, cases: Sequence[CaseDetail]) -> list[Gap]:
+        """The nearest two bodies in each case, at the first instant, undisturbed.
+
+        Args:
+            robot: the design's tree.
+            cases: its postures.
+        """
+        solids = SolidBodies.of_tree(robot)
+        return [self._nearest(robot, solids, each) for each in cases]
+
+    def _nearest(self, robot: Tree, solids: SolidBodies, case: CaseDetail) -> Gap:
+        scene = self._scenes[case.case.pair]
+        person = self._people[scene.human.label]
+        load = SolidBodies((LOAD,), (box_solid(Box(*scene.payload.size)),))
+        middle = Placement(translation=(0.0, 0.0, case.case.task.height_m))
+        placed = _placed(scene.robot, robot, solids, case.agents[ROBOT]).beside(
+            _placed(scene.human, scene.human.tree, person, case.agents[HUMAN]),
+            load.placed({LOAD: middle}),
+        )
+        if scene.pair not in self._places:
+            self._places[scene.pair] = places_of(placed.names, self._watched(scene, solids, person))
+        return placed.nearest(self._places[scene.pair])
+
+    def _watched(self, scene: Scene, robot: SolidBodies, person: SolidBodies) -> Iterator[tuple[str, str]]:
+        """All pairs of a scene."""
+        links = {ROBOT: dict.fromkeys(robot.names), HUMAN: dict.fromkeys(person.names)}
+        for one in links[ROBOT]:
+            yield from ((_name(ROBOT, one), _name(HUMAN, other)) for other in links[HUMAN])
+        for agent in (scene.robot, scene.human):
+            holding = holding_links(agent.tree, agent.hands)
+            yield from ((_name(agent.name, a), _name(agent.name, b)) for a, b in self._of_agent(agent))
+            yield from ((_name(agent.name, link), LOAD) for link in links[agent.name] if link not in holding)
+
+    def _of_agent(self, agent: Agent) -> Pairs:
+        if id(agent.tree) not in self._own:
+            self._own[id(agent.tree)] = watched_pairs(agent.tree)
+        return self._own[id(agent.tree)]
+
+
+def solved_gaps(result: DesignResult) -> dict[Case, Gap]:
+    """The nearest two bodies of each solved case of a design."""
+    cases = [detail_of(solution) for solution in result.cases if solution.solved]
+    gaps = Clearances(result.scenes).of(result.tree, cases)
+    return {case.case: gap for case, gap in zip(cases, gaps, strict=True)}
+
+
+def gap_json(gap: Gap) -> dict[str, Any]:
+    """A gap as it is told to other programs."""
+    return {"bodies": [gap.first, gap.second], "distance_m": gap.distance}
+
+
+def overlaps(gaps: Iterable[tuple[Case, Gap]]) -> list[str]:
+    """A sentence for each case in which bodies pass through each other."""
+    return [
+        f"at {case.name}, {gap.first} and {gap.second} overlap by {-1e3 * gap.distance:.1f} mm"
+        for case, gap in gaps
+        if gap.distance < -OVERLAP
+    ]
+
+
+def _placed(agent: Agent, tree: Tree, solids: SolidBodies, posture: AgentDetail) -> PlacedSolids:
+    """An agent's solids in the world."""
+    world_from_agent = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, agent.facing))
+    base = Placement.from_xyz_rpy(posture.base_position_m, posture.base_rpy_rad)
+    placed = solids.placed(link_frames(tree, world_from_agent @ base, posture.joints_rad))
+    return placed.named(lambda link: _name(agent.name, link))
+
+
+def _name(agent: str, link: str) -> str:
+    return f"{WHO[agent]} {link}"
