@@ -48,19 +48,17 @@ class Grasp(StrEnum):
 
 
 class GraspDirection(StrEnum):
-    """From where forearms come to the load, in the frame of the agent, who looks along +x at it."""
+    """From where an agent's forearms come to the load: from below and behind, from outside and behind."""
 
     FREE = "free"
-    AHEAD = "ahead"
     UNDER = "under"
     SIDE = "side"
 
     def axis(self, side: str) -> Vector | None:
-        """Unit vector along which a side's forearm points best, from elbow to hand; None if it is free."""
+        """Direction of a side's forearm from elbow to hand, in the agent's frame; None if it is free."""
         inward = -DIAGONAL if side == "left" else DIAGONAL
         return {
             GraspDirection.FREE: None,
-            GraspDirection.AHEAD: (1.0, 0.0, 0.0),
             GraspDirection.UNDER: (DIAGONAL, 0.0, DIAGONAL),
             GraspDirection.SIDE: (DIAGONAL, inward, 0.0),
         }[self]

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 
+from evodesign.human.anthropometry import ShoulderWidth, landmarks
 from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
 from evodesign.human.coupled_joints import coupled_joints, shared_ranges
+
+SCALE = 0.5
+"""One over the stature [m] of a person whose lengths are printed as fractions of it."""
 
 TREE = human_tree(Person(1.75, 75.0, Sex.MALE))
 
@@ -46,3 +51,15 @@ def test_shared_ranges_are_of_moving_joints_about_one_axis_and_hold_less_than_th
         assert len({joint.axis for joint in joints}) == 1
         assert each.lower < 0.0 < each.upper
         assert sum(joint.upper for joint in joints) > each.upper
+
+
+def test_the_page_of_the_person_prints_the_ranges_and_the_widths_that_are_used(repository: Path) -> None:
+    lines = (repository / "docs" / "person.md").read_text(encoding="utf-8").splitlines()
+    for each in shared_ranges().ranges:
+        lower, upper = (f"{limit:.1f}" for limit in each.range_deg)
+        assert f"| {each.name} | {' + '.join(each.joints)} | {lower} | {upper} | {each.source} |" in lines
+    for width in ShoulderWidth:
+        points = landmarks(Person(1.0 / SCALE, 70.0, Sex.MALE, width))
+        joints, span = (2.0 * SCALE * points[name][1] for name in ("LeftUpperArm", "LeftFingertip"))
+        (line,) = [line for line in lines if f'`"{width}"`' in line and line.startswith("| ")]
+        assert line.endswith(f"| {joints:.3f} | {span:.3f} |")

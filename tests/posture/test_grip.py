@@ -70,7 +70,7 @@ def test_a_spine_that_folds_bends_no_further_than_its_ranges(
 def test_forearms_stay_within_their_cone(
     problem: DesignProblem, free: CaseSolution, symmetry: Symmetry
 ) -> None:
-    scene = held(problem, GraspDirection.AHEAD, math.radians(50.0))
+    scene = held(problem, GraspDirection.SIDE, math.radians(50.0))
     found = sizes(checker_of(scene).residuals(free.instants[0], LOW))
     assert max(found[f"{agent}.grasp_direction"] for agent in (ROBOT, HUMAN)) > 0.1
     solution = solved(problem, scene, LOW, symmetry)
@@ -86,7 +86,7 @@ def test_a_free_grasp_has_no_residual(problem: DesignProblem, free: CaseSolution
 def test_a_narrow_cone_narrows_the_reach(problem: DesignProblem) -> None:
     design = problem.space.unscaled(problem.scene.robot.tree)
     ends = []
-    for scene in (problem.scene, held(problem, GraspDirection.AHEAD, math.radians(30.0))):
+    for scene in (problem.scene, held(problem, GraspDirection.SIDE, math.radians(40.0))):
         setting = Setting(scene, problem.space, problem.weights, problem.options)
         reach = ReachProblem(setting, symmetric=True).solve(design)
         assert reach.lowest is not None
