@@ -109,6 +109,7 @@ def test_height_out_of_the_persons_reach_has_no_value(problem: DesignProblem) ->
     )
 
 
+@pytest.mark.slow
 def test_a_push_that_met_only_worse_optima_starts_at_those_of_others(
     problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
