@@ -18,9 +18,18 @@ from dataclasses import dataclass
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector, add, scale
 from evodesign.errors import InputError
-from evodesign.human.anthropometry_tables import Sex, tables
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth, tables
 
-__all__ = ["PAIRED_SEGMENTS", "SEGMENTS", "Person", "Sex", "landmarks", "segments", "sole_size"]
+__all__ = [
+    "PAIRED_SEGMENTS",
+    "SEGMENTS",
+    "Person",
+    "Sex",
+    "ShoulderWidth",
+    "landmarks",
+    "segments",
+    "sole_size",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +40,7 @@ class Person:
         stature: height when standing [m].
         mass: body mass [kg].
         sex: column of the tables.
+        shoulder_width: what lies between the shoulder joints.
     Raises:
         InputError: a stature or mass outside the accepted range.
     """
@@ -38,6 +48,7 @@ class Person:
     stature: float
     mass: float
     sex: Sex
+    shoulder_width: ShoulderWidth = ShoulderWidth.DRILLIS_CONTINI
 
     def __post_init__(self) -> None:
         accepted = tables().accepted
@@ -70,6 +81,8 @@ def landmarks(person: Person) -> Mapping[str, Vector]:
     vertex = length.trunk + length.neck + length.head
     hip = trunk.hip_joint_separation / 2.0
     shoulder = length.shoulder_width / 2.0
+    if person.shoulder_width is ShoulderWidth.JOINT_CENTRES:
+        shoulder *= tables().shoulders.joint_centres
     elbow = shoulder + length.upper_arm
     wrist = elbow + length.forearm
     hand = column.segments["hand"].centre / column.hand_centre_to_metacarpal * length.hand

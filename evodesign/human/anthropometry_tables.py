@@ -15,7 +15,17 @@ import msgspec
 
 from evodesign.records import Record
 
-__all__ = ["Articulation", "AxisRange", "BodySegment", "Column", "Sex", "Tables", "figures", "tables"]
+__all__ = [
+    "Articulation",
+    "AxisRange",
+    "BodySegment",
+    "Column",
+    "Sex",
+    "ShoulderWidth",
+    "Tables",
+    "figures",
+    "tables",
+]
 
 R = TypeVar("R", bound=Record)
 
@@ -25,6 +35,15 @@ class Sex(StrEnum):
 
     MALE = "male"
     FEMALE = "female"
+
+
+class ShoulderWidth(StrEnum):
+    """What lies between a person's shoulder joints."""
+
+    DRILLIS_CONTINI = "drillis_contini"
+    """The shoulder width of Drillis and Contini, 0.259 of stature: that of the shoulders' outer points."""
+    JOINT_CENTRES = "joint_centres"
+    """The distance of the centres of rotation where arms are raised forward, 0.202 of stature."""
 
 
 class Accepted(Record, frozen=True):
@@ -52,6 +71,13 @@ class Lengths(Record, frozen=True):
     hip_breadth: float
     foot_length: float
     foot_breadth: float
+
+
+class Shoulders(Record, frozen=True):
+    """How far the joint centres are apart, over the shoulder width."""
+
+    source: str
+    joint_centres: float
 
 
 class Foot(Record, frozen=True):
@@ -145,6 +171,7 @@ class Tables(Record, frozen=True):
 
     accepted: Accepted
     lengths: Lengths
+    shoulders: Shoulders
     foot: Foot
     trunk: Trunk
     looks: Looks

@@ -15,16 +15,29 @@ from enum import StrEnum
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
+from evodesign.human.coupled_joints import CoupledJoints
 from evodesign.human.strength import JointStrength
 from evodesign.mechanics.contact import Ground, SoleSize
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.records import Case, Task
 from evodesign.tree.model import Tree
 
-__all__ = ["HUMAN", "ROBOT", "SIDES", "Agent", "Grasp", "Payload", "Scene", "StanceLimits", "scene_of"]
+__all__ = [
+    "HUMAN",
+    "ROBOT",
+    "SIDES",
+    "Agent",
+    "Grasp",
+    "GraspDirection",
+    "Payload",
+    "Scene",
+    "StanceLimits",
+    "scene_of",
+]
 
 ROBOT, HUMAN = "robot", "human"
 SIDES = ("left", "right")
+DIAGONAL = math.sqrt(0.5)
 
 
 class Grasp(StrEnum):
@@ -32,6 +45,23 @@ class Grasp(StrEnum):
 
     POINT = "point"
     RIGID = "rigid"
+
+
+class GraspDirection(StrEnum):
+    """From where an agent's forearms come to the load: from below and behind, from outside and behind."""
+
+    FREE = "free"
+    UNDER = "under"
+    SIDE = "side"
+
+    def axis(self, side: str) -> Vector | None:
+        """Direction of a side's forearm from elbow to hand, in the agent's frame; None if it is free."""
+        inward = -DIAGONAL if side == "left" else DIAGONAL
+        return {
+            GraspDirection.FREE: None,
+            GraspDirection.UNDER: (DIAGONAL, 0.0, DIAGONAL),
+            GraspDirection.SIDE: (DIAGONAL, inward, 0.0),
+        }[self]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +77,8 @@ class Payload:
         grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
             it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
         label: what it is called where a problem has several loads.
+        grasp_direction: from where forearms come to the load.
+        grasp_cone: largest angle of a forearm from that direction [rad].
     """
 
     size: Vector
@@ -56,6 +88,8 @@ class Payload:
     hand_moment: float = math.inf
     grasp_points: Mapping[tuple[str, str], Vector] = field(default_factory=dict)
     label: str = ""
+    grasp_direction: GraspDirection = GraspDirection.FREE
+    grasp_cone: float = math.radians(60.0)
 
     @property
     def inertia(self) -> Inertia:
@@ -115,6 +149,7 @@ class Agent:
         trunk: frames that keep clear of the load.
         label: who it is where a problem has several people.
         strengths: of its joints, by name; none for a robot.
+        coupled_joints: ranges that several of its joints share.
         torque_limits: largest torque [N m] of each joint that moves and has a limit.
         limits_torques: whether these limits hold in every posture.
     """
@@ -130,6 +165,7 @@ class Agent:
     strengths: Mapping[str, JointStrength] = field(default_factory=dict)
     torque_limits: Mapping[str, float] = field(default_factory=dict)
     limits_torques: bool = False
+    coupled_joints: tuple[CoupledJoints, ...] = ()
 
     @property
     def pushed_frame(self) -> str:

@@ -12,8 +12,9 @@ import msgspec
 
 from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
-from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry import Person, ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.coupled_joints import coupled_joints
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
@@ -23,6 +24,7 @@ from evodesign.problem.file import (
     FrameTable,
     HandsTable,
     HumanTable,
+    JointRanges,
     ProblemFile,
     SolesTable,
     TorqueLimits,
@@ -94,13 +96,28 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
         refuse_unknown(
             source, f"{key}.strengths_n_m", "moving joint", joint, person.tree.actuated, person.tree.name
         )
-    return replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
+    rated = replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
+    return rated if table.joint_ranges is JointRanges.SEPARATE else _coupled(key, rated, source)
+
+
+def _coupled(key: str, person: Agent, source: ProblemSource) -> Agent:
+    """The person with the published ranges that its joints share.
+
+    Raises:
+        InputError: a person from a URDF lacks one of the joints.
+    """
+    shared = coupled_joints()
+    for name in (name for each in shared for name in each.joints):
+        if name not in person.tree.joint_by_name:
+            wanted = f"'separate', or a person with the generated one's spine, such as its joint '{name}'"
+            raise InputError(source.path, f"{key}.joint_ranges", wanted, f"'coupled' of '{person.tree.name}'")
+    return replace(person, coupled_joints=shared)
 
 
 def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     if table.urdf is None:
         return _generated(key, table, source)
-    for figure in ("stature_m", "mass_kg", "sex"):
+    for figure in ("stature_m", "mass_kg", "sex", "shoulder_width"):
         if getattr(table, figure) is not None:
             raise InputError(source.path, f"{key}.{figure}", "either urdf or stature, mass and sex", "both")
     if table.hands is None or table.soles is None:
@@ -117,7 +134,8 @@ def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
         missing = next(figure for figure, value in figures.items() if value is None)
         raise InputError(source.path, f"{key}.{missing}", "this key, or urdf", "nothing")
     try:
-        someone = Person(table.stature_m, table.mass_kg, table.sex)
+        width = table.shoulder_width or ShoulderWidth.DRILLIS_CONTINI
+        someone = Person(table.stature_m, table.mass_kg, table.sex, width)
     except InputError as error:
         raise InputError(source.path, f"{key}.{error.key}", error.wanted, error.found) from error
     tree = _with_frames(human_tree(someone), table.frames, key, source)

@@ -34,7 +34,7 @@ from evodesign.problem.design_space import (
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.joint_settings import joint_settings, joint_start
-from evodesign.problem.loads import payloads, scene_disturbances
+from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
 from evodesign.problem.symmetric import resolved_symmetry
@@ -165,6 +165,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     robot, ground, stance = robot_agent(tables, source), _ground(tables), _stance(tables, source)
     refuse_unlimited(tables, source, robot)
     people, loads = human_agents(tables, source), payloads(tables, source)
+    refuse_stiff_arms(source, loads, (robot, *people))
     disturbances = scene_disturbances(tables, source, (robot, *people), loads)
     scenes = tuple(
         Scene(robot, human, load, ground, stance, disturbances) for human in people for load in loads

@@ -13,10 +13,10 @@ import msgspec
 from msgspec import Meta
 
 from evodesign.body.placement import Matrix, Vector
-from evodesign.human.anthropometry import Sex
+from evodesign.human.anthropometry import Sex, ShoulderWidth
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
-from evodesign.mechanics.scene import Grasp
+from evodesign.mechanics.scene import Grasp, GraspDirection
 from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
@@ -118,11 +118,19 @@ class PopulationForm(Table, frozen=True):
     percentiles: tuple[float, ...]
 
 
+class JointRanges(StrEnum):
+    """Whether a person's joints share published ranges, or each has all of its own."""
+
+    SEPARATE = "separate"
+    COUPLED = "coupled"
+
+
 class HumanTable(Table, frozen=True):
     """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts.
 
     `population` stands for several people. `strengths_n_m` gives the largest torques of joints in their
-    negative and positive direction, for a URDF or instead of published ones.
+    negative and positive direction, for a URDF or instead of published ones. `joint_ranges` says whether the
+    joints of the spine share ranges; `shoulder_width` how far a generated person's shoulder joints are apart.
     """
 
     name: Name | None = None
@@ -137,6 +145,8 @@ class HumanTable(Table, frozen=True):
     trunk: tuple[Name, ...] = ()
     joints: tuple[Name, ...] = ()
     strengths_n_m: dict[str, tuple[Positive, Positive]] = msgspec.field(default_factory=dict)
+    joint_ranges: JointRanges = JointRanges.SEPARATE
+    shoulder_width: ShoulderWidth | None = None
 
 
 class GraspsTable(Table, frozen=True):
@@ -149,7 +159,8 @@ class GraspsTable(Table, frozen=True):
 class PayloadTable(Table, frozen=True):
     """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height.
 
-    `hand_moment_n_m` bounds each component of the moment that a rigid hand passes.
+    `hand_moment_n_m` bounds each component of the moment that a rigid hand passes. `grasp_direction` says
+    from where forearms may come to the load, within a cone of half angle `grasp_cone_deg`.
     """
 
     size_m: tuple[Positive, Positive, Positive]
@@ -158,6 +169,8 @@ class PayloadTable(Table, frozen=True):
     center_of_mass_m: Point = (0.0, 0.0, 0.0)
     grasp: Grasp = Grasp.POINT
     hand_moment_n_m: NotNegative | None = None
+    grasp_direction: GraspDirection = GraspDirection.FREE
+    grasp_cone_deg: Annotated[float, Meta(gt=0.0, lt=180.0)] | None = None
     robot_grasps_m: GraspsTable | None = None
     human_grasps_m: GraspsTable | None = None
 

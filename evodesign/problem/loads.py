@@ -8,11 +8,15 @@ from dataclasses import replace
 
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Payload
+from evodesign.mechanics.elbow import elbow
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, GraspDirection, Payload
 from evodesign.problem.file import DisturbanceTable, PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
 
-__all__ = ["payloads", "scene_disturbances"]
+__all__ = ["payloads", "refuse_stiff_arms", "scene_disturbances"]
+
+GRASP_CONE = math.radians(60.0)
+"""Largest angle of a forearm from the direction of the grasp [rad]: about what a wrist bends."""
 
 
 def payloads(tables: ProblemFile, source: ProblemSource) -> tuple[Payload, ...]:
@@ -45,7 +49,26 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
         for side in SIDES
     }
     moment = _hand_moment(key, table, source)
-    return Payload(table.size_m, table.mass_kg, table.center_of_mass_m, table.grasp, moment, points)
+    return Payload(
+        size=table.size_m,
+        mass=table.mass_kg,
+        center_of_mass=table.center_of_mass_m,
+        grasp=table.grasp,
+        hand_moment=moment,
+        grasp_points=points,
+        grasp_direction=table.grasp_direction,
+        grasp_cone=_grasp_cone(key, table, source),
+    )
+
+
+def _grasp_cone(key: str, table: PayloadTable, source: ProblemSource) -> float:
+    """Largest angle of a forearm from the direction of the grasp [rad]."""
+    if table.grasp_cone_deg is None:
+        return GRASP_CONE
+    if table.grasp_direction is GraspDirection.FREE:
+        wanted, found = "a grasp_direction with it", f"{table.grasp_cone_deg:g} for free forearms"
+        raise InputError(source.path, f"{key}.grasp_cone_deg", wanted, found)
+    return math.radians(table.grasp_cone_deg)
 
 
 def _hand_moment(key: str, table: PayloadTable, source: ProblemSource) -> float:
@@ -56,6 +79,22 @@ def _hand_moment(key: str, table: PayloadTable, source: ProblemSource) -> float:
         found = f"{table.hand_moment_n_m:g} for point grasps, which pass no moment"
         raise InputError(source.path, f"{key}.hand_moment_n_m", "grasp = 'rigid' with it", found)
     return table.hand_moment_n_m
+
+
+def refuse_stiff_arms(source: ProblemSource, loads: Sequence[Payload], agents: Sequence[Agent]) -> None:
+    """Refuse a direction of the grasp where an arm has no elbow.
+
+    Raises:
+        InputError: no joint between the trunk and a hand bends the arm.
+    """
+    if all(load.grasp_direction is GraspDirection.FREE for load in loads):
+        return
+    for agent in agents:
+        for side in SIDES:
+            if elbow(agent, side) is None:
+                wanted = f"'free', or an arm of '{agent.tree.name}' that bends"
+                found = f"no moving joint between the trunk and '{agent.hands[side]}'"
+                raise InputError(source.path, "payload.grasp_direction", wanted, found)
 
 
 def scene_disturbances(

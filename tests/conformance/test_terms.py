@@ -10,8 +10,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.human.coupled_joints import coupled_joints
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, GraspDirection, Scene
 from evodesign.nlp.program import Program
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
@@ -45,15 +46,17 @@ DISTURBED = Disturbances(
 
 SAME_MEASURE = {
     "hands_on_load", "foot_contact", "feet_apart", "feet_stagger", "trunk_clear", "torque",
-    "load.push", "load.share",
+    "load.push", "load.share", "coupled_joints",
 }  # fmt: skip
 """Residuals that measure just what their rows do; others take other axes, or another function of an angle."""
 
 
 def scene_of(problem: DesignProblem) -> Scene:
     payload = replace(problem.scene.payload, grasp=Grasp.RIGID, hand_moment=5.0)
+    payload = replace(payload, grasp_direction=GraspDirection.SIDE)
+    human = replace(problem.scene.human, coupled_joints=coupled_joints())
     stance = replace(problem.scene.stance, feet_gap=0.005)
-    return replace(problem.scene, payload=payload, stance=stance, disturbances=DISTURBED)
+    return replace(problem.scene, human=human, payload=payload, stance=stance, disturbances=DISTURBED)
 
 
 def random_values(program: Program, rng: np.random.Generator) -> dict[str, np.ndarray]:

@@ -13,12 +13,18 @@ from hypothesis import strategies as st
 from evodesign.body.inertia import Inertia, total
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import segments
+from evodesign.human.anthropometry import ShoulderWidth, segments
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, Person, Sex, human_tree, sole_size
 from evodesign.tree.model import Joint, JointKind, Tree
 from tests.machine import leave_out
 
-persons = st.builds(Person, st.floats(1.45, 2.05), st.floats(40.0, 140.0), st.sampled_from(Sex))
+persons = st.builds(
+    Person,
+    st.floats(1.45, 2.05),
+    st.floats(40.0, 140.0),
+    st.sampled_from(Sex),
+    st.sampled_from(ShoulderWidth),
+)
 few = settings(max_examples=15, deadline=None)
 MAN = Person(1.8, 80.0, Sex.MALE)
 
@@ -315,9 +321,8 @@ def test_the_t_pose_lies_within_all_ranges() -> None:
 @few
 @given(persons)
 def test_a_small_change_of_the_person_changes_the_body_little(person: Person) -> None:
-    other = Person(
-        min(person.stature * (1.0 + 1e-6), 2.05), min(person.mass * (1.0 + 1e-6), 140.0), person.sex
-    )
+    stature, mass = min(person.stature * (1.0 + 1e-6), 2.05), min(person.mass * (1.0 + 1e-6), 140.0)
+    other = Person(stature, mass, person.sex, person.shoulder_width)
     for link, near in zip(human_tree(person).links, human_tree(other).links, strict=True):
         assert near.inertia.mass == pytest.approx(link.inertia.mass, rel=1e-5)
         assert np.array(near.inertia.about_center) == pytest.approx(

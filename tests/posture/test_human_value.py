@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
-from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.mechanics.scene import Grasp, GraspDirection, Scene
 from evodesign.posture.formulations.human_value import LARGEST_ERROR, HumanProblem, chebyshev_sum
 from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, stages, with_piece
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
@@ -106,3 +107,19 @@ def test_height_out_of_the_persons_reach_has_no_value(problem: DesignProblem) ->
     assert with_piece(NOTHING_PRECOMPUTED, piece, b'{"push_n":') is None, (
         "a content that cannot be read is missing"
     )
+
+
+@pytest.mark.slow
+def test_a_push_that_met_only_worse_optima_starts_at_those_of_others(
+    problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the forearms' direction given, the twelve starts find the least cost under some pushes alone."""
+    payload = replace(problem.scene.payload, grasp_direction=GraspDirection.SIDE)
+    scene = replace(problem.scene, payload=payload)
+    person = HumanProblem(symmetric_forms(scene)[1], scene, problem.weights.human, problem.options)
+    value = person.value(0.8)
+    assert value is not None
+    ends = [person.solve(0.8, 0.0, start) for start in person_starts(person.program)]
+    assert value.cost(0.0) < min(end.cost for end in ends if end.status is Status.SOLVED) + LARGEST_ERROR
+    monkeypatch.setattr(HumanProblem, "_from_others", lambda self, height, best: best)
+    assert person.value(0.8) is None

@@ -41,6 +41,8 @@ DEGREE = 8
 COEFFICIENTS = DEGREE + 1
 PUSH_UNIT = 10.0  # [N] per unit of the row that fixes the push
 NODES_TRIED = 4
+"""Of the optima at other pushes, how many are tried as starts."""
+
 LARGEST_ERROR = 0.02
 """Largest error of V between nodes that is accepted, in the cost's unit."""
 
@@ -147,13 +149,28 @@ class HumanProblem:
             if solution is None:
                 return None
             best[push] = solution
+        found = self._fitted(nodes, between, best)
+        if found.error > LARGEST_ERROR:  # mostly because some pushes met only worse optima than others
+            found = self._fitted(nodes, between, self._from_others(height, best))
+        return found if found.error <= LARGEST_ERROR else None
+
+    def _fitted(self, nodes: Array, between: Array, best: Mapping[float, RawSolution]) -> HumanValue:
+        """V through its nodes, with its error between them."""
         costs = {push: solution.cost for push, solution in best.items()}
         fit = Chebyshev.fit(nodes, [costs[float(x)] for x in nodes], DEGREE, domain=[-self._push, self._push])
         error = max(abs(float(fit(x)) - costs[float(x)]) for x in between)
-        if error > LARGEST_ERROR:
-            return None
         starts = tuple((push, dict(best[push].values)) for push in sorted(best))
         return HumanValue(self._push, tuple(fit.coef.tolist()), starts, error)
+
+    def _from_others(self, height: float, best: Mapping[float, RawSolution]) -> dict[float, RawSolution]:
+        """The best at each push, where the cheapest of all pushes may lead as well."""
+        cheapest = sorted(best.values(), key=lambda solution: solution.cost)[:NODES_TRIED]
+        found = {}
+        for push, own in best.items():
+            ends = [self.solve(height, push, other.values) for other in cheapest]
+            solved = [end for end in ends if end.status is Status.SOLVED]
+            found[push] = min([own, *solved], key=lambda solution: solution.cost)
+        return found
 
     def _best(self, height: float, push: float) -> RawSolution | None:
         """The best of many starts, the same ones every time."""

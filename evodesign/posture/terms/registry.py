@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from evodesign.posture.terms.base import BodyTerm, SystemTerm
+from evodesign.posture.terms.coupled_joints import COUPLED_JOINTS
 from evodesign.posture.terms.feet import FEET, UPRIGHT
 from evodesign.posture.terms.feet_gap import FEET_GAP
 from evodesign.posture.terms.floating_base import FLOATING_BASE
 from evodesign.posture.terms.grasp import GRASP
+from evodesign.posture.terms.grip import GRIP
 from evodesign.posture.terms.load import LOAD
 from evodesign.posture.terms.regularisation import POSTURE_REGULARISATION, WRENCH_REGULARISATION
 from evodesign.posture.terms.stance import STANCE
@@ -27,4 +29,6 @@ TERMS: Mapping[str, BodyTerm | SystemTerm] = {
     "wrench_regularisation": WRENCH_REGULARISATION,
     "load": LOAD,
     "upright": UPRIGHT,
+    "coupled_joints": COUPLED_JOINTS,
+    "grip": GRIP,
 }

@@ -1,0 +1,42 @@
+"""Coupled joints: some of a person's joints share a range, as the spine does.
+
+    lower <= sum of positions <= upper
+
+A person who asks for nothing of the kind (`[human] joint_ranges`) has no such rows. In a symmetric half,
+joints that stand at zero are left out of their sums.
+
+Source: `human.coupled_joints`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+
+__all__ = ["COUPLED_JOINTS"]
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """A row for each shared range of which some joint is a variable [rad]."""
+    place = {name: number for number, name in enumerate(body.form.joints)}
+    for each in body.agent.coupled_joints:
+        positions = [body.values["joints"][place[name]] for name in each.joints if name in place]
+        if positions:
+            limits, found, group = (each.lower, each.upper), ("coupled_joints",), LimitGroup.JOINT_LIMITS
+            yield Row(each.name, sum(positions), *limits, found, group=group, posture_only=True)
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """By how much the worst shared range is exceeded."""
+    beyond = [0.0]
+    for each in body.agent.coupled_joints:
+        together = sum(body.posture.joints.get(name, 0.0) for name in each.joints)
+        beyond += [each.lower - together, together - each.upper]
+    if body.agent.coupled_joints:
+        group, words = LimitGroup.JOINT_LIMITS, "the range that joints share"
+        yield Residual("coupled_joints", max(beyond), "rad", words, group, posture_only=True)
+
+
+COUPLED_JOINTS = BodyTerm("coupled_joints", rows=rows, residuals=residuals)

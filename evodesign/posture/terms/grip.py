@@ -1,0 +1,62 @@
+"""The grip: a forearm comes to the load from a direction in which a hand can hold it.
+
+    a . f >= cos(cone) |f|        f from the elbow to the hand, a the direction's axis
+
+A hand is a frame of which most models do not say where its palm is; the forearm is known, and a wrist bends
+by about the cone. A load whose forearms are free (`[payload] grasp_direction`) has no such rows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import casadi as ca
+import numpy as np
+
+from evodesign.body.placement import Vector
+from evodesign.mechanics.elbow import Elbow, elbow
+from evodesign.mechanics.scene import SIDES, Agent, Payload
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.tree.kinematics import vector
+
+__all__ = ["GRIP"]
+
+
+def directed(agent: Agent, payload: Payload, sides: Iterable[str]) -> Iterator[tuple[str, Vector, Elbow]]:
+    """Sides whose forearms are not free, with the axis of their cone and the elbow."""
+    for side in sides:
+        axis = payload.grasp_direction.axis(side)
+        bent = elbow(agent, side) if axis else None
+        if axis and bent:
+            yield side, axis, bent
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """The cosine of each forearm's angle from the direction, above that of the cone."""
+    payload, group = body.scene.payload, LimitGroup.STANCE
+    for side, axis, bent in directed(body.agent, payload, body.form.sides):
+        forearm = body.poses[body.agent.hands[side]].position - body.poses[bent.link].point(
+            vector(bent.place)
+        )
+        within = ca.dot(vector(axis), forearm) / ca.norm_2(forearm) - math.cos(payload.grasp_cone)
+        found = ("grasp_direction",)
+        yield Row(f"{side}_forearm", within, 0.0, np.inf, found, group=group, posture_only=True)
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """The largest angle by which a forearm leaves its cone."""
+    payload, state = body.scene.payload, body.state
+    beyond = []
+    for side, axis, bent in directed(body.agent, payload, SIDES):
+        rotation, origin = state.pose(bent.link)
+        forearm = state.pose(body.agent.hands[side])[1] - origin - rotation @ np.array(bent.place)
+        across = float(np.linalg.norm(np.cross(axis, forearm)))
+        beyond.append(math.atan2(across, float(np.dot(axis, forearm))) - payload.grasp_cone)
+    if beyond:
+        size, words = max(0.0, *beyond), "the direction of a forearm"
+        yield Residual("grasp_direction", size, "rad", words, LimitGroup.STANCE, posture_only=True)
+
+
+GRIP = BodyTerm("grip", rows=rows, residuals=residuals)

@@ -1,0 +1,82 @@
+"""The nearest bodies of postures, and feet that do not stand on each other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evodesign.mechanics.scene import ROBOT
+from evodesign.posture.check import AgentModel
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.clearance import LOAD, Clearances, overlaps, solved_gaps
+from evodesign.problem.evaluate import Evaluator, detail_of
+from evodesign.problem.objectives import DesignResult
+
+GAP = 0.01
+
+
+def solved(problem: DesignProblem, feet_gap: float | None) -> DesignResult:
+    """The unscaled robot with feet that are so far apart."""
+    scenes = tuple(
+        replace(scene, stance=replace(scene.stance, feet_gap=feet_gap)) for scene in problem.scenes
+    )
+    other = replace(problem, scenes=scenes)
+    return Evaluator(other).solve(problem.space.unscaled(problem.scene.robot.tree))
+
+
+@pytest.fixture(scope="module")
+def free(problem: DesignProblem) -> DesignResult:
+    return solved(problem, None)
+
+
+def soles_apart(problem: DesignProblem, result: DesignResult) -> list[float]:
+    """By how much the robot's soles are apart sideways in each solved case, as rectangles [m]."""
+    robot = problem.scene.robot
+    model, (length, width) = (
+        AgentModel.of(robot, result.tree),
+        (robot.sole_size.length, robot.sole_size.width),
+    )
+    found = []
+    for solution in result.cases:
+        state = model.at(solution.postures[ROBOT])
+        reached = {}
+        for side, sole in robot.soles.items():
+            rotation, origin = state.pose(sole)
+            corners = [[x * length / 2.0, y * width / 2.0, 0.0] for x in (-1, 1) for y in (-1, 1)]
+            reached[side] = (origin + np.array(corners) @ rotation.T)[:, 1]
+        found.append(float(reached["left"].min() - reached["right"].max()))
+    return found
+
+
+def test_feet_may_stand_on_each_other_only_where_nothing_forbids_it(
+    problem: DesignProblem, free: DesignResult
+) -> None:
+    apart = solved(problem, GAP)
+    assert min(soles_apart(problem, free)) < GAP
+    assert all(solution.solved for solution in apart.cases)
+    assert min(soles_apart(problem, apart)) >= GAP - 1e-6
+    feet = {"robot l_foot_front", "robot r_foot_front"}
+    assert all(not {gap.first, gap.second} <= feet for gap in solved_gaps(apart).values() if gap.distance < 0)
+
+
+def test_overlapping_bodies_are_told_with_how_deep_they_are(
+    problem: DesignProblem, free: DesignResult
+) -> None:
+    """A thick load at the chest of the robot overlaps it by what boxes say."""
+    cases = [detail_of(solution) for solution in free.cases]
+    scenes = [replace(problem.scene, payload=replace(problem.scene.payload, size=(2.0, 2.0, 2.0)))]
+    gaps = Clearances(scenes).of(free.tree, cases)
+    assert all(LOAD in (gap.first, gap.second) and gap.distance < -0.1 for gap in gaps)
+    sentences = overlaps((case.case, gap) for case, gap in zip(cases, gaps, strict=True))
+    assert len(sentences) == len(cases)
+    assert sentences[0].startswith(f"at {cases[0].case.task}, ")
+    assert sentences[0].endswith(f"overlap by {-1e3 * gaps[0].distance:.1f} mm")
+
+
+def test_the_shipped_problems_keep_feet_apart() -> None:
+    for name in ("icub_lifting", "icub_materials", "shared_lifting", "three_people_three_loads"):
+        text = (Path(__file__).parents[2] / "problems" / f"{name}.toml").read_text(encoding="utf-8")
+        assert "feet_gap_m = 0.005" in text
