@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -14,7 +12,6 @@ from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.library import native_method
-from evodesign.nlp.native.source import HERE, METHOD_FILES, program_text
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import Solver, available
 from evodesign.records import Status
