@@ -7,6 +7,8 @@ which the methods differ, with what both found and the start that made the diffe
 benchmarks/results/native_solver.json and are printed as Markdown tables.
 
     python -m benchmarks.native_solver [--designs 100] [--jobs 2] [PROBLEM ..]
+
+A problem is a file or, of the default one, a variant such as `longer_arm`.
 """
 
 from __future__ import annotations
@@ -24,15 +26,14 @@ from unittest import mock
 
 import numpy as np
 
-from benchmarks.inner_problem import HEIGHTS, HERE, known_at, problem_at, random_designs
+from benchmarks.inner_problem import HEIGHTS, HERE, known_at, problem_at, problem_named, random_designs
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.results import Attempt, CaseSolution, Instant
-from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.judge import AGREEMENT
 from evodesign.problem.objectives import DesignResult
-from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Status
 
 BLOCK = 10
@@ -46,11 +47,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("problems", nargs="*", type=Path, metavar="PROBLEM")
+    parser.add_argument("problems", nargs="*", metavar="PROBLEM")
     parser.add_argument("--designs", type=int, default=100)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
-    problems = {path.stem: build_problem(read_source(path)) for path in options.problems}
+    problems = {Path(name).stem: problem_named(name) for name in options.problems}
     problems = problems or {"icub_lifting": problem_at(HEIGHTS)}
     target = HERE / "results" / "native_solver.json"
     before = json.loads(target.read_text()) if target.exists() else {}
@@ -173,7 +174,7 @@ def _reasons(number: int, native: DesignResult, ipopt: DesignResult) -> list[dic
         if ours is None and theirs is None:
             continue
         lack = None if ours is None or theirs is None else (ours - theirs) / max(1.0, abs(theirs))
-        found.append(_reason(number, str(mine.case), ours, theirs, lack, _start_that_decided(mine, its)))
+        found.append(_reason(number, mine.case.name, ours, theirs, lack, _start_that_decided(mine, its)))
     return found
 
 

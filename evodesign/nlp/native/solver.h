@@ -76,6 +76,7 @@ double solve_system(Solver *s, const double *hessian, double dual_shift);
 /* direction.c */
 int find_direction(Solver *s, double *dual_shift);
 void set_right_side(Solver *s, const double *residuals);
+void set_force_steps(Solver *s);
 void expand_solution(const Solver *s, double *step, double *multiplier_step);
 void estimate_multipliers(Solver *s);
 
