@@ -97,7 +97,7 @@ static double corrected_share(Solver *s, const Here *here, double share, double 
 }
 
 /* The share of the forces' steps that keeps them positive: WB equation 15b. */
-static double forces_share(const Solver *s, double fraction) {
+double forces_share(const Solver *s, double fraction) {
     double share = 1;
     for (int i = 0; i < s->primals; i++) {
         if (bounded_below(s, i) && s->lower_step[i] < 0)
@@ -108,7 +108,7 @@ static double forces_share(const Solver *s, double fraction) {
     return share;
 }
 
-static void adopt(double **now, double **trial) {
+void adopt(double **now, double **trial) {
     double *before = *now;
     *now = *trial;
     *trial = before;

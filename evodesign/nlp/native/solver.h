@@ -86,9 +86,12 @@ int filter_accepts(const Solver *s, double violation, double cost);
 void filter_add(Solver *s, double violation, double cost);
 
 /* line_search.c */
+void adopt(double **now, double **trial);
+double forces_share(const Solver *s, double fraction);
 int line_search(Solver *s, double fraction, double dual_shift);
 
 /* restoration.c */
 int restore(Solver *s, int iterations);
+void leave_restoration(Solver *s, double fraction);
 
 #endif
