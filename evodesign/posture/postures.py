@@ -198,7 +198,8 @@ class PostureProblem:
 
     def _solved_by(self, method: MethodName, name: str) -> Setting:
         """The setting of a formulation; what IPOPT seldom solves is not worth compiling."""
-        options, seldom = self._setting.options, self._is_refuge(name)
-        often = method is options.method and not (seldom and method is MethodName.IPOPT)
-        changed = replace(options, method=method, compiled=options.compiled and often, seldom=seldom)
+        options, refuge = self._setting.options, self._is_refuge(name)
+        native = method is MethodName.NATIVE
+        compiled = options.compiled and method is options.method and (native or not refuge)
+        changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
         return replace(self._setting, options=changed)
