@@ -2,10 +2,13 @@
 
 Both begin at the same starts, those of the native method's portfolio. For every program the median of
 processor time per solve, and for whole evaluations designs per second, the share of cases that are solved,
-and the share of designs of which every objective agrees within 1e-5. Results go to
+and the share of designs of which every objective agrees within 1e-5; of the others, every case and reach in
+which the methods differ, with what both found and the start that made the difference. Results go to
 benchmarks/results/native_solver.json and are printed as Markdown tables.
 
     python -m benchmarks.native_solver [--designs 100] [--jobs 2] [PROBLEM ..]
+
+A problem is a file or, of the default one, a variant such as `longer_arm`.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -23,13 +26,22 @@ from unittest import mock
 
 import numpy as np
 
-from benchmarks.inner_problem import HEIGHTS, HERE, known_at, problem_at, random_designs
+from benchmarks.inner_problem import (
+    HEIGHTS,
+    HERE,
+    Design,
+    known_at,
+    problem_at,
+    problem_named,
+    random_designs,
+)
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.posture.results import Attempt, CaseSolution, Instant
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.judge import AGREEMENT
-from evodesign.problem.source import read_source
+from evodesign.problem.objectives import DesignResult
 from evodesign.records import Assessment, Status
 
 BLOCK = 10
@@ -43,11 +55,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("problems", nargs="*", type=Path, metavar="PROBLEM")
+    parser.add_argument("problems", nargs="*", metavar="PROBLEM")
     parser.add_argument("--designs", type=int, default=100)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
-    problems = {path.stem: build_problem(read_source(path)) for path in options.problems}
+    problems = {Path(name).stem: problem_named(name) for name in options.problems}
     problems = problems or {"icub_lifting": problem_at(HEIGHTS)}
     target = HERE / "results" / "native_solver.json"
     before = json.loads(target.read_text()) if target.exists() else {}
@@ -58,7 +70,13 @@ def main() -> None:
         print("| program | native ms | IPOPT ms | ratio |\n|---|---|---|---|")
         for program, row in result["programs"].items():
             print(f"| {program} | {row['native']:.3f} | {row['ipopt']:.3f} | {row['ratio']:.1f} |")
-        print(json.dumps({key: value for key, value in result.items() if key != "programs"}, indent=2))
+        rest = {key: value for key, value in result.items() if key not in {"programs", "reasons"}}
+        print(json.dumps(rest, indent=2))
+        print(
+            "\n| design | what | native | IPOPT | native is | start that decided |\n|---|---|---|---|---|---|"
+        )
+        for reason in result["reasons"]:
+            print("| " + " | ".join(_told(value) for value in reason.values()) + " |")
 
 
 def measured(problem: DesignProblem, designs: int, jobs: int) -> dict[str, Any]:
@@ -72,17 +90,28 @@ def measured(problem: DesignProblem, designs: int, jobs: int) -> dict[str, Any]:
     for evaluator in evaluators.values():  # builds and compiles
         evaluator.assess_values(first)
     spent = dict.fromkeys(MethodName, 0.0)
+    results: dict[MethodName, list[DesignResult]] = {method: [] for method in MethodName}
     ends: dict[MethodName, list[Assessment]] = {method: [] for method in MethodName}
     with _timed(times):
         for place in range(0, designs, BLOCK):
             for method, evaluator in evaluators.items():
-                began = time.thread_time()
-                ends[method] += [
-                    evaluator.assess_values(design).assessment for design in others[place : place + BLOCK]
-                ]
-                spent[method] += time.thread_time() - began
+                for design in others[place : place + BLOCK]:
+                    result, assessment, seconds = _solved(evaluator, design)
+                    if any(
+                        not case.solved for case in result.cases
+                    ):  # its refuge may have been built just now
+                        result, assessment, seconds = _solved(evaluator, design)
+                    results[method].append(result)
+                    ends[method].append(assessment)
+                    spent[method] += seconds
     pairs = list(zip(ends[MethodName.NATIVE], ends[MethodName.IPOPT], strict=True))
     gaps = [_gap(native, ipopt) for native, ipopt in pairs]
+    reasons = [
+        reason
+        for number, gap in enumerate(gaps)
+        if gap > AGREEMENT
+        for reason in _reasons(number, *(results[method][number] for method in MethodName))
+    ]
     return {
         "programs": _programs(times),
         "designs_per_second": {method.value: designs / spent[method] for method in MethodName},
@@ -90,8 +119,18 @@ def measured(problem: DesignProblem, designs: int, jobs: int) -> dict[str, Any]:
         "cases_solved": {method.value: _share_solved(ends[method]) for method in MethodName},
         "designs_that_agree": float(np.mean([gap <= AGREEMENT for gap in gaps])),
         "others": sorted(gap for gap in gaps if gap > AGREEMENT),
+        "reasons": reasons,
+        "native_is": dict(Counter(reason["native_is"] for reason in reasons)),
         "fallbacks": sum(case.fallbacks for native, _ in pairs for case in native.cases),
     }
+
+
+def _solved(evaluator: Evaluator, design: Design) -> tuple[DesignResult, Assessment, float]:
+    """A design's results, and the processor time that they took [s]."""
+    began = time.thread_time()
+    result = evaluator.solve(design)
+    assessment = evaluator.assessment(design, result)
+    return result, assessment, time.thread_time() - began
 
 
 @contextmanager
@@ -135,6 +174,73 @@ def _gap(native: Assessment, ipopt: Assessment) -> float:
     return max(
         (abs(native.objectives[k] - v) / max(1.0, abs(v)) for k, v in ipopt.objectives.items()), default=0.0
     )
+
+
+def _reasons(number: int, native: DesignResult, ipopt: DesignResult) -> list[dict[str, Any]]:
+    """What differs between both results of a design: reach and cases, with what either method found."""
+    found = []
+    for sense, wanted in (("highest", -1.0), ("lowest", 1.0)):
+        ours, theirs = getattr(native.reach, sense), getattr(ipopt.reach, sense)
+        if (ours is None) != (theirs is None) or (ours is not None and abs(ours - theirs) > AGREEMENT):
+            lack = None if ours is None or theirs is None else wanted * (ours - theirs)
+            found.append(_reason(number, f"{sense} load", ours, theirs, lack, "another posture"))
+    for mine, its in zip(native.cases, ipopt.cases, strict=True):
+        pairs = [(end.attempt.cost if end.attempt else None, end) for end in (mine, its)]
+        (ours, _), (theirs, _) = pairs
+        torques = [[_torques(instant) for instant in end.instants] for end in (mine, its)]
+        if torques[0] and torques[1] and np.allclose(*torques, rtol=AGREEMENT, atol=AGREEMENT):
+            continue
+        if ours is None and theirs is None:
+            continue
+        lack = None if ours is None or theirs is None else (ours - theirs) / max(1.0, abs(theirs))
+        found.append(_reason(number, mine.case.name, ours, theirs, lack, _start_that_decided(mine, its)))
+    return found
+
+
+def _told(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _reason(
+    design: int, what: str, native: float | None, ipopt: float | None, lack: float | None, reason: str
+) -> dict[str, Any]:
+    """A difference, and which of both is better by it; `lack` is positive where IPOPT's is."""
+    if lack is None:
+        better = "worse" if native is None else "better"
+    else:
+        better = "equal" if abs(lack) <= AGREEMENT else "worse" if lack > 0 else "better"
+    return {
+        "design": design,
+        "what": what,
+        "native": native,
+        "ipopt": ipopt,
+        "native_is": better,
+        "reason": "the cost is flat" if better == "equal" else reason,
+    }
+
+
+def _torques(instant: Instant) -> list[float]:
+    return [posture.torque_norm for posture in instant.postures.values()]
+
+
+def _start_that_decided(native: CaseSolution, ipopt: CaseSolution) -> str:
+    """Where the start that led to the cheaper of both postures led either method."""
+    cheaper = min(
+        (end.attempt for end in (native, ipopt) if end.attempt is not None), key=lambda each: each.cost
+    )
+    told = [
+        f"{name} {_ended([each for each in end.attempts if each.start == cheaper.start])}"
+        for name, end in (("native", native), ("IPOPT", ipopt))
+    ]
+    return f"{cheaper.formulation}, {cheaper.start}: {', '.join(told)}"
+
+
+def _ended(attempts: Sequence[Attempt]) -> str:
+    """The least cost of attempts, or why there is none."""
+    solved = [each.cost for each in attempts if each.status is Status.SOLVED]
+    if solved:
+        return f"{min(solved):.6g}"
+    return attempts[-1].reason if attempts else "did not begin there"
 
 
 if __name__ == "__main__":

@@ -59,8 +59,23 @@ def compiler_works() -> bool:
     return False
 
 
+@cache
+def memory_sanitizer() -> tuple[str, ...]:
+    """The command that compiles with clang's memory sanitizer; none where that does not work."""
+    command = ("clang", "-fsanitize=memory")
+    if shutil.which("clang"):
+        with tempfile.TemporaryDirectory() as folder:
+            compile_it = [*command, "-x", "c", "-", "-o", f"{folder}/program"]
+            done = subprocess.run(
+                compile_it, input=b"int main(void) { return 0; }\n", capture_output=True, check=False
+            )
+        return command if done.returncode == 0 else ()
+    return ()
+
+
 NEEDS: dict[str, tuple[Callable[[], object], str]] = {
     "needs_chromium": (chromium, "no Chromium (Debian: apt-get install chromium)"),
+    "needs_clang": (memory_sanitizer, "no clang with its memory sanitizer (Debian: apt-get install clang)"),
     "needs_compiler": (compiler_works, "no C compiler that works (Debian: apt-get install gcc libc6-dev)"),
     "needs_robots": (robots_installed, "no public robots (pip install 'evodesign[robots]')"),
 }

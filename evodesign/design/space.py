@@ -23,7 +23,7 @@ from evodesign.body.placement import Scalar
 from evodesign.errors import ModelError
 from evodesign.records import Genome, Parameter, design_of, middle_of
 from evodesign.tree.model import Tree
-from evodesign.tree.resize import growth_of, resize
+from evodesign.tree.resize import Growth, growth_of, resize
 from evodesign.tree.symmetry import mirror_of
 from evodesign.tree.welded import without_frames
 
@@ -179,17 +179,25 @@ class DesignSpace:
             wanted = "parameters that keep the robot its own mirror image"
             raise ModelError(tree.name, "design", wanted, f"others ({error})") from error
 
-    def resized(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
+    def growths(self, tree: Tree) -> Mapping[str, Growth]:
+        """How each link of a length parameter grows."""
+        lengths = [parameter for parameter in self.parameters if parameter.kind is ParameterKind.LENGTH]
+        return {link: growth_of(tree, link) for parameter in lengths for link in parameter.links}
+
+    def resized(
+        self, tree: Tree, values: Sequence[Scalar], growths: Mapping[str, Growth] | None = None
+    ) -> Tree:
         """The tree of a design.
 
         Args:
             tree: unscaled.
             values: one number or expression per parameter.
+            growths: of the tree's links, if they are known already.
         """
         by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
         for parameter, value in zip(self.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
-        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY])
+        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The allocation parameters among a design's values, by their own names."""

@@ -48,11 +48,17 @@ class Configuration:
 
 
 class _Workspace(threading.local):
-    """Pinocchio's memory, which takes longer to make than to fill, and whose kinematics it holds."""
+    """Pinocchio's memory, which takes longer to make than to fill, and whose kinematics it holds.
+
+    Attributes:
+        frames: pinocchio's number of each body's frame, by name, which no design changes.
+    """
 
     def __init__(self, model: Any) -> None:
         self.data = model.createData()
         self.holds: BodyState | None = None
+        bodies = model.frames.tolist()
+        self.frames = {each.name: n for n, each in enumerate(bodies) if each.type == pin.FrameType.BODY}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,7 +211,7 @@ class FloatingBody:
         if differing:
             raise ValueError(f"a configuration places exactly the joints that move; see {sorted(differing)}")
         world_from_base = self.world_from_given @ pin.rpy.rpyToMatrix(*configuration.base_angles)
-        q = np.array(pin.neutral(self.model))
+        q = np.empty(self.model.nq)
         q[:3] = self.world_from_given @ configuration.base_position
         q[3:7] = pin.Quaternion(world_from_base).coeffs()
         q[self.places] = [configuration.joints[name] for name in self.joints]
@@ -296,7 +302,7 @@ class BodyState:
         return np.array(placement.rotation), np.array(placement.translation)
 
     def _identity(self, frame: str) -> int:
-        return int(self.body.model.getFrameId(frame, pin.FrameType.BODY))
+        return self.body.workspace.frames[frame]
 
     def _jacobian(self, frame: str, axes: Any) -> Array:
         jacobian = pin.getFrameJacobian(self.body.model, self.data, self._identity(frame), axes)

@@ -11,6 +11,7 @@ written or put in place is never loaded, but built again. The compiler that $CC 
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 import signal
@@ -213,10 +214,14 @@ def _compiled(
 
 
 def _run(command: Sequence[str], limit: float, environment: Mapping[str, str]) -> str | NotCompiled:
-    """What a compiler writes; it is stopped, with the processes that it started, after a limit [s]."""
+    """What a compiler writes; it is stopped, with the processes that it started, after a limit [s].
+
+    The limit holds for its processor time, too, should this process be killed beside it.
+    """
+    limited = ("/bin/sh", "-c", f'ulimit -t {math.ceil(limit)}; exec "$@"', "sh")
     try:
         process = subprocess.Popen(  # noqa: S603
-            command,
+            [*limited, *command],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

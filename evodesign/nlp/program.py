@@ -121,10 +121,15 @@ class Program:
         lower = np.repeat([c.lower for c in self.constraints], counts)
         return lower, np.repeat([c.upper for c in self.constraints], counts)
 
+    @cached_property
+    def counts(self) -> Mapping[str, int]:
+        """Number of rows of each variable."""
+        return {variable.name: variable.symbol.numel() for variable in self.variables}
+
     def packed(self, values: Mapping[str, Array]) -> Array:
         """Symbols from values in SI units (variables left out: their own starting values)."""
-        blocks = [(v, values.get(v.name, v.start)) for v in self.variables]
-        return np.concatenate([np.asarray(value) / v.scale for v, value in blocks])
+        blocks = [values.get(variable.name, variable.start) for variable in self.variables]
+        return np.concatenate(blocks, dtype=float) / self._scales
 
     def unpacked(self, symbols: Array) -> dict[str, Array]:
         """Values in SI units, by name, from a column of symbols or of their changes, shape (symbols, ...)."""
@@ -133,9 +138,18 @@ class Program:
         }
 
     @cached_property
+    def _scales(self) -> Array:
+        """Size of one unit of each symbol, in SI units."""
+        return np.repeat([variable.scale for variable in self.variables], list(self.counts.values()))
+
+    @cached_property
+    def _given_rows(self) -> int:
+        return int(self.given.numel())
+
+    @cached_property
     def _places(self) -> tuple[slice, ...]:
         """Where each variable lies among the symbols."""
-        ends = np.cumsum([0, *(variable.symbol.numel() for variable in self.variables)]).tolist()
+        ends = np.cumsum([0, *self.counts.values()]).tolist()
         return tuple(slice(first, last) for first, last in pairwise(ends))
 
     def packed_parameters(self, values: Mapping[str, Any]) -> Array:
@@ -147,12 +161,13 @@ class Program:
         if values.keys() != self.parameters.keys():
             wanted, found = ", ".join(sorted(self.parameters)), ", ".join(sorted(values))
             raise ValueError(f"program '{self.name}' wants parameters {wanted}; found {found}")
-        column = np.empty(self.given.numel())
+        column = np.empty(self._given_rows)
         for name, place in self.columns.items():
-            if np.size(values[name]) != place.stop - place.start:
-                wanted, count = place.stop - place.start, np.size(values[name])
+            value, wanted = values[name], place.stop - place.start
+            count = 1 if isinstance(value, float) else np.size(value)
+            if count != wanted:
                 raise ValueError(
                     f"parameter '{name}' of program '{self.name}' has {wanted} rows; found {count}"
                 )
-            column[place] = values[name]
+            column[place] = value
         return column

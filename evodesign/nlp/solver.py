@@ -132,7 +132,7 @@ def _made(
 ) -> tuple[CompiledFunctions | Library | NotCompiled, Method]:
     """A program's machine code, or why there is none, and who solves it."""
     if options.method is MethodName.NATIVE:
-        native = native_method(program)
+        native = native_method(program, seldom=options.seldom)
         if not isinstance(native, NotCompiled):
             return native.functions, native
     ipopt = Ipopt(program, options)

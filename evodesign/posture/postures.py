@@ -27,6 +27,7 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.records import Status
 from evodesign.tasks import Task, TaskRecord
 
 __all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
@@ -142,13 +143,20 @@ class PostureProblem:
     def _trials(
         self, design: Sequence[float], task: Task, checker: Checker, neighbour: Neighbour | None
     ) -> Iterator[Trial]:
-        """What each formulation leads to, in turn."""
+        """What each formulation leads to, in turn.
+
+        Where all starts ended at postures that violate the constraints no more than any near them, no other
+        method is asked: IPOPT solves no such height either (docs/benchmarks.md).
+        """
         for name, portfolio in self._in_turn(task):
             for method in self._methods(name):
                 formulation = self._formulation(name, task, method)
                 if neighbour is not None:
                     yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
-                yield formulation.solve(design, task, portfolio, checker)
+                trial = formulation.solve(design, task, portfolio, checker)
+                yield trial
+                if all(attempt.status is Status.INFEASIBLE for attempt in trial.attempts):
+                    break
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""
@@ -173,9 +181,12 @@ class PostureProblem:
         return self._made[key]
 
     def _methods(self, name: str) -> tuple[MethodName, ...]:
-        """Who solves a formulation, in turn: IPOPT is tried where the native method finds no posture."""
-        native = self._setting.options.method is MethodName.NATIVE and not self._is_refuge(name)
-        return (MethodName.NATIVE, MethodName.IPOPT) if native else (MethodName.IPOPT,)
+        """Who solves a formulation, in turn: IPOPT is tried where the native method finds no posture.
+
+        Not in a refuge, whose program takes IPOPT seconds.
+        """
+        first = self._setting.options.method
+        return (first,) if first is MethodName.IPOPT or self._is_refuge(name) else (first, MethodName.IPOPT)
 
     def _is_refuge(self, name: str) -> bool:
         """Whether a formulation is solved only where another one failed."""
@@ -186,7 +197,9 @@ class PostureProblem:
         }[name]
 
     def _solved_by(self, method: MethodName, name: str) -> Setting:
-        """The setting of a formulation; one that is seldom solved is not worth compiling."""
-        options, first = self._setting.options, self._methods(name)[0]
-        compiled = options.compiled and not self._is_refuge(name) and method is first
-        return replace(self._setting, options=replace(options, method=method, compiled=compiled))
+        """The setting of a formulation; what IPOPT seldom solves is not worth compiling."""
+        options, refuge = self._setting.options, self._is_refuge(name)
+        native = method is MethodName.NATIVE
+        compiled = options.compiled and method is options.method and (native or not refuge)
+        changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
+        return replace(self._setting, options=changed)

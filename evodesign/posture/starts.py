@@ -52,7 +52,7 @@ def named_starts(
         portfolio: of the problem.
         fixed: starts where none of the portfolio fits.
     """
-    rows = {variable.name: variable.symbol.numel() for variable in solver.program.variables}
+    rows = solver.program.counts
     fitting = [start for start in portfolio if all(len(v) == rows[n] for n, v in start.items() if n in rows)]
     kind, starts = ("start", fitting) if fitting else ("fixed start", fixed)
     return [(f"{kind} {number}", start) for number, start in enumerate(starts, 1)]

@@ -69,13 +69,12 @@ def start_from(program: Program, forms: Sequence[Form], instants: Sequence[Insta
         instants: one for each of the program's.
     """
     by_name = {form.agent.name: form for form in forms}
-    counts = {variable.name: variable.symbol.numel() for variable in program.variables}
     known: dict[str, Any] = {}
     for slot, name in layout_of(program).items():
         cases = [instants[slot.instant].postures, *instants[slot.instant].disturbed.values()]
         if slot.load_case < len(cases):
             parts = by_name[slot.party].parts(cases[slot.load_case][slot.party])
-            known[name] = parts[slot.part][: counts[name]]
+            known[name] = parts[slot.part][: program.counts[name]]
     return known
 
 

@@ -73,13 +73,14 @@ class Evaluator:
             )
             for setting in settings
         }
+        self._growths = space.growths(problem.scene.robot.tree)
         self._robot = AgentModel.of(problem.scene.robot, problem.scene.robot.tree)
         self._people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
         problem = self.problem
-        tree = problem.space.resized(problem.scene.robot.tree, values)
+        tree = problem.space.resized(problem.scene.robot.tree, values, self._growths)
         check = Checker(problem.scene, self._robot.resized(tree), self._people[problem.scene.human.label])
         reach = common_reach([reach.solve(values) for reach in self._reaches.values()])
         cases: list[CaseSolution] = []

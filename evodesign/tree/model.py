@@ -201,6 +201,14 @@ class Tree:
         """Names of the joints that can move, parents before children."""
         return tuple(joint.name for joint in self.joints if joint.kind is not JointKind.FIXED)
 
+    def reshaped(self, links: tuple[Link, ...], joints: tuple[Joint, ...]) -> Tree:
+        """The same links and joints in the same order with other numbers; nothing is checked again."""
+        other = object.__new__(Tree)
+        fields = {"name": self.name, "links": links, "joints": joints, "notes": self.notes}
+        for place, value in fields.items():
+            object.__setattr__(other, place, value)
+        return other
+
     def link(self, name: str, asked_by: str) -> Link:
         """The link of a name.
 

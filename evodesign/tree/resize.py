@@ -177,24 +177,31 @@ def _reaches_as_far(solid: Solid, main: Solid, axis: Vector, dimension: float) -
     )
 
 
-def resize(tree: Tree, lengths: Mapping[str, Scalar], densities: Mapping[str, Scalar]) -> Tree:
+def resize(
+    tree: Tree,
+    lengths: Mapping[str, Scalar],
+    densities: Mapping[str, Scalar],
+    growths: Mapping[str, Growth] | None = None,
+) -> Tree:
     """The tree with some links lengthened and some of another density.
 
     Args:
         tree: unscaled, with numbers.
         lengths: length multiplier [-] by link name.
         densities: density [kg/m^3] by link name, for all solids of the link.
+        growths: of the links that are lengthened, if they are known already.
     Returns:
         A tree of the same form; links and joints that do not change are the same objects.
     Raises:
         ModelError: a named link is missing or cannot change.
     """
-    growths = {name: growth_of(tree, name) for name in lengths}
+    if growths is None:
+        growths = {name: growth_of(tree, name) for name in lengths}
     for name in densities:
         _changeable(tree, name, "density")
     links = tuple(_resized_link(link, growths, lengths, densities) for link in tree.links)
     joints = tuple(_moved_joint(joint, growths, lengths) for joint in tree.joints)
-    return replace(tree, links=links, joints=joints)
+    return tree.reshaped(links, joints)
 
 
 def _resized_link(
@@ -207,7 +214,8 @@ def _resized_link(
         if not solids:
             lighter = densities[link.name] * link.volume / inertia.mass
             inertia = Inertia(lighter * inertia.mass, inertia.center, scaled(lighter, inertia.about_center))
-        solids = tuple(replace(solid, density=densities[link.name]) for solid in solids)
+        density = densities[link.name]
+        solids = tuple(Solid(solid.shape, solid.link_from_solid, density) for solid in solids)
     if link.name in lengths:
         growth, factor = growths[link.name], lengths[link.name]
         solids = tuple(
@@ -236,7 +244,7 @@ def _carried(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
     beyond = _beyond(solid.link_from_solid.translation, growth.centre, growth.axis)
     at_centre = not growth.about_centre and abs(beyond) <= MARGIN * growth.dimension
     share = 0.5 if at_centre else _share(beyond, growth)
-    return replace(solid, link_from_solid=_moved(solid.link_from_solid, share, growth, factor))
+    return Solid(solid.shape, _moved(solid.link_from_solid, share, growth, factor), solid.density)
 
 
 def _moved_joint(joint: Joint, growths: Mapping[str, Growth], lengths: Mapping[str, Scalar]) -> Joint:

@@ -255,6 +255,16 @@ def test_compiler_that_writes_nothing_is_a_reason(
 
 
 @pytest.mark.usefixtures("home")
+def test_a_compiler_is_held_to_its_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the system, so that none goes on for hours beside a process that was killed."""
+    body = 'case "$*" in *--version*) echo 1 ;; *) echo "error: $(ulimit -t) s"; exit 3 ;; esac'
+    monkeypatch.setenv("CC", str(script(tmp_path / "honest-cc", body)))
+    found = compiled_functions(nlp(1.0))
+    assert isinstance(found, NotCompiled)
+    assert found.reason.endswith(f"error: {codegen.COMPILING_LIMIT:.0f} s")
+
+
+@pytest.mark.usefixtures("home")
 def test_slow_compiler_is_stopped_with_what_it_started(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

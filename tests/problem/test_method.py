@@ -9,13 +9,17 @@ import pytest
 
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.library import NativeMethod
+from evodesign.nlp.program import Array
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import WHOLE, PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome
 from evodesign.problem.judge import ONE_IN, is_judged, judged_notes
 from evodesign.problem.sensitivities import Sensitivities
-from evodesign.records import Assessment, Evaluation, Status
+from evodesign.records import Assessment, Evaluation, Hold, Status
 from evodesign.runlog.header import header_of
 from evodesign.runlog.upgrade import upgraded
 
@@ -126,3 +130,34 @@ def test_derivatives_of_native_solutions_are_those_of_ipopt(
     assert isinstance(ours.highest, ReachDerivative)
     assert isinstance(theirs.highest, ReachDerivative)
     assert ours.highest.slope == pytest.approx(theirs.highest.slope, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.needs_compiler
+def test_whole_postures_are_the_refuge_and_native_as_well(
+    problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where no symmetric posture can be, IPOPT is not asked for one; the whole one found is as good."""
+    unscaled, scene = unscaled_values(problem), problem.scene
+    setting = Setting(scene, problem.space, problem.weights, NATIVE)
+    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)))
+    known = PostureProblem(setting, Symmetry.ON).solve(unscaled, Hold(height_m=1.0), checker)
+    assert known.attempt is not None
+    rows, solve = whole_rows(setting), NativeMethod.solve
+
+    def only_whole(self: NativeMethod, options: SolverOptions, start: Array, parameters: Array) -> Ending:
+        end = solve(self, options, start, parameters)
+        return end if len(start) == rows else replace(end, word="Infeasible_Problem_Detected")
+
+    monkeypatch.setattr(NativeMethod, "solve", only_whole)
+    found = PostureProblem(setting, Symmetry.ON).solve(unscaled, Hold(height_m=1.0), checker)
+    assert found.attempt is not None
+    assert found.attempt.formulation == WHOLE
+    assert {attempt.method for attempt in found.attempts} == {MethodName.NATIVE}
+    assert found.attempt.cost < 1.02 * known.attempt.cost
+
+
+def whole_rows(setting: Setting) -> int:
+    """Number of symbols of the whole program."""
+    off = PostureProblem(replace(setting, options=SolverOptions()), Symmetry.OFF)
+    return int(off.landscape(Hold(height_m=1.0)).solver.program.symbols.numel())

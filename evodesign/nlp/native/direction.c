@@ -60,7 +60,8 @@ static void set_slope_and_curvature(Solver *s) {
     }
 }
 
-static void set_force_steps(Solver *s) {
+/* The steps of bounds' forces that belong to the step of the primals. */
+void set_force_steps(Solver *s) {
     for (int i = 0; i < s->primals; i++) {
         s->lower_step[i] = s->upper_step[i] = 0;
         if (bounded_below(s, i)) {

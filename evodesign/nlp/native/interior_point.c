@@ -144,19 +144,6 @@ static void bound_forces(Solver *s) {
     }
 }
 
-/* From where restoration ended, with multipliers as at a start; bounds' forces within limits. */
-static void begin_again(Solver *s) {
-    for (int i = 0; i < s->primals; i++) {
-        double below = s->primals_now[i] - s->lower[i], above = s->upper[i] - s->primals_now[i];
-        if (bounded_below(s, i))
-            s->lower_forces[i] = fmin(1e3, fmax(1e-12, s->barrier / below));
-        if (bounded_above(s, i))
-            s->upper_forces[i] = fmin(1e3, fmax(1e-12, s->barrier / above));
-    }
-    estimate_multipliers(s);
-    evaluate_all(s, s->primals_now, s->multipliers, &s->now);
-}
-
 static double seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -186,7 +173,8 @@ static Status iterate(Solver *s, const Options *options) {
         double dual_shift;
         if (!find_direction(s, &dual_shift))
             return nearly ? ACCEPTABLE : STEP_FAILED;
-        if (!line_search(s, fmax(LEAST_FRACTION, 1 - s->barrier), dual_shift)) {
+        double fraction = fmax(LEAST_FRACTION, 1 - s->barrier);
+        if (!line_search(s, fraction, dual_shift)) {
             if (nearly)
                 return ACCEPTABLE;
             if (o->restorations >= MOST_RESTORATIONS)
@@ -194,7 +182,7 @@ static Status iterate(Solver *s, const Options *options) {
             if (!restore(s, RESTORATIONS))
                 return largest(s->residuals, s->problem.rows) > INFEASIBLE_RESIDUAL ? INFEASIBLE
                                                                                     : RESTORATION_FAILED;
-            begin_again(s);
+            leave_restoration(s, fraction);
         }
         s->violation = take_residuals(s, s->now.rows, s->primals_now, s->residuals);
         bound_forces(s);

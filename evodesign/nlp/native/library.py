@@ -19,10 +19,14 @@ from evodesign.identity import code_digest
 from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, Library, NotCompiled, built, compiler_and_cache
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, MethodName, SolverOptions
+from evodesign.nlp.native.pieces import in_pieces
 from evodesign.nlp.native.source import HERE, METHOD_FILES, PROBLEM, fixed_variables, program_text
 from evodesign.nlp.program import Array, Program
 
 __all__ = ["NativeMethod", "method_library", "native_method"]
+
+SELDOM_FLAGS = ("-O0", *FUNCTION_FLAGS[1:])
+"""Of programs that are solved seldom: a fifth of the time to compile, twice as slow to run, the same bits."""
 
 METHOD_FLAGS = ("-std=c11", "-O2", "-shared", "-fPIC", "-ffp-contract=off")
 
@@ -155,15 +159,20 @@ def _settings(options: SolverOptions) -> _Options:
     )
 
 
-def native_method(program: Program) -> NativeMethod | NotCompiled:
-    """The method for a program, with this process's compiler and the user's cache, or why there is none."""
+def native_method(program: Program, *, seldom: bool = False) -> NativeMethod | NotCompiled:
+    """The method for a program, with this process's compiler and the user's cache, or why there is none.
+
+    Args:
+        program: what is solved.
+        seldom: whether it is solved so seldom that the compiler had better be quick than its code.
+    """
     method, tools = method_library(), compiler_and_cache(os.environ)
     if isinstance(method, NotCompiled):
         return method
     if isinstance(tools, NotCompiled):
         return tools
     try:
-        functions = _functions(program, *tools)
+        functions = _functions(program, *tools, seldom=seldom)
         return functions if isinstance(functions, NotCompiled) else NativeMethod(program, method, functions)
     except OSError as error:
         return NotCompiled(f"{NOT_LOADED}: {error}")
@@ -183,13 +192,13 @@ def method_library() -> ctypes.CDLL | NotCompiled:
         return NotCompiled(f"{NOT_LOADED}: {error}")
 
 
-def _functions(program: Program, compiler: Compiler, cache: Cache) -> Library | NotCompiled:
+def _functions(program: Program, compiler: Compiler, cache: Cache, *, seldom: bool) -> Library | NotCompiled:
     outputs = [program.cost, program.rows]
     expressions = ca.Function("nlp", [program.symbols, program.given], outputs).serialize()
     return built(
         (code_digest(__name__), expressions, program.bounds, program.limits),
-        lambda: {"functions.c": program_text(program)},
-        FUNCTION_FLAGS,
+        lambda: {"functions.c": in_pieces(program_text(program)) if seldom else program_text(program)},
+        SELDOM_FLAGS if seldom else FUNCTION_FLAGS,
         compiler,
         cache,
     )

@@ -97,7 +97,7 @@ static double corrected_share(Solver *s, const Here *here, double share, double 
 }
 
 /* The share of the forces' steps that keeps them positive: WB equation 15b. */
-static double forces_share(const Solver *s, double fraction) {
+double forces_share(const Solver *s, double fraction) {
     double share = 1;
     for (int i = 0; i < s->primals; i++) {
         if (bounded_below(s, i) && s->lower_step[i] < 0)
@@ -108,10 +108,17 @@ static double forces_share(const Solver *s, double fraction) {
     return share;
 }
 
-static void adopt(double **now, double **trial) {
+void adopt(double **now, double **trial) {
     double *before = *now;
     *now = *trial;
     *trial = before;
+}
+
+/* The corrected step in place of the step, as IPOPT has it: the forces' steps follow from it, too. */
+static void take_corrected(Solver *s) {
+    adopt(&s->step, &s->corrected_step);
+    adopt(&s->multiplier_step, &s->corrected_multiplier_step);
+    set_force_steps(s);
 }
 
 static void adopt_evaluation(Solver *s) {
@@ -189,7 +196,6 @@ int line_search(Solver *s, double fraction, double dual_shift) {
     Here here = measured(s);
     double primal = largest_step(s, s->step, fraction), forces = forces_share(s, fraction);
     double share = primal, least = least_share(s, &here);
-    const double *multiplier_step = s->multiplier_step;
     Trial trial;
     int found = 0, evaluated = 0;
     for (int first = 1; first || share > least; first = 0, share *= 0.5) {
@@ -207,7 +213,9 @@ int line_search(Solver *s, double fraction, double dual_shift) {
             double corrected = corrected_share(s, &here, share, fraction, dual_shift, &trial);
             if (corrected > 0) {
                 found = 1, evaluated = 0;
-                share = corrected, multiplier_step = s->corrected_multiplier_step;
+                share = corrected;
+                take_corrected(s);
+                forces = forces_share(s, fraction);
                 break;
             }
         }
@@ -225,7 +233,7 @@ int line_search(Solver *s, double fraction, double dual_shift) {
     if (!(trial.switching && trial.sufficient))
         add_here(s, &here);
     adopt(&s->primals_now, &s->trial_primals);
-    move(s->multipliers, multiplier_step, share, s->problem.rows, s->multipliers);
+    move(s->multipliers, s->multiplier_step, share, s->problem.rows, s->multipliers);
     move(s->lower_forces, s->lower_step, forces, s->primals, s->lower_forces);
     move(s->upper_forces, s->upper_step, forces, s->primals, s->upper_forces);
     if (evaluated)

@@ -13,6 +13,7 @@
 #define LEAST_DECREASE 0.9     /* WB section 3.3, kappa_resto */
 #define MOST_HALVINGS 25
 #define STANDSTILL 1e-8        /* relative change of the primals that counts as none */
+#define LARGEST_FORCE 1e3      /* IPOPT, bound_mult_reset_threshold */
 #define SLOW 1e-3              /* and as little: the barrier is lowered */
 
 static double squares(const Solver *s, const double *residuals) {
@@ -116,4 +117,26 @@ int restore(Solver *s, int iterations) {
         zeta = sqrt(mu);
     }
     return 0;
+}
+
+/* From where restoration ended. As IPOPT has it: bounds' forces as if all of it had been one step from
+   `reference`, or 1 if that makes one of them large; multipliers of rows zero. */
+void leave_restoration(Solver *s, double fraction) {
+    for (int i = 0; i < s->primals; i++)
+        s->step[i] = s->primals_now[i] - s->reference[i];
+    adopt(&s->primals_now, &s->reference);
+    set_force_steps(s);
+    adopt(&s->primals_now, &s->reference);
+    double share = forces_share(s, fraction), most = 0;
+    for (int i = 0; i < s->primals; i++) {
+        s->lower_forces[i] += share * s->lower_step[i];
+        s->upper_forces[i] += share * s->upper_step[i];
+        most = fmax(most, fmax(s->lower_forces[i], s->upper_forces[i]));
+    }
+    for (int i = 0; most > LARGEST_FORCE && i < s->primals; i++) {
+        s->lower_forces[i] = bounded_below(s, i);
+        s->upper_forces[i] = bounded_above(s, i);
+    }
+    memset(s->multipliers, 0, sizeof(double) * s->problem.rows);
+    evaluate_all(s, s->primals_now, s->multipliers, &s->now);
 }

@@ -76,6 +76,7 @@ double solve_system(Solver *s, const double *hessian, double dual_shift);
 /* direction.c */
 int find_direction(Solver *s, double *dual_shift);
 void set_right_side(Solver *s, const double *residuals);
+void set_force_steps(Solver *s);
 void expand_solution(const Solver *s, double *step, double *multiplier_step);
 void estimate_multipliers(Solver *s);
 
@@ -85,9 +86,12 @@ int filter_accepts(const Solver *s, double violation, double cost);
 void filter_add(Solver *s, double violation, double cost);
 
 /* line_search.c */
+void adopt(double **now, double **trial);
+double forces_share(const Solver *s, double fraction);
 int line_search(Solver *s, double fraction, double dual_shift);
 
 /* restoration.c */
 int restore(Solver *s, int iterations);
+void leave_restoration(Solver *s, double fraction);
 
 #endif

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -14,7 +12,6 @@ from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.library import native_method
-from evodesign.nlp.native.source import HERE, METHOD_FILES, program_text
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import Solver, available
 from evodesign.records import Status
@@ -280,63 +277,3 @@ def test_without_a_compiler_ipopt_is_had(monkeypatch: pytest.MonkeyPatch) -> Non
     assert available(NATIVE).method is MethodName.IPOPT
     assert isinstance(native_method(random_program(0, convex=True).program), NotCompiled)
     library.method_library.cache_clear()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("convex", [True, False], ids=["convex", "curved"])
-def test_sanitizers_find_nothing(convex: bool, tmp_path: Path, compiler: Compiler) -> None:
-    """A program of its own solves many draws, bad numbers too, with each access and operation watched."""
-    random = random_program(5, convex=convex)
-    for name in METHOD_FILES:
-        (tmp_path / name).write_text((HERE / name).read_text())
-    (tmp_path / "functions.c").write_text(program_text(random.program))
-    (tmp_path / "main.c").write_text(MAIN.replace("NUMBERS", str(random.numbers)))
-    sources = [str(path) for path in sorted(tmp_path.glob("*.c"))]
-    flags = ["-std=gnu11", "-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
-    program_path = tmp_path / "watched"
-    built = subprocess.run(
-        [*compiler.command, *flags, *sources, "-o", program_path, "-lm"], capture_output=True, text=True
-    )
-    assert built.returncode == 0, built.stderr
-    done = subprocess.run([program_path], capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    solved, failed = map(int, done.stdout.split())
-    assert solved > 100
-    assert failed > 0
-
-
-MAIN = r"""
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include "interior_point.h"
-
-const Problem *evodesign_problem(void);
-
-int main(void) {
-    const Problem *problem = evodesign_problem();
-    Solver *solver = create(problem);
-    double *x = calloc(problem->variables, sizeof(double));
-    double *bounds = calloc(problem->variables, sizeof(double));
-    double *rows = calloc(problem->rows + 1, sizeof(double)), *given = calloc(NUMBERS, sizeof(double));
-    double *slopes = calloc(NUMBERS, sizeof(double)), fixed[64];
-    Options options = {1e-8, 20, 0.1, 1e-2, 1e-8, 300, 0};
-    int ends[2] = {0, 0};
-    for (int draw = 0; draw < 300; draw++) {
-        for (int k = 0; k < NUMBERS; k++)
-            given[k] = 4.0 * rand() / RAND_MAX - 2.0;
-        if (draw % 50 == 49)
-            given[draw % NUMBERS] = draw % 100 == 99 ? NAN : INFINITY;
-        for (int k = 0; k < problem->variables; k++)
-            x[k] = draw % 7 == 6 ? 1e6 : 0.1;
-        Outcome outcome;
-        options.near = draw % 5 == 4;
-        solve(solver, &options, given, x, bounds, rows, slopes, fixed, &outcome);
-        ends[outcome.status > ACCEPTABLE]++;
-    }
-    destroy(solver);
-    free(x), free(bounds), free(rows), free(given), free(slopes);
-    printf("%d %d\n", ends[0], ends[1]);
-    return 0;
-}
-"""
