@@ -2,8 +2,8 @@
 
     python -m benchmarks.clearance [--problem NAME] [--designs N]
 
-Random designs of a problem, with its own `feet_gap_m` and with feet that may stand on each other: the share of
-solved postures in which two bodies overlap by more than 5 mm, the pairs, and how deep they are at worst.
+Random designs of a problem, with its own `feet_gap_m` and with feet that may stand on each other: solved
+postures in which two bodies overlap by more than 5 mm, the pairs, and how deep they are at worst.
 Written to benchmarks/results/clearance.json, printed as a table.
 """
 
@@ -53,7 +53,8 @@ def measured(problem: DesignProblem, designs: int) -> dict[str, object]:
 
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    formatter = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=formatter)
     parser.add_argument("--problem", default="icub_lifting")
     parser.add_argument("--designs", type=int, default=100)
     arguments = parser.parse_args()
