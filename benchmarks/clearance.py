@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.clearance import solved_gaps
+from evodesign.problem.clearance import solved_distances
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 
@@ -34,7 +34,7 @@ def measured(problem: DesignProblem, designs: int) -> dict[str, object]:
     for _ in range(designs):
         values = problem.space.values(tuple(rng.random(len(problem.space.parameters)).tolist()))
         result = evaluator.solve(values)
-        gaps = solved_gaps(result)
+        gaps = solved_distances(result)
         solved, missed = solved + len(gaps), missed + len(result.cases) - len(gaps)
         for gap in gaps.values():
             if gap.distance < -DEEP:

@@ -37,7 +37,7 @@ def evaluate(
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.design import design_tables
     from evodesign.problem.build import build_problem
-    from evodesign.problem.clearance import overlaps, solved_gaps
+    from evodesign.problem.clearance import overlaps, solved_distances
     from evodesign.problem.evaluation_json import evaluation_json
     from evodesign.problem.factory import evaluator_of
     from evodesign.problem.notes import notes
@@ -57,7 +57,7 @@ def evaluate(
         return
     for table in design_tables(built, chosen, result, assessment, sensitivities):
         console().print(table)
-    show_notes(overlaps(solved_gaps(result).items()))
+    show_notes(overlaps(solved_distances(result).items()))
 
 
 def _chosen(problem: DesignProblem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:

@@ -12,7 +12,7 @@ from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
-    from evodesign.collision.clearance import Gap
+    from evodesign.collision.clearance import BodyDistance
     from evodesign.problem.ergonomics import Ergonomics
     from evodesign.records import Case
     from evodesign.report.opened_design import OpenedDesign
@@ -34,7 +34,7 @@ def show(
     """One design of a run: objectives, parameters, torques, contact forces."""
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.problem.clearance import gap_json, overlaps
+    from evodesign.problem.clearance import distance_json, overlaps
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
 
@@ -54,7 +54,7 @@ def show(
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in _ergonomics(opened)]
-        gaps = [gap_json(gap) for gap in _gaps(opened).values()]
+        gaps = [distance_json(gap) for gap in _gaps(opened).values()]
         print_json({"run": str(run), **told, "ergonomics": asked, "clearances": gaps})
     else:
         from evodesign.cli.tables.card import card
@@ -75,7 +75,7 @@ def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
         return ()
 
 
-def _gaps(opened: OpenedDesign) -> dict[Case, Gap]:
+def _gaps(opened: OpenedDesign) -> dict[Case, BodyDistance]:
     """How near bodies come in its postures; none, and a note, if the problem cannot be built here."""
     from evodesign.cli.output import show_notes
 

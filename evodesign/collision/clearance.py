@@ -20,7 +20,7 @@ from evodesign.body.placement import Placement
 from evodesign.collision.shapes import Array, ConvexSolid, solids_of
 from evodesign.tree.model import Tree
 
-__all__ = ["Gap", "PlacedSolids", "Places", "SolidBodies", "places_of"]
+__all__ = ["BodyDistance", "PlacedSolids", "Places", "SolidBodies", "places_of"]
 
 
 Places = NDArray[np.intp]
@@ -42,7 +42,7 @@ def places_of(names: Sequence[str], pairs: Iterable[tuple[str, str]]) -> Places:
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class BodyDistance:
     """How far two bodies are apart.
 
     Args:
@@ -127,7 +127,7 @@ class PlacedSolids:
             ),
         )
 
-    def nearest(self, places: Places) -> Gap:
+    def nearest(self, places: Places) -> BodyDistance:
         """The nearest two bodies of some pairs.
 
         Args:
@@ -141,10 +141,10 @@ class PlacedSolids:
             best = min(best, self._gap(places[at]), key=lambda gap: gap.distance)
         return best
 
-    def overlapping(self, places: Places) -> list[Gap]:
+    def overlapping(self, places: Places) -> list[BodyDistance]:
         """Those of some pairs that overlap, once each."""
         order, gaps = self._by_balls(places)
-        found: dict[tuple[str, str], Gap] = {}
+        found: dict[tuple[str, str], BodyDistance] = {}
         for at in order:
             if gaps[at] >= 0.0:
                 break
@@ -162,9 +162,9 @@ class PlacedSolids:
         gaps = between - radii[first] - radii[second]
         return np.argsort(gaps, kind="stable").tolist(), gaps
 
-    def _gap(self, places: Places) -> Gap:
+    def _gap(self, places: Places) -> BodyDistance:
         i, j = places.tolist()
-        return Gap(self.names[i], self.names[j], self._distance(i, j))
+        return BodyDistance(self.names[i], self.names[j], self._distance(i, j))
 
     def _distance(self, i: int, j: int) -> float:
         request, result = coal.DistanceRequest(), coal.DistanceResult()

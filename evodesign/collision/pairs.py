@@ -22,7 +22,7 @@ from evodesign.collision.clearance import SolidBodies, places_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["holding_links", "watched_pairs"]
+__all__ = ["collision_pairs", "holding_links"]
 
 BETWEEN, AXES = 1, 3
 """Links with a body, or joints that move, between two neighbours."""
@@ -36,7 +36,7 @@ SAMPLES, MOST = 100, 0.5
 TURN = np.pi  # [rad], of a joint without limits
 
 
-def watched_pairs(tree: Tree) -> tuple[tuple[str, str], ...]:
+def collision_pairs(tree: Tree) -> tuple[tuple[str, str], ...]:
     """Pairs of links that must not overlap, in the tree's order.
 
     Args:

@@ -1,7 +1,7 @@
 """Whether bodies pass through each other in a posture: the smallest clearance of all pairs that must not.
 
 Postures are solved with bodies that may pass through anything but where a limit says otherwise (the feet, the
-trunk and the load); this tells by how much they do. Watched are an agent's own pairs (`collision.pairs`), all
+trunk and the load); this tells by how much they do. Checked are an agent's own pairs (`collision.pairs`), all
 links and the load but for those that hold it, and all links of robot and person against each other.
 """
 
@@ -12,8 +12,8 @@ from typing import Any
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box
-from evodesign.collision.clearance import Gap, PlacedSolids, Places, SolidBodies, places_of
-from evodesign.collision.pairs import holding_links, watched_pairs
+from evodesign.collision.clearance import BodyDistance, PlacedSolids, Places, SolidBodies, places_of
+from evodesign.collision.pairs import collision_pairs, holding_links
 from evodesign.collision.shapes import box_solid
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.problem.evaluate import detail_of
@@ -22,7 +22,7 @@ from evodesign.records import AgentDetail, Case, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["LOAD", "Clearances", "gap_json", "overlaps", "solved_gaps"]
+__all__ = ["LOAD", "Clearances", "distance_json", "overlaps", "solved_distances"]
 
 LOAD = "load"
 """Name of the load beside `robot` and `person` followed by a link."""
@@ -48,7 +48,7 @@ class Clearances:
         self._places: dict[tuple[str, str], Places] = {}
         self._people = {scene.human.label: SolidBodies.of_tree(scene.human.tree) for scene in scenes}
 
-    def of(self, robot: Tree, cases: Sequence[CaseDetail]) -> list[Gap]:
+    def of(self, robot: Tree, cases: Sequence[CaseDetail]) -> list[BodyDistance]:
         """The nearest two bodies in each case, at the first instant, undisturbed.
 
         Args:
@@ -58,7 +58,7 @@ class Clearances:
         solids = SolidBodies.of_tree(robot)
         return [self._nearest(robot, solids, each) for each in cases]
 
-    def _nearest(self, robot: Tree, solids: SolidBodies, case: CaseDetail) -> Gap:
+    def _nearest(self, robot: Tree, solids: SolidBodies, case: CaseDetail) -> BodyDistance:
         scene = self._scenes[case.case.pair]
         person = self._people[scene.human.label]
         load = SolidBodies((LOAD,), (box_solid(Box(*scene.payload.size)),))
@@ -68,10 +68,12 @@ class Clearances:
             load.placed({LOAD: middle}),
         )
         if scene.pair not in self._places:
-            self._places[scene.pair] = places_of(placed.names, self._watched(scene, solids, person))
+            self._places[scene.pair] = places_of(placed.names, self._collision_pairs(scene, solids, person))
         return placed.nearest(self._places[scene.pair])
 
-    def _watched(self, scene: Scene, robot: SolidBodies, person: SolidBodies) -> Iterator[tuple[str, str]]:
+    def _collision_pairs(
+        self, scene: Scene, robot: SolidBodies, person: SolidBodies
+    ) -> Iterator[tuple[str, str]]:
         """All pairs of a scene."""
         links = {ROBOT: dict.fromkeys(robot.names), HUMAN: dict.fromkeys(person.names)}
         for one in links[ROBOT]:
@@ -83,23 +85,23 @@ class Clearances:
 
     def _of_agent(self, agent: Agent) -> Pairs:
         if id(agent.tree) not in self._own:
-            self._own[id(agent.tree)] = watched_pairs(agent.tree)
+            self._own[id(agent.tree)] = collision_pairs(agent.tree)
         return self._own[id(agent.tree)]
 
 
-def solved_gaps(result: DesignResult) -> dict[Case, Gap]:
+def solved_distances(result: DesignResult) -> dict[Case, BodyDistance]:
     """The nearest two bodies of each solved case of a design."""
     cases = [detail_of(solution) for solution in result.cases if solution.solved]
     gaps = Clearances(result.scenes).of(result.tree, cases)
     return {case.case: gap for case, gap in zip(cases, gaps, strict=True)}
 
 
-def gap_json(gap: Gap) -> dict[str, Any]:
+def distance_json(gap: BodyDistance) -> dict[str, Any]:
     """A gap as it is told to other programs."""
     return {"bodies": [gap.first, gap.second], "distance_m": gap.distance}
 
 
-def overlaps(gaps: Iterable[tuple[Case, Gap]]) -> list[str]:
+def overlaps(gaps: Iterable[tuple[Case, BodyDistance]]) -> list[str]:
     """A sentence for each case in which bodies pass through each other."""
     return [
         f"at {case.name}, {gap.first} and {gap.second} overlap by {-1e3 * gap.distance:.1f} mm"

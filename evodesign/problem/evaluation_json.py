@@ -43,11 +43,11 @@ from typing import Any
 
 import msgspec
 
-from evodesign.collision.clearance import Gap
+from evodesign.collision.clearance import BodyDistance
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.clearance import gap_json, solved_gaps
+from evodesign.problem.clearance import distance_json, solved_distances
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
@@ -68,7 +68,7 @@ def evaluation_json(
     """The JSON object of one design."""
     design = dict(problem.space.named(values))
     materials = materials_of(problem.space.records, design)
-    gaps = solved_gaps(result)
+    gaps = solved_distances(result)
     shown = [_shown(solution, result, gaps.get(solution.case)) for solution in result.cases]
     return {
         "problem": problem.name,
@@ -97,7 +97,7 @@ def evaluation_json(
     }
 
 
-def _shown(solution: CaseSolution, result: DesignResult, gap: Gap | None) -> dict[str, Any]:
+def _shown(solution: CaseSolution, result: DesignResult, gap: BodyDistance | None) -> dict[str, Any]:
     """All of a case but its name."""
     shown: dict[str, Any] = {
         "status": str(solution.status),
@@ -112,7 +112,7 @@ def _shown(solution: CaseSolution, result: DesignResult, gap: Gap | None) -> dic
             shown["disturbed"] = {name: _load_case(postures) for name, postures in solution.disturbed.items()}
         shown["residuals"] = dict(solution.residuals)
         if gap is not None:
-            shown["clearance"] = gap_json(gap)
+            shown["clearance"] = distance_json(gap)
         person, posture = result.scene_of(solution.case).human, detail_of(solution).agents[HUMAN]
         shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
     return shown

@@ -16,7 +16,7 @@ from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
 
 if TYPE_CHECKING:
-    from evodesign.collision.clearance import Gap
+    from evodesign.collision.clearance import BodyDistance
     from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import DesignProblem
     from evodesign.problem.ergonomics import Ergonomics
@@ -77,7 +77,7 @@ class OpenedDesign:
         values = [design[parameter.name] for parameter in problem.space.parameters]
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
 
-    def gaps(self) -> dict[Case, Gap]:
+    def gaps(self) -> dict[Case, BodyDistance]:
         """The nearest two bodies in each of its postures."""
         from evodesign.problem.clearance import Clearances
 

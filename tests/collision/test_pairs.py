@@ -1,4 +1,4 @@
-"""Which bodies are watched: what the build brings together is not, all else is."""
+"""Which bodies are checked: what the build brings together is not, all else is."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from itertools import pairwise
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Sphere
-from evodesign.collision.pairs import holding_links, watched_pairs
+from evodesign.collision.pairs import collision_pairs, holding_links
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
 
 def test_joined_links_are_not_watched_and_others_are(problem: DesignProblem) -> None:
-    robot, person = (set(watched_pairs(agent.tree)) for agent in (problem.scene.robot, problem.scene.human))
+    robot, person = (set(collision_pairs(agent.tree)) for agent in (problem.scene.robot, problem.scene.human))
     for near in (("root_link", "torso_1"), ("root_link", "l_hip_3"), ("chest", "head")):
         assert near not in robot
     for far in (("l_foot_front", "r_foot_front"), ("l_hip_3", "r_hip_3"), ("chest", "l_hip_2")):
@@ -22,7 +22,7 @@ def test_joined_links_are_not_watched_and_others_are(problem: DesignProblem) -> 
     assert {("T8", "LeftUpperLeg"), ("Head", "LeftForeArm"), ("L5", "LeftForeArm")} <= person
 
 
-def test_a_pair_that_always_overlaps_is_not_watched() -> None:
+def test_a_pair_that_always_overlaps_is_not_collision_pairs() -> None:
     """A chain of small links that ends inside its first one, whatever the joints do."""
     names = ["shell", *(f"ball {number}" for number in range(5))]
     shell = Link("shell", own_inertia=Inertia(1.0), looks=(Look(Box(2.0, 2.0, 2.0), Placement()),))
@@ -40,9 +40,9 @@ def test_a_pair_that_always_overlaps_is_not_watched() -> None:
         )
         for a, b in pairwise(names)
     ]
-    watched = watched_pairs(Tree("chain", (shell, *balls), tuple(joints)))
-    assert not [pair for pair in watched if "shell" in pair]
-    assert ("ball 0", "ball 4") in watched
+    checked = collision_pairs(Tree("chain", (shell, *balls), tuple(joints)))
+    assert not [pair for pair in checked if "shell" in pair]
+    assert ("ball 0", "ball 4") in checked
 
 
 def test_hands_hold_and_forearms_do_not(problem: DesignProblem) -> None:

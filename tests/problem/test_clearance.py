@@ -11,7 +11,7 @@ import pytest
 from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.clearance import LOAD, Clearances, overlaps, solved_gaps
+from evodesign.problem.clearance import LOAD, Clearances, overlaps, solved_distances
 from evodesign.problem.evaluate import Evaluator, detail_of
 from evodesign.problem.objectives import DesignResult
 
@@ -59,7 +59,9 @@ def test_feet_may_stand_on_each_other_only_where_nothing_forbids_it(
     assert all(solution.solved for solution in apart.cases)
     assert min(soles_apart(problem, apart)) >= GAP - 1e-6
     feet = {"robot l_foot_front", "robot r_foot_front"}
-    assert all(not {gap.first, gap.second} <= feet for gap in solved_gaps(apart).values() if gap.distance < 0)
+    assert all(
+        not {gap.first, gap.second} <= feet for gap in solved_distances(apart).values() if gap.distance < 0
+    )
 
 
 def test_overlapping_bodies_are_told_with_how_deep_they_are(

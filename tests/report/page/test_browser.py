@@ -48,6 +48,11 @@ def trace(tab: Tab, name: str) -> list[int]:
     return list(json.loads(drawn))
 
 
+def apart(number: int, spots: dict[int, tuple[float, float]]) -> float:
+    """How far a design is drawn from the nearest other one."""
+    return min(math.dist(spots[number], place) for other, place in spots.items() if other != number)
+
+
 def spot(tab: Tab, number: int) -> tuple[float, float]:
     """Where in the window the front draws a design."""
     left, top, _, _ = tab.place(PLOT)
@@ -117,8 +122,11 @@ def test_brush_moves_by_keyboard(page: Tab) -> None:
 def test_clicking_a_point_shows_its_card(page: Tab, real_run: RunLog) -> None:
     marked = page.value("window.evodesign.content.marks.map(mark => mark.number)")
     shown = page.value("window.evodesign.state.selected")
-    number = next(number for number in front_of(real_run) if number in marked and number != shown)
-    page.click(*spot(page, number))
+    spots = {number: spot(page, number) for number in front_of(real_run)}
+    number = max(
+        marked, key=lambda number: apart(number, spots) if number in spots and number != shown else -1.0
+    )
+    page.click(*spots[number])
     page.wait_for(f"{SHOWN} === 'Design {number}'")
     assert page.value("document.getElementById('announce').textContent") == f"Design {number} is shown."
     found = front_of(real_run)[number]
