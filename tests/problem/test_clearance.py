@@ -13,6 +13,7 @@ from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import LOAD, Clearances, overlaps, solved_distances
 from evodesign.problem.evaluate import Evaluator, detail_of
+from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.objectives import DesignResult
 
 GAP = 0.01
@@ -76,6 +77,19 @@ def test_overlapping_bodies_are_told_with_how_deep_they_are(
     assert len(sentences) == len(cases)
     assert sentences[0].startswith(f"at {cases[0].case.task}, ")
     assert sentences[0].endswith(f"overlap by {-1e3 * gaps[0].distance:.1f} mm")
+
+
+def test_evaluate_tells_the_nearest_bodies_of_each_case(problem: DesignProblem, free: DesignResult) -> None:
+    evaluator = Evaluator(problem)
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    told = evaluation_json(problem, values, free, evaluator.assessment(values, free), {})
+    distances = solved_distances(free)
+    assert len(distances) == len(told["cases"])
+    for case, found in zip(told["cases"], distances.values(), strict=True):
+        assert case["clearance"] == {
+            "bodies": [found.first, found.second],
+            "distance_m": found.distance,
+        }
 
 
 def test_the_shipped_problems_keep_feet_apart() -> None:

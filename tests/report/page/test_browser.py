@@ -138,6 +138,17 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: RunLog) -> None:
         assert page.value(cell) == shown_as(value)
 
 
+def test_the_nearest_bodies_of_the_posture_that_is_shown_are_told(page: Tab) -> None:
+    told = page.value(
+        "(() => { const { content, state } = window.evodesign, design = content.designs[state.selected];"
+        "const at = design.postures.findIndex(p => p.case.task.height_m === content.heights_m[state.height]);"
+        "return design.clearances[at]; })()"
+    )
+    text = page.value("document.getElementById('nearest-bodies').textContent")
+    assert told["second"] in text
+    assert ("overlap by" if told["distance_m"] < -1e-4 else "apart") in text
+
+
 def test_arrow_keys_walk_along_the_front(page: Tab, real_run: RunLog) -> None:
     before = page.value(SHOWN)
     page.value(f"{PLOT}.focus()")

@@ -14,6 +14,7 @@ import pytest
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.clearance import Clearances
 from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html
 from evodesign.report.page.content import Content, Points
@@ -65,6 +66,22 @@ def test_every_posture_is_the_logs(real_run: RunLog, content: Content) -> None:
     for number, design in content.designs.items():
         assert design.postures == (details[number].cases if number in details else ())
         assert design.cases == real_run.evaluations[number].assessment.cases
+
+
+def test_every_posture_has_its_nearest_bodies(
+    real_run: RunLog, content: Content, problem: DesignProblem
+) -> None:
+    details = {detail.evaluation: detail.cases for detail in real_run.details}
+    for number, design in content.designs.items():
+        assert len(design.clearances) == len(design.postures)
+        if not design.postures:
+            continue
+        own = problem.space.values(real_run.evaluations[number].genome)
+        robot = problem.space.resized(problem.scene.robot.tree, own)
+        found = Clearances(problem.scenes).of(robot, details[number])
+        told = [(each.first, each.second, each.distance_m) for each in design.clearances]
+        assert told == [(each.first, each.second, each.distance) for each in found]
+        break
 
 
 def test_masses_are_the_resized_robots(real_run: RunLog, content: Content, problem: DesignProblem) -> None:
