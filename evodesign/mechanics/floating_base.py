@@ -67,12 +67,14 @@ class _Built:
 
     Args:
         tree: of numbers.
+        joints: of the tree, depth first.
         moving: names of the joints that move.
         carriers: of each link: pinocchio's joint, and the link's place in its frame.
         bodies: of each link: pinocchio's inertia.
     """
 
     tree: Tree
+    joints: tuple[Joint, ...]
     moving: frozenset[str]
     carriers: Mapping[str, tuple[int, Any]]
     bodies: Mapping[str, Any]
@@ -111,7 +113,8 @@ class FloatingBody:
         model, moving = pin.Model(), frozenset(joints)
         root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
         carriers = {tree.root: (root, pin.SE3.Identity())}
-        for joint in _depth_first(tree, tree.root):
+        ordered = tuple(_depth_first(tree, tree.root))
+        for joint in ordered:
             carrier, carrier_from_parent = carriers[joint.parent]
             carrier_from_child = carrier_from_parent * _placement(joint.parent_from_child)
             if joint.name in moving:
@@ -124,7 +127,7 @@ class FloatingBody:
             carrier, carrier_from_link = carriers[name]
             model.appendBodyToJoint(carrier, body, carrier_from_link)
             model.addFrame(pin.Frame(name, carrier, carrier_from_link, pin.FrameType.BODY))
-        return cls._of_model(model, joints, world_from_given, _Built(tree, moving, carriers, bodies))
+        return cls._of_model(model, joints, world_from_given, _Built(tree, ordered, moving, carriers, bodies))
 
     def resized(self, tree: Tree) -> FloatingBody:
         """The tree of another design: what differs is put in the place of what was in a copy of the model.
@@ -138,7 +141,7 @@ class FloatingBody:
             raise ValueError("a solid is not resized")
         carriers, moved, changed = dict(built.carriers), set(), set()
         joints = {joint.name: joint for joint in tree.joints}
-        for unscaled in _depth_first(built.tree, built.tree.root):
+        for unscaled in built.joints:
             joint = joints[unscaled.name]
             if joint is unscaled and joint.parent not in moved:
                 continue

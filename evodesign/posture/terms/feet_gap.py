@@ -48,20 +48,21 @@ def _corners(size: SoleSize) -> list[tuple[float, float]]:
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
-    """By how much the soles come too near [m], from all their corners."""
+    """By how much the soles come too near [m]."""
     gap = body.scene.stance.feet_gap
     if gap is None:
         return
-    left, right = (
-        [_place(body, side, corner) for corner in _corners(body.agent.sole_size)] for side in SIDES
-    )
-    missing = max(0.0, gap - (min(left) - max(right)))
+    (left, half_left), (right, half_right) = (_sideways(body, side) for side in SIDES)
+    missing = max(0.0, gap - (left - half_left - right - half_right))
     yield Residual(NAME, missing, "m", "the gap between the feet", LimitGroup.STANCE, posture_only=True)
 
 
-def _place(body: MeasuredBody, side: str, corner: tuple[float, float]) -> float:
+def _sideways(body: MeasuredBody, side: str) -> tuple[float, float]:
+    """Where the middle of a sole is, and how far its corners reach from there [m], along y."""
+    size = body.agent.sole_size
     rotation, origin = body.state.pose(body.agent.soles[side])
-    return float((origin + rotation @ np.array([*corner, 0.0]))[1])
+    reach = abs(rotation[1, 0]) * size.length / 2.0 + abs(rotation[1, 1]) * size.width / 2.0
+    return float(origin[1]), float(reach)
 
 
 FEET_GAP = BodyTerm("feet_gap", rows=rows, residuals=residuals)
