@@ -403,7 +403,8 @@ class SearchSettings(Record, frozen=True):
 
     `past` holds the stages that a branch went through before, the earliest first; `start` is of the earliest.
     `choices` is left out where no coordinate is discrete; else it says of each coordinate how many choices
-    there are, 0 for a continuous one. `gradients` is left out where evaluations have none.
+    there are, 0 for a continuous one. `gradients` is left out where evaluations have none, `reference`
+    where none is given: of each objective, as it is minimised, the value beyond which a design counts for nothing.
     """
 
     algorithm: str
@@ -416,6 +417,12 @@ class SearchSettings(Record, frozen=True):
     asynchronous: bool = False
     choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
     gradients: bool | msgspec.UnsetType = msgspec.UNSET
+    reference: tuple[float | None, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def reference_values(self) -> tuple[float | None, ...]:
+        """Of the reference point, by objective; None where the search decides."""
+        return (None,) * self.objectives if self.reference is msgspec.UNSET else self.reference
 
     @property
     def with_gradients(self) -> bool:

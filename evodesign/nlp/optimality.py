@@ -120,9 +120,9 @@ class Conditions:
         """What the function gives, in numbers, without copies through CasADi's own matrices."""
         buffer, call = self._function.buffer()
         for position, given in enumerate((symbols, multipliers, parameters)):
-            buffer.set_arg(position, memoryview(np.ascontiguousarray(given, dtype=float)))
+            buffer.set_arg(position, np.ascontiguousarray(given, dtype=float).data)
         together = np.empty(self._ends[-1])
-        buffer.set_res(0, memoryview(together))
+        buffer.set_res(0, together.data)
         call()
         begins = [0, *self._ends]
         return [

@@ -70,15 +70,13 @@ class PostureDerivative:
             load_case: zero for the undisturbed one, else one more than the disturbance's number.
             weights: by agent and joint.
         """
-        return np.sum(
-            [
-                form.folded(weights[form.agent.name])
-                @ self.slopes[self.layout[Slot(instant, load_case, form.agent.name, "torques")]]
-                for form in self.forms
-                if form.agent.name in weights
-            ],
-            axis=0,
-        )
+        found = np.zeros(len(self.cost_slope))
+        for form in self.forms:
+            agent = form.agent.name
+            if agent in weights:
+                slopes = self.slopes[self.layout[Slot(instant, load_case, agent, "torques")]]
+                found += form.folded(weights[agent]) @ slopes
+        return found
 
 
 def found_again(

@@ -96,9 +96,7 @@ class Form:
             return found
         twins = [(self.mirror.joints[name], self.mirror.signs[name]) for name in self.joints]
         own = zip(self.joints, twins, strict=True)
-        return found + [
-            0.0 if twin == name else sign * by_joint.get(twin, 0.0) for name, (twin, sign) in own
-        ]
+        return found + [0.0 if twin == name else sign * by_joint.get(twin, 0.0) for name, (twin, sign) in own]
 
     def parts(self, posture: AgentPosture) -> dict[str, Array]:
         """What `expand` takes, from a posture of the whole agent; hands pass six numbers."""

@@ -27,12 +27,13 @@ from evodesign.problem.objectives import (
     REACH,
     SHARED_REACH,
     WORST,
+    ByTorque,
     CaseQuantity,
     DesignResult,
     objective_value,
     split_name,
 )
-from evodesign.problem.sensitivities import Sensitivities, five_point, STEP
+from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
 from evodesign.records import Gradients
 from evodesign.violations import HEIGHT
 
@@ -104,8 +105,9 @@ class _Design:
         if objective_value(name, self._result) is None:
             return NotDifferentiable("the design has no such value")
         way, quantity = split_name(name)
-        if quantity in QUANTITIES and QUANTITIES[quantity].by_torque is not None:
-            return self._over_cases(QUANTITIES[quantity], way)
+        known = QUANTITIES.get(quantity)
+        if known is not None and known.by_torque is not None:
+            return self._over_cases(known, known.by_torque, way)
         if name == REACH:
             return _slope(self._highest)
         if name == SHARED_REACH:
@@ -128,19 +130,17 @@ class _Design:
         found = _slope(self._highest)
         return found if isinstance(found, NotDifferentiable) else -found
 
-    def _over_cases(self, quantity: CaseQuantity, way: str) -> Found:
+    def _over_cases(self, quantity: CaseQuantity, by_torque: ByTorque, way: str) -> Found:
         """By the chain rule in every case, weighted as the value is."""
-        for derivative in self._cases:
+        values, gradients = [], []
+        for solution, derivative in zip(self._result.cases, self._cases, strict=True):
             if isinstance(derivative, NotDifferentiable):
                 return derivative
-        values, gradients = [], []
-        assert quantity.by_torque is not None
-        for solution, derivative in zip(self._result.cases, self._cases, strict=True):
             scene = self._result.scene_of(solution.case)
             for number, instant in enumerate(solution.instants):
                 for load_case, postures in enumerate((instant.postures, *instant.disturbed.values())):
                     values.append(quantity.value(scene, postures))
-                    weights = quantity.by_torque(scene, postures)
+                    weights = by_torque(scene, postures)
                     gradients.append(derivative.along_torques(number, load_case, weights))
         return np.asarray(_weights(values, way) @ np.array(gradients))
 
@@ -162,7 +162,9 @@ class _Design:
 
         return np.array(
             [
-                0.0 if parameter.choices else _difference(value, position, STEP * (parameter.upper - parameter.lower))
+                0.0
+                if parameter.choices
+                else _difference(value, position, STEP * (parameter.upper - parameter.lower))
                 for position, parameter in enumerate(space.records)
             ]
         )

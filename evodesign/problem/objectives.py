@@ -41,6 +41,7 @@ __all__ = [
     "REACH",
     "SHARED_REACH",
     "WORST",
+    "ByTorque",
     "CaseQuantity",
     "CaseValue",
     "DesignResult",
@@ -163,7 +164,7 @@ def aggregate(quantity: CaseQuantity, way: str) -> ObjectiveKind:
 
 
 def _by_norm(agent: str) -> ByTorque:
-    """d |tau| / d tau = tau / |tau|."""
+    """D |tau| / d tau = tau / |tau|."""
 
     def by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
         norm = postures[agent].torque_norm or 1.0

@@ -162,9 +162,7 @@ class Sensitivities:
             problem=self._problem,
             values=tuple(values),
             result=result,
-            cases=tuple(
-                self.of_case(values, solution) for solution in result.cases
-            ),
+            cases=tuple(self.of_case(values, solution) for solution in result.cases),
             highest=self.of_reach(values, HIGHEST),
             lowest=self.of_reach(values, LOWEST),
         )
