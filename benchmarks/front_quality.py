@@ -1,10 +1,10 @@
 """How much of the best known front does a search find with a budget?
 
-Every algorithm searches `problems/point_grasp.toml` with every seed, in this process, without a log. What counts
-is the share of the hypervolume of all fronts found so far together, 15.423, against the reference point 30 N m,
-7.2 N m, 1.2 m. Our searches begin with the designs that the problem names; pymoo's have their own defaults.
-Processor time is that of proposing designs and of evaluating them, gradients included, per evaluation.
-Results go to benchmarks/results/front_quality.json and are printed as a Markdown table.
+Every algorithm searches `problems/point_grasp.toml` with every seed, in this process, without a log. What
+counts is the share of the hypervolume of all fronts found so far together, 15.423, against the reference
+point 30 N m, 7.2 N m, 1.2 m. Our searches begin with the designs that the problem names; pymoo's have their
+own defaults. Processor time is that of proposing designs and of evaluating them, gradients included, per
+evaluation. Results go to benchmarks/results/front_quality.json and are printed as a Markdown table.
 
     python -m benchmarks.front_quality [--evaluations 960] [--seeds 5] [--jobs 2] [--only surrogate ...]
 """

@@ -225,8 +225,8 @@ class Gradients(Record, frozen=True):
 
     Attributes:
         values: by quantity (objectives, constrained quantities, and `height` for the margin by which required
-            heights are missed) and by parameter, the derivative in the quantity's unit per unit of the genome's
-            coordinate. Discrete parameters have none.
+            heights are missed) and by parameter, the derivative in the quantity's unit per unit of the
+            genome's coordinate. Discrete parameters have none.
         absent: by quantity, why its gradient does not exist.
     """
 
@@ -348,7 +348,8 @@ class Turn(Record, frozen=True):
 class Evaluation(Record, frozen=True, omit_defaults=True):
     """One assessed genome with its place in the run. Only times and `worker` may differ between runs.
 
-    `gradient_seconds` are those of `seconds` that gradients took. An asynchronous run has a `turn`, and counts its evaluations in the order in which they came.
+    `gradient_seconds` are those of `seconds` that gradients took. An asynchronous run has a `turn`, and
+    counts its evaluations in the order in which they came.
     """
 
     number: int
@@ -404,7 +405,8 @@ class SearchSettings(Record, frozen=True):
     `past` holds the stages that a branch went through before, the earliest first; `start` is of the earliest.
     `choices` is left out where no coordinate is discrete; else it says of each coordinate how many choices
     there are, 0 for a continuous one. `gradients` is left out where evaluations have none, `reference`
-    where none is given: of each objective, as it is minimised, the value beyond which a design counts for nothing.
+    where none is given: of each objective, as it is minimised, the value beyond which a design counts for
+    nothing.
     """
 
     algorithm: str

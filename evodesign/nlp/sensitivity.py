@@ -36,7 +36,7 @@ from evodesign.nlp.program import Program
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.records import Status
 
-__all__ = ["Limit", "Limits", "Optimum", "SolutionSensitivity", "no_limits"]
+__all__ = ["Limit", "LimitTable", "Optimum", "SolutionSensitivity", "no_limits"]
 
 Places = NDArray[np.intp]
 
@@ -67,7 +67,7 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True)
-class Limits(Sequence[Limit]):
+class LimitTable(Sequence[Limit]):
     """Many limits, each made when it is looked at.
 
     Args:
@@ -96,8 +96,8 @@ class Limits(Sequence[Limit]):
     def __len__(self) -> int:
         return len(self.names)
 
-    def __add__(self, other: Limits) -> Limits:
-        return Limits(
+    def __add__(self, other: LimitTable) -> LimitTable:
+        return LimitTable(
             self.names + other.names,
             np.concatenate([self.active, other.active]),
             np.concatenate([self.margins, other.margins]),
@@ -109,9 +109,9 @@ class Limits(Sequence[Limit]):
         return any(one == name and active for one, active in zip(self.names, self.active, strict=True))
 
 
-def no_limits(parameters: int) -> Limits:
+def no_limits(parameters: int) -> LimitTable:
     """None at all, beside so many parameters."""
-    return Limits((), np.zeros(0, bool), np.zeros(0), np.zeros((0, parameters)))
+    return LimitTable((), np.zeros(0, bool), np.zeros(0), np.zeros((0, parameters)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ class Optimum:
     slopes: Mapping[str, Array]
     cost: float
     cost_slope: Array
-    limits: Limits
+    limits: LimitTable
     columns: Mapping[str, slice]
 
     def along(self, parameter: str, change: Array | None = None) -> Optimum:
@@ -272,7 +272,7 @@ class SolutionSensitivity:
         slopes = np.full((len(margins), len(here.cost_slope)), np.nan)
         if exact:
             slopes = _slopes(self._sides, active, here, change)
-        limits = Limits(self._sides.names, active, margins, slopes)
+        limits = LimitTable(self._sides.names, active, margins, slopes)
         if len(limits) and limits.margins.min() < COMPLEMENTARY:
             name = limits.names[int(np.argmax(limits.margins < COMPLEMENTARY))]
             return NotDifferentiable(f"{name} is just about to reach or to leave its limit")

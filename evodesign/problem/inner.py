@@ -1,4 +1,4 @@
-"""The inner problems of a problem, built once: a reach for each load, a posture for each person with a load."""
+"""The inner problems of a problem, built once: a reach per load, a posture per person and load."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ CaseValue = Callable[[Scene, Mapping[str, AgentPosture]], float]
 
 
 ByTorque = Callable[[Scene, Mapping[str, AgentPosture]], Mapping[str, Mapping[str, float]]]
-"""From a scene and the postures in it to a quantity's derivative with respect to torques, by agent and joint."""
+"""From a scene and the postures in it to a quantity's derivatives by torques, by agent and joint."""
 
 
 @dataclass(frozen=True, slots=True)

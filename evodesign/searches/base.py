@@ -39,7 +39,7 @@ class Outcome:
         objectives: values, all to be minimised; None when one of them does not exist.
         violation: sum of constraint violations, zero when feasible; None when a failure left it unknown.
         gradients: of each objective, None for one that does not exist; none at all where none were asked for.
-        margins: how far the design lies beyond each constraint's bounds, negative within them; None where that
+        margins: how far the design lies beyond each constraint's bounds, negative within them; None where it
             is unknown. None at all where only the violation is told.
         margin_gradients: of each margin, as of objectives.
     """

@@ -1,16 +1,16 @@
 """Several outputs of designs as functions of the genome: global models and what they miss nearby.
 
 An output is modelled by its logarithm where a few designs multiply it, as a robot's torque: where the first
-designs span more than a factor of three, further above their median than below it, and no value comes near zero.
-Gradients beyond three times their 98 % quantile are cut off: they stem from places next to a jump. Coordinates
-along which outputs change much get short lengths,
+designs span more than a factor of three, further above their median than below it, and no value comes near
+zero. Gradients beyond three times their 98 % quantile are cut off: they stem from places next to a jump.
+Coordinates along which outputs change much get short lengths,
 
     length = 2.5 (s / max s + 0.05)^-0.6        s: root mean square of the standardised gradient
 
-the largest over the outputs. Without gradients those of a first model with equal lengths serve.
+the largest over the outputs. Where gradients are unknown, those of a first model with equal lengths serve.
 
-Features are drawn anew when 64 designs have come since, so that the search does not lean on one draw, from at
-most a thousand designs: so the time of a proposal is bounded, however many there are.
+Features are drawn anew when 64 designs have come since, so that the search does not lean on one draw, from
+at most a thousand designs: so the time of a proposal is bounded, however many there are.
 """
 
 from __future__ import annotations
@@ -175,15 +175,13 @@ class Approximation:
         generator: np.random.Generator,
     ) -> Array:
         deviation = targets.std(axis=0) + ALMOST
-        known = ~np.isnan(gradients[:, :, ~discrete]).any(axis=2)
         slopes = gradients
-        if not known.any() or discrete.any():
+        if np.isnan(gradients).any():
             first = GlobalModel(np.full(points.shape[1], LENGTH), ~discrete, targets.shape[1], generator)
             first.add(points, targets, gradients)
             modelled = first.solved(targets.mean(axis=0), deviation).slopes(points)
             slopes = np.where(np.isnan(gradients), modelled, gradients)
-        with np.errstate(invalid="ignore"):
-            sizes = np.sqrt(np.nanmean((slopes / deviation[:, None]) ** 2, axis=0)).max(axis=0)
+        sizes = np.sqrt(((slopes / deviation[:, None]) ** 2).mean(axis=0)).max(axis=0)
         largest = sizes.max()
         shares = sizes / largest if largest > 0.0 else np.ones_like(sizes)
         return np.asarray(LENGTH * (shares + SHARE) ** POWER)

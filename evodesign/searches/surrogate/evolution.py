@@ -1,12 +1,13 @@
-"""A small evolution on the model, where a design costs microseconds (pymoo's takes milliseconds a generation).
+"""A small evolution on the model, where a design costs microseconds.
 
-Children mix two parents by simulated binary crossover, or follow a difference of two members; some coordinates
-get a normal step. Choices come from either parent, and some are drawn anew. The fittest survive: feasible ones
-first, by rank of domination, then by crowding distance. Objectives are scaled so that the ideal lies at 0 and
-the reference point at 1; what lies beyond the reference is made worse by five times as much again.
+A generation of pymoo's takes milliseconds. Children mix two parents by simulated binary crossover, or
+follow a difference of two members; some coordinates get a normal step. Choices come from either parent, and
+some are drawn anew. The fittest survive: feasible ones first, by rank of domination, then by crowding
+distance. Objectives are scaled so that the ideal lies at 0 and the reference point at 1; what lies beyond
+the reference is made worse by five times as much again.
 
-Source: Deb, Pratap, Agarwal and Meyarivan, A fast and elitist multiobjective genetic algorithm, 2002; Storn and
-Price, Differential evolution, 1997.
+Source: Deb, Pratap, Agarwal and Meyarivan, A fast and elitist multiobjective genetic algorithm, 2002; Storn
+and Price, Differential evolution, 1997.
 """
 
 from __future__ import annotations

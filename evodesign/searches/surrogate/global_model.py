@@ -9,10 +9,10 @@ designs are needed,
 
     sum_j (d phi_a / d u_j) (d phi_b / d u_j) = s_a s_b (W W^T)_ab,     s_a = -a sin(W_a . u + b_a)
 
-so a gradient costs hardly more than a value, whatever the dimension. Outputs are standardised when solved; all
-share one matrix, so a design whose gradients are not all known gives its values alone. The height of the
-cosines and the noise are 1 and 0.01, which measured best on postures' gradients; without gradients they are
-those of a few under which the values are most likely (the evidence).
+so a gradient costs hardly more than a value, whatever the dimension. Outputs are standardised when solved;
+all share one matrix, so a design whose gradients are not all known gives its values alone. The height of
+the cosines and the noise are 1 and 0.01, which measured best on postures' gradients; without gradients they
+are those of a few under which the values are most likely (the evidence).
 
 Source: Rahimi and Recht, Random features for large-scale kernel machines, 2007; Rasmussen and Williams,
 Gaussian Processes for Machine Learning, 2006, sections 2.1, 5.4.1 (evidence) and 9.4
@@ -123,7 +123,7 @@ class GlobalModel:
 
     def solved(self, mean: Array, deviation: Array) -> FittedModel:
         """The model for outputs of a mean and a standard deviation, one each per output."""
-        heights, right, triangle, weights = self._solution(mean, deviation, *self._choice)
+        heights, _, triangle, weights = self._solution(mean, deviation, *self._choice)
         return FittedModel(self, heights, weights, triangle, mean, deviation)
 
     def tune(self, mean: Array, deviation: Array) -> None:

@@ -1,7 +1,7 @@
 """What a search has been told, as arrays, and the models made of it.
 
-The models of objectives know feasible designs, those of margins all designs whose margins are known. When they
-are made anew from more than a thousand, those stay that few others dominate, and the newest.
+The models of objectives know feasible designs, those of margins all designs whose margins are known. When
+they are made anew from more than a thousand, those stay that few others dominate, and the newest.
 
 Hypervolumes are measured against a reference point. Where none is given it moves with the front: its worst
 values, but none worse than nine in ten of the first designs, and a tenth of the first designs' range beyond.
@@ -106,9 +106,9 @@ class Knowledge:
         Args:
             generator: draws features when they are drawn anew.
         """
-        return self._model.of(len(self._feasible), self._told, self._kept, generator)
+        return self._model.of(len(self._feasible), self._reported, self._kept, generator)
 
-    def _told(self, first: int) -> Known:
+    def _reported(self, first: int) -> Known:
         """Feasible designs from one on."""
         places = self._feasible[first:]
         rows = [self._outcomes[place].gradients for place in places]
@@ -144,10 +144,10 @@ class Knowledge:
         margins = failures = None
         if any(_violation(self._outcomes[place]) for place in self._known):
             margins = self._margins.of(
-                len(self._known), self._margins_told, _newest(len(self._known)), generator
+                len(self._known), self._margins_reported, _newest(len(self._known)), generator
             )
         if 0 < len(self._known) < len(self):
-            failures = self._failures.of(len(self), self._failures_told, _newest(len(self)), generator)
+            failures = self._failures.of(len(self), self._failures_reported, _newest(len(self)), generator)
         share = latest.count(None) / max(len(latest), 1)
         return Feasibility(
             None if margins is None else margins.expected(),
@@ -155,12 +155,12 @@ class Knowledge:
             share,
         )
 
-    def _failures_told(self, first: int) -> Known:
+    def _failures_reported(self, first: int) -> Known:
         """+1 for designs that failed, -1 for others."""
         signs = np.array([[1.0 if _violation(each) is None else -1.0] for each in self._outcomes[first:]])
         return Known(self.points[first:], signs, self._gradients([()] * len(signs), 1))
 
-    def _margins_told(self, first: int) -> Known:
+    def _margins_reported(self, first: int) -> Known:
         """Of the designs whose violation is known."""
         places = self._known[first:]
         violations = np.array([_violation(self._outcomes[place]) for place in places], dtype=float)
@@ -205,7 +205,7 @@ class _Maintained:
     def of(
         self,
         count: int,
-        told: Callable[[int], Known],
+        reported: Callable[[int], Known],
         kept: Callable[[], NDArray[np.intp]],
         generator: np.random.Generator,
     ) -> Approximation | None:
@@ -213,7 +213,7 @@ class _Maintained:
 
         Args:
             count: of the designs.
-            told: gives those from one on.
+            reported: gives those from one on.
             kept: gives the places of those that stay where there are more than may be.
             generator: draws features when they are drawn anew.
         """
@@ -221,10 +221,10 @@ class _Maintained:
             return None
         model = self._model
         if model is None or count >= self._made_at + min(REDRAWN, self._made_at):
-            known = told(0)
+            known = reported(0)
             model = Approximation(known.part(kept()) if count > KEPT else known, self._discrete, generator)
             self._made_at = count
         elif count > self._count:
-            model.add(told(self._count))
+            model.add(reported(self._count))
         self._model, self._count = model, count
         return model

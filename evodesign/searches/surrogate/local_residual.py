@@ -2,8 +2,9 @@
 
     r(u) = e^(-d^2 / 2 f^2) sum_n v_n (r_n + g_n . (u - u_n)),    v_n ~ |u - u_n|^-6,  sum v_n = 1
 
-with d the distance of the nearest known design and r_n, g_n what the model misses there of value and gradient.
-Distances are scaled by the lengths over which outputs change. Far from everything the global model stands alone.
+with d the distance of the nearest known design and r_n, g_n what the model misses there of value and
+gradient. Distances are scaled by the lengths over which outputs change. Far from everything the global
+model stands alone.
 
 Source: Shepard, A two-dimensional interpolation function for irregularly-spaced data, 1968.
 """

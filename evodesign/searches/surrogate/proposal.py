@@ -1,9 +1,9 @@
 """Which genomes are to be evaluated next, by the model.
 
-Half of a batch comes from Thompson samples of the global model, four from each, the other half from its mean
-with the local residual: the first explore, the second refine. Each part is the best of a small evolution
-(`evolution`) that starts from the front, chosen by hypervolume (`selection`). Designs on their way count as if they were
-what the model expects. A genome that is known already is moved a little.
+Half of a batch comes from Thompson samples of the global model, four from each, the other half from its
+mean with the local residual: the first explore, the second refine. Each part is the best of a small
+evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). Designs on their
+way count as if they were what the model expects. A genome that is known already is moved a little.
 """
 
 from __future__ import annotations

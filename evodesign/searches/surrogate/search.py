@@ -1,8 +1,8 @@
 """Surrogate search by ask and tell, by generations and without.
 
-It begins with start genomes and quasi-random points, as many as one and a half times the dimension at least,
-and goes on with them while nothing can be learnt. By generations, a population is proposed at once; small ones
-learn sooner.
+It begins with start genomes and quasi-random points, as many as one and a half times the dimension at
+least, and goes on with them while nothing can be learnt. By generations, a population is proposed at once;
+small ones learn sooner.
 
 Without generations, eight genomes are proposed whenever eight outcomes more are known. Turns go round them,
 and each is moved by about 1e-4, so that no two are the same. What was proposed and is not told yet is on its

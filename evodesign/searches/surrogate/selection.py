@@ -60,7 +60,7 @@ def chosen(members: Members, front: Array, count: int, generator: np.random.Gene
         _, place = heapq.heappop(queue)
         gain = _hypervolume(np.vstack([known, members.objectives[place]])) - volume
         if gain <= 0.0:
-            break
+            continue
         if queue and gain < -queue[0][0]:
             heapq.heappush(queue, (-gain, place))
             continue
