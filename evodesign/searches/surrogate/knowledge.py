@@ -91,7 +91,9 @@ class Knowledge:
         return np.array(self._objectives).reshape(-1, self._settings.objectives)
 
     def reference(self) -> Array:
-        """Values of the objectives beyond which a design counts for nothing; some design is feasible."""
+        """Values of the objectives beyond which a design counts for nothing; ones while none is feasible."""
+        if not self._feasible:
+            return np.ones(self._settings.objectives)
         first = self._values()[: max(FEWEST_FIRST, int(FIRST_PER_DIMENSION * self._settings.dimension))]
         _, front = self.front()
         usual = np.minimum(front.max(axis=0), np.quantile(first, USUAL, axis=0))
