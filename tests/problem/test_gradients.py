@@ -128,13 +128,13 @@ def test_what_does_not_exist_has_no_gradient_and_a_reason(problem: DesignProblem
 def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
     problem: DesignProblem, known: Precomputed, tmp_path
 ) -> None:
-    settings = msgspec.structs.replace(problem.settings("surrogate", 24, 1), start=())
+    settings = msgspec.structs.replace(problem.settings("surrogate", 8, 1), start=())
     assert settings.with_gradients
     factory = AssessmentFactory("run", problem, known, gradients=True)
     with SerialPool() as pool:
-        whole = start(tmp_path / "whole", header_of(problem, settings, 40), factory, pool, Silent())
-        start(tmp_path / "parts", header_of(problem, settings, 30), factory, pool, Silent())
-        parts = resume(tmp_path / "parts", lambda _: factory, pool, Silent(), 40)
+        whole = start(tmp_path / "whole", header_of(problem, settings, 32), factory, pool, Silent())
+        start(tmp_path / "parts", header_of(problem, settings, 28), factory, pool, Silent())
+        parts = resume(tmp_path / "parts", lambda _: factory, pool, Silent(), 32)
     assert digest(parts.evaluations) == digest(whole.evaluations)
     replay(whole)
     for evaluation in read_run(tmp_path / "whole").evaluations:
