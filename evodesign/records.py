@@ -29,6 +29,7 @@ __all__ = [
     "Front",
     "Generation",
     "Genome",
+    "Gradients",
     "Hold",
     "InstantDetail",
     "LoadCaseDetail",
@@ -219,6 +220,20 @@ class CaseOutcome(Record, frozen=True, omit_defaults=True):
     fallbacks: int = 0
 
 
+class Gradients(Record, frozen=True):
+    """How quantities of a design move with its genome.
+
+    Attributes:
+        values: by quantity (objectives, constrained quantities, and `height` for the margin by which required
+            heights are missed) and by parameter, the derivative in the quantity's unit per unit of the
+            genome's coordinate. Discrete parameters have none.
+        absent: by quantity, why its gradient does not exist.
+    """
+
+    values: dict[str, dict[str, float]]
+    absent: dict[str, str]
+
+
 class Assessment(Record, frozen=True):
     """The results of a design: a property of problem and genome alone.
 
@@ -227,7 +242,7 @@ class Assessment(Record, frozen=True):
     None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
     required heights are missed, plus for each constraint its excess relative to its bound
     (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
-    native method (`evodesign.problem.judge`).
+    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them.
     """
 
     design: dict[str, float]
@@ -239,6 +254,7 @@ class Assessment(Record, frozen=True):
     cases: tuple[CaseOutcome, ...] = ()
     constraints: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
     judged: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+    gradients: Gradients | msgspec.UnsetType = msgspec.UNSET
 
     @property
     def constrained(self) -> dict[str, float]:
@@ -300,10 +316,14 @@ class CaseDetail(Record, frozen=True):
 
 
 class Assessed(Record, frozen=True):
-    """What a worker gives back: the results of a genome, and its postures in the cases that were solved."""
+    """What a worker gives back: the results of a genome, and its postures in the cases that were solved.
+
+    `gradient_seconds` is what the gradients took of the evaluation's time [s].
+    """
 
     assessment: Assessment
     cases: tuple[CaseDetail, ...] = ()
+    gradient_seconds: float = 0.0
 
 
 class Detail(Record, frozen=True):
@@ -326,9 +346,10 @@ class Turn(Record, frozen=True):
 
 
 class Evaluation(Record, frozen=True, omit_defaults=True):
-    """One assessed genome with its place in the run. Only `seconds` and `worker` may differ between runs.
+    """One assessed genome with its place in the run. Only times and `worker` may differ between runs.
 
-    An asynchronous run has a `turn`, and counts its evaluations in the order in which they came.
+    `gradient_seconds` are those of `seconds` that gradients took. An asynchronous run has a `turn`, and
+    counts its evaluations in the order in which they came.
     """
 
     number: int
@@ -338,6 +359,7 @@ class Evaluation(Record, frozen=True, omit_defaults=True):
     seconds: float
     worker: str
     turn: Turn | None = None
+    gradient_seconds: float = 0.0
 
     @property
     def feasible(self) -> bool:
@@ -382,7 +404,9 @@ class SearchSettings(Record, frozen=True):
 
     `past` holds the stages that a branch went through before, the earliest first; `start` is of the earliest.
     `choices` is left out where no coordinate is discrete; else it says of each coordinate how many choices
-    there are, 0 for a continuous one.
+    there are, 0 for a continuous one. `gradients` is left out where evaluations have none, `reference`
+    where none is given: of each objective, as it is minimised, the value beyond which a design counts for
+    nothing.
     """
 
     algorithm: str
@@ -394,6 +418,18 @@ class SearchSettings(Record, frozen=True):
     past: tuple[SearchStage, ...] = ()
     asynchronous: bool = False
     choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
+    gradients: bool | msgspec.UnsetType = msgspec.UNSET
+    reference: tuple[float | None, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def reference_values(self) -> tuple[float | None, ...]:
+        """Of the reference point, by objective; None where the search decides."""
+        return (None,) * self.objectives if self.reference is msgspec.UNSET else self.reference
+
+    @property
+    def with_gradients(self) -> bool:
+        """Whether evaluations come with their gradients."""
+        return self.gradients is True
 
     @property
     def counts(self) -> tuple[int, ...]:

@@ -28,12 +28,14 @@ from evodesign.records import (
     Genome,
     Parameter,
     RunHeader,
+    Sense,
     Status,
     Turn,
     design_of,
 )
 from evodesign.runlog.session_log import Observer, SessionLog
-from evodesign.searches.base import Outcome
+from evodesign.searches.base import Gradient, Outcome
+from evodesign.violations import HEIGHT, bound_margin, height_margin
 
 __all__ = [
     "Display",
@@ -90,6 +92,7 @@ def evaluation_outcome(
         seconds=finished.seconds,
         worker=finished.worker,
         turn=turn,
+        gradient_seconds=assessed.gradient_seconds,
     )
     return EvaluationOutcome(evaluation, Detail(evaluation=number, cases=assessed.cases))
 
@@ -150,8 +153,31 @@ class Session:
 
 def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
     """What a search may know of an evaluation."""
-    values = minimised(header.objectives, evaluation.assessment)
-    return Outcome(objectives=values, violation=evaluation.assessment.violation)
+    assessment = evaluation.assessment
+    values = minimised(header.objectives, assessment)
+    names = [parameter.name for parameter in header.parameters]
+    rows = {} if assessment.gradients is msgspec.UNSET else assessment.gradients.values
+
+    def gradient(quantity: str, factor: float) -> Gradient | None:
+        """By coordinate, times a factor; None if it does not exist."""
+        row = rows.get(quantity)
+        if row is None:
+            return None
+        return tuple(factor * row[name] if name in row else None for name in names)
+
+    signs = [(each.name, -1.0 if each.sense is Sense.MAXIMISE else 1.0) for each in header.objectives]
+    margins = [(HEIGHT, height_margin(assessment.reach, assessment.cases), 1.0)]
+    for constraint in header.constrained:
+        value = assessment.constrained.get(constraint.name)
+        found = (None, 1.0) if value is None else bound_margin(constraint, value)
+        margins.append((constraint.name, *found))
+    return Outcome(
+        objectives=values,
+        violation=assessment.violation,
+        gradients=tuple(gradient(*sign) for sign in signs),
+        margins=tuple(margin for _, margin, _ in margins),
+        margin_gradients=tuple(gradient(name, factor) for name, _, factor in margins),
+    )
 
 
 def remember(session: Session, outcome: EvaluationOutcome, *, more: bool) -> None:

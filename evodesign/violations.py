@@ -20,11 +20,13 @@ from evodesign.records import Assessment, CaseOutcome, Constraint, ReachOutcome,
 
 __all__ = [
     "HEIGHT",
+    "bound_margin",
     "bounds_text",
     "constraint_sentences",
     "constraints_json",
     "exceeded_bounds",
     "excess",
+    "height_margin",
     "missed_height",
     "reason_of_infeasibility",
     "total_violation",
@@ -63,6 +65,31 @@ def missed_height(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> f
             return None
         total += distance if outcome.case.pair == cases[0].case.pair else 0.0  # the same for everyone
     return total
+
+
+def height_margin(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> float | None:
+    """How far the worst required height lies beyond the interval within reach [m]; negative within it.
+
+    None when the reach is unknown.
+    """
+    if reach is None or reach.lowest_m is None or reach.highest_m is None:
+        return None
+    heights = [height for outcome in cases for height in outcome.case.task.heights]
+    return max(reach.lowest_m - min(heights), max(heights) - reach.highest_m)
+
+
+def bound_margin(constraint: Constraint, value: float) -> tuple[float, float]:
+    """How far a quantity lies beyond its nearest bound, relative to it, and the derivative by the quantity.
+
+    Negative within the bounds: where it is positive, it is the excess of which `total_violation` is made.
+    """
+    sides = ((constraint.lower, -1.0), (constraint.upper, 1.0))
+    margins = [
+        (sign * (value - bound) / (abs(bound) or 1.0), sign / (abs(bound) or 1.0))
+        for bound, sign in sides
+        if bound is not None
+    ]
+    return max(margins)
 
 
 def total_violation(

@@ -34,6 +34,7 @@ __all__ = [
     "Library",
     "NotCompiled",
     "built",
+    "compiled_function",
     "compiled_functions",
     "compiler_and_cache",
     "find_compiler",
@@ -108,6 +109,24 @@ def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | Not
         return CompiledFunctions(ca.external("nlp", str(found.path)), found)
     except RuntimeError as error:  # such as a directory mounted without the right to execute
         return NotCompiled(f"the compiled functions could not be loaded: {_gist(str(error))}")
+
+
+def compiled_function(function: Any) -> Any:
+    """A CasADi function (SX) as machine code; itself where nothing can be compiled."""
+    tools = compiler_and_cache(os.environ)
+    if isinstance(tools, NotCompiled):
+        return function
+    generator = ca.CodeGenerator("functions", {"verbose": False})
+
+    def texts() -> Mapping[str, str]:
+        generator.add(function)
+        return {"functions.c": str(generator.dump())}
+
+    try:
+        found = built((code_digest(__name__), function.serialize()), texts, FUNCTION_FLAGS, *tools)
+        return function if isinstance(found, NotCompiled) else ca.external(function.name(), str(found.path))
+    except (OSError, RuntimeError):  # nothing can be written, or a directory has no right to execute
+        return function
 
 
 def compiler_and_cache(environment: Mapping[str, str]) -> tuple[Compiler, Cache] | NotCompiled:

@@ -23,7 +23,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dtrtrs
 
+from evodesign.nlp.codegen import compiled_function
 from evodesign.nlp.program import Program
 
 __all__ = [
@@ -44,7 +46,7 @@ COMPLEMENTARY = 1e-6
 """Slack or multiplier of an inequality, in the program's own units, below which both count as zero."""
 
 SINGULAR = 1e-8
-"""Singular value of the held rows, relative to the largest, that counts as zero."""
+"""Diagonal entry of the held rows' triangle, relative to the largest, that counts as zero."""
 
 FLAT = 1e-11
 """Curvature, in the program's own units, that counts as none."""
@@ -102,19 +104,35 @@ class Change:
 
 
 class Conditions:
-    """A program's functions and their derivatives."""
+    """A program's functions and their derivatives.
 
-    def __init__(self, program: Program) -> None:
-        self._function = _function(program)
+    Args:
+        program: whose they are.
+        compiled: whether they run as machine code where that can be had; results are the same.
+    """
 
-    def rows(self, symbols: Array, parameters: Array) -> Array:
-        """The constraints' rows."""
-        still = np.zeros(self._function.numel_in(1))
-        return np.asarray(self._function(symbols, still, parameters)[2]).ravel()
+    def __init__(self, program: Program, *, compiled: bool = False) -> None:
+        symbolic, self._shapes = _function(program)
+        self._ends = np.cumsum([rows * columns for rows, columns in self._shapes]).tolist()
+        self._function = compiled_function(symbolic) if compiled else symbolic
+
+    def _parts(self, symbols: Array, multipliers: Array, parameters: Array) -> list[Array]:
+        """What the function gives, in numbers, without copies through CasADi's own matrices."""
+        buffer, call = self._function.buffer()
+        for position, given in enumerate((symbols, multipliers, parameters)):
+            buffer.set_arg(position, np.ascontiguousarray(given, dtype=float).data)
+        together = np.empty(self._ends[-1])
+        buffer.set_res(0, together.data)
+        call()
+        begins = [0, *self._ends]
+        return [
+            together[begin:end].reshape(shape, order="F")
+            for begin, end, shape in zip(begins, self._ends, self._shapes, strict=False)
+        ]
 
     def at(self, point: PrimalDual, parameters: Array) -> Derivatives:
         """Everything at a point."""
-        found = [np.asarray(m) for m in self._function(point.symbols, point.multipliers, parameters)]
+        found = self._parts(point.symbols, point.multipliers, parameters)
         cost, cost_slope, rows, row_slope, jacobian, gradient, gradient_slope, hessian = found
         return Derivatives(
             cost=float(cost[0, 0]),
@@ -128,8 +146,11 @@ class Conditions:
         )
 
 
-def _function(program: Program) -> Any:
-    """A CasADi function of symbols, multipliers and parameters that gives the parts of `Derivatives`."""
+def _function(program: Program) -> tuple[Any, list[tuple[int, int]]]:
+    """A CasADi function of symbols, multipliers and parameters, and the shapes of what it gives.
+
+    It gives the parts of `Derivatives`, one after another in one column.
+    """
     x, p, rows = program.symbols, program.given, program.rows
     multipliers = ca.SX.sym("multipliers", rows.numel())
     lagrangian = program.cost + ca.dot(multipliers, rows)
@@ -144,9 +165,9 @@ def _function(program: Program) -> Any:
         ca.jacobian(gradient, p),
         hessian,
     ]
-    return ca.Function(
-        "sensitivity", [x, multipliers, p], [ca.densify(part) for part in parts], {"cse": True}
-    )
+    together = ca.vertcat(*[ca.vec(ca.densify(part)) for part in parts])
+    function = ca.Function("sensitivity", [x, multipliers, p], [together], {"cse": True})
+    return function, [part.shape for part in parts]
 
 
 def error(point: PrimalDual, here: Derivatives) -> float:
@@ -171,25 +192,35 @@ def moved(point: PrimalDual, here: Derivatives, gradients: Array, rows: Array) -
     free = ~point.held_symbols
     hessian = here.hessian[np.ix_(free, free)]
     jacobian = here.jacobian[np.ix_(point.held_rows, free)]
-    left, sizes, right = np.linalg.svd(jacobian)
-    if len(sizes) < len(jacobian) or sizes.min(initial=1.0) < SINGULAR * sizes.max(initial=1.0):
+    turned, triangle = np.linalg.qr(jacobian.T, mode="complete")
+    held = len(jacobian)
+    sizes = np.abs(np.diag(triangle))
+    if len(sizes) < held or sizes.min(initial=1.0) < SINGULAR * sizes.max(initial=1.0):
         return NotDifferentiable(
             "what holds the solution holds it twice over, so that it has no unique multipliers"
         )
-    across, along = right[: len(sizes)].T, right[len(sizes) :].T
+    across, along, triangle = turned[:, :held], turned[:, held:], triangle[:held]
     curvatures, axes = np.linalg.eigh(along.T @ hessian @ along)
     if len(curvatures) and curvatures[0] < -SADDLE:
         return NotDifferentiable(f"the solution is no minimum (curvature {curvatures[0]:.1e})")
     curved = np.abs(curvatures) > FLAT
     bent, flat = along @ axes[:, curved], along @ axes[:, ~curved]
-    step = -across @ ((left.T @ rows[point.held_rows]) / sizes[:, None])
+    step = -across @ _solved(triangle, rows[point.held_rows], transposed=True)
     pull = gradients[free] + hessian @ step
     if flat.size and np.abs(flat.T @ pull).max() > COMPLEMENTARY:
         return NotDifferentiable("the solution is not determined")
     step = step - bent @ ((bent.T @ pull) / curvatures[curved][:, None])
-    force = -left @ ((across.T @ (gradients[free] + hessian @ step)) / sizes[:, None])
+    force = -_solved(triangle, across.T @ (gradients[free] + hessian @ step))
     symbols, multipliers = np.zeros(gradients.shape), np.zeros(rows.shape)
     undetermined = np.zeros(len(free), bool)
     symbols[free], multipliers[point.held_rows] = step, force
     undetermined[free] = (np.abs(flat) > COMPLEMENTARY).any(axis=1)
     return Change(symbols, multipliers, undetermined)
+
+
+def _solved(triangle: Array, right: Array, *, transposed: bool = False) -> Array:
+    """R^-1 b, or R^-T b, of an upper triangle R."""
+    if not len(triangle):
+        return right
+    solution, _ = dtrtrs(triangle, right, trans=int(transposed))
+    return np.asarray(solution)

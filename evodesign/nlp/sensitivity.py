@@ -1,6 +1,7 @@
 """How the solution of a program moves with its parameters: exact, where it moves smoothly.
 
-IPOPT finds the solution again with a tight tolerance; the active set is read from multipliers and slacks;
+The method that solved finds the solution again, and IPOPT with a tight tolerance where that leads to no
+derivative; the active set is read from multipliers and slacks;
 Newton's method on it reaches rounding accuracy; and the implicit function theorem gives the derivative
 (`optimality`). Every active inequality must have a multiplier of the right sign and every other one must hold
 (strict complementarity). Where a condition fails the derivative does not exist, and a sentence says so.
@@ -13,9 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from evodesign.nlp.optimality import (
     COMPLEMENTARY,
@@ -23,21 +26,27 @@ from evodesign.nlp.optimality import (
     Change,
     Conditions,
     Derivatives,
+    Mask,
     NotDifferentiable,
     PrimalDual,
     error,
     moved,
 )
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.records import Status
 
-__all__ = ["Limit", "Optimum", "SolutionSensitivity"]
+__all__ = ["Limit", "LimitTable", "Optimum", "SolutionSensitivity", "no_limits"]
+
+Places = NDArray[np.intp]
 
 NEAR_TOLERANCE = 1e-10
 NEWTON_STEPS = 8
 EXACT = 1e-12
 """Residual of the optimality conditions, in the program's own units, of a solution that counts as exact."""
+
+CLOSE = 3e-6
+"""That of a solution near enough for its slopes to be good to one part in 10^6 or so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +67,54 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True)
+class LimitTable(Sequence[Limit]):
+    """Many limits, each made when it is looked at.
+
+    Args:
+        names, active, margins: as in `Limit`, one for each.
+        slopes: shape (limits, parameters).
+    """
+
+    names: tuple[str, ...]
+    active: Mask
+    margins: Array
+    slopes: Array
+
+    @overload
+    def __getitem__(self, which: int) -> Limit: ...
+
+    @overload
+    def __getitem__(self, which: slice) -> Sequence[Limit]: ...
+
+    def __getitem__(self, which: int | slice) -> Limit | Sequence[Limit]:
+        if isinstance(which, slice):
+            return [self[position] for position in range(len(self))[which]]
+        return Limit(
+            self.names[which], bool(self.active[which]), float(self.margins[which]), self.slopes[which]
+        )
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __add__(self, other: LimitTable) -> LimitTable:
+        return LimitTable(
+            self.names + other.names,
+            np.concatenate([self.active, other.active]),
+            np.concatenate([self.margins, other.margins]),
+            np.concatenate([self.slopes, other.slopes]),
+        )
+
+    def holds(self, name: str) -> bool:
+        """Whether a limit of a name is active."""
+        return any(one == name and active for one, active in zip(self.names, self.active, strict=True))
+
+
+def no_limits(parameters: int) -> LimitTable:
+    """None at all, beside so many parameters."""
+    return LimitTable((), np.zeros(0, bool), np.zeros(0), np.zeros((0, parameters)))
+
+
+@dataclass(frozen=True, slots=True)
 class Optimum:
     """A local optimum, and how it moves.
 
@@ -75,7 +132,7 @@ class Optimum:
     slopes: Mapping[str, Array]
     cost: float
     cost_slope: Array
-    limits: tuple[Limit, ...]
+    limits: LimitTable
     columns: Mapping[str, slice]
 
     def along(self, parameter: str, change: Array | None = None) -> Optimum:
@@ -92,63 +149,77 @@ class Optimum:
             slopes={name: slope[:, own] @ chain for name, slope in self.slopes.items()},
             cost=self.cost,
             cost_slope=self.cost_slope[own] @ chain,
-            limits=tuple(replace(limit, slope=limit.slope[own] @ chain) for limit in self.limits),
+            limits=replace(self.limits, slopes=self.limits.slopes[:, own] @ chain),
             columns={parameter: slice(0, chain.shape[1])},
         )
 
 
 @dataclass(frozen=True, slots=True)
-class _Side:
-    """The inequality side on which a row of symbols or constraints lies.
+class _Sides:
+    """Every inequality side on which a row of symbols or constraints lies.
 
     Args:
-        name: of the variable or constraint, with the row in it.
-        at: its place among the symbols followed by the constraints.
-        sign: +1 for an upper limit, -1 for a lower one.
-        limit: the limit.
-        active: whether it is taken as an equality.
+        names: of the variable or constraint, with the row in it.
+        at: their places among the symbols followed by the constraints.
+        signs: +1 for an upper limit, -1 for a lower one.
+        limits: where they lie.
     """
 
-    name: str
-    at: int
-    sign: float
-    limit: float
-    active: bool
+    names: tuple[str, ...]
+    at: Places
+    signs: Array
+    limits: Array
 
 
 class SolutionSensitivity:
     """A program whose solutions are found again, exactly, with their derivatives.
 
     Args:
-        program: with smooth functions.
-        options: of the solver; its tolerance becomes a tighter one.
+        solver: of a program with smooth functions; IPOPT's tolerance becomes a tighter one.
     """
 
-    def __init__(self, program: Program, options: SolverOptions) -> None:
-        self.program = program
-        self._names = _names(program)
-        few = replace(options, tolerance=NEAR_TOLERANCE, near=True, compiled=False)  # too few to compile for
-        self._solver = Solver(program, few)
-        self._conditions = Conditions(program)
+    def __init__(self, solver: Solver) -> None:
+        self.program = solver.program
+        self._near = solver.near if solver.native else None
+        self._options = replace(solver.options, tolerance=NEAR_TOLERANCE, near=True, compiled=False)
+        pairs = zip(solver.program.bounds, solver.program.limits, strict=True)
+        self._lower, self._upper = (np.concatenate(pair) for pair in pairs)
+        self._sides = _sides(_names(solver.program), self._lower, self._upper)
+        self._conditions = Conditions(solver.program, compiled=solver.native)
 
-    def at(self, parameters: Mapping[str, Any], start: Mapping[str, Any]) -> Optimum | NotDifferentiable:
-        """The local optimum at a solution that is known to the solver's accuracy, in SI units."""
-        return self.of(parameters, self.solve(parameters, start))
+    @cached_property
+    def _ipopt(self) -> Solver:
+        """Too seldom to compile for."""
+        return Solver(self.program, self._options)
 
-    def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Any]) -> RawSolution:
-        """The solver's most accurate solution from one that it knows less accurately, in SI units."""
-        return self._solver.solve(parameters, start)
+    def at(
+        self, parameters: Mapping[str, Any], start: Mapping[str, Any], *, exact: bool = True
+    ) -> Optimum | NotDifferentiable:
+        """The local optimum at a solution that is known to the solver's accuracy, in SI units.
 
-    def of(self, parameters: Mapping[str, Any], raw: RawSolution) -> Optimum | NotDifferentiable:
-        """The local optimum at a solution with multipliers."""
+        Args:
+            parameters: of the program, by name.
+            start: the solution, by variable name.
+            exact: whether it is made exact to rounding; otherwise slopes are good to about one part in 10^6,
+                in half the time, and those of limits are nan.
+        """
+        if self._near is not None:
+            found = self.of(parameters, self._near.solve(parameters, start), exact=exact)
+            if isinstance(found, Optimum):
+                return found
+        return self.of(parameters, self._ipopt.solve(parameters, start), exact=exact)
+
+    def of(
+        self, parameters: Mapping[str, Any], raw: RawSolution, *, exact: bool = True
+    ) -> Optimum | NotDifferentiable:
+        """The local optimum at a solution with multipliers; `exact` as in `at`."""
         if raw.status is not Status.SOLVED:
             return NotDifferentiable(f"the solution was not found again: {raw.reason}")
         given = self.program.packed_parameters(parameters)
-        sides, point = self._begin(given, raw)
+        active, point, here = self._begin(given, raw)
         for _ in range(NEWTON_STEPS):
-            here = self._conditions.at(point, given)
-            if error(point, here) < EXACT:
-                return self._optimum(sides, point, here)
+            if error(point, here) < (EXACT if exact else CLOSE):
+                return self._optimum(active, point, here, exact=exact)
             step = moved(point, here, here.gradient[:, None], (here.rows - point.targets)[:, None])
             if isinstance(step, NotDifferentiable):
                 return step
@@ -157,23 +228,27 @@ class SolutionSensitivity:
                 symbols=point.symbols + step.symbols[:, 0],
                 multipliers=point.multipliers + step.multipliers[:, 0],
             )
+            here = self._conditions.at(point, given)
         return NotDifferentiable(f"the solution could not be made exact (error {error(point, here):.1e})")
 
-    def _begin(self, parameters: Array, raw: RawSolution) -> tuple[tuple[_Side, ...], PrimalDual]:
-        """What is held at its limits, and the point with that taken literally."""
-        symbols = self.program.packed(raw.values)
-        rows = self._conditions.rows(symbols, parameters)
-        lower, upper = (
-            np.concatenate(pair) for pair in zip(self.program.bounds, self.program.limits, strict=True)
-        )
-        values = np.concatenate([symbols, rows])
+    def _begin(self, parameters: Array, raw: RawSolution) -> tuple[Mask, PrimalDual, Derivatives]:
+        """Which sides hold, those whose multiplier is larger than their slack, and the point with that.
+
+        The point is as near as the solver's accuracy, so that its derivatives are those at the solution with
+        residuals to first order.
+        """
+        symbols, rows_forces = self.program.packed(raw.values), raw.multipliers.constraints
+        none = np.zeros(len(symbols) + len(rows_forces), bool)
+        loose = PrimalDual(symbols, rows_forces, none[: len(symbols)], none[len(symbols) :], np.empty(0))
+        here = self._conditions.at(loose, parameters)
+        values = np.concatenate([symbols, here.rows])
         forces = np.concatenate([raw.multipliers.bounds, raw.multipliers.constraints])
-        sides = _sides(self._names, values, forces, lower, upper)
-        held = lower == upper
-        targets = np.where(held, lower, values)
-        for side in sides:
-            if side.active:
-                held[side.at], targets[side.at] = True, side.limit
+        sides = self._sides
+        slacks = sides.signs * (sides.limits - values[sides.at])
+        active = np.asarray(sides.signs * forces[sides.at] > slacks)
+        held = self._lower == self._upper
+        targets = np.where(held, self._lower, values)
+        held[sides.at[active]], targets[sides.at[active]] = True, sides.limits[active]
         count = len(symbols)
         point = PrimalDual(
             symbols=np.where(held[:count], targets[:count], symbols),
@@ -182,18 +257,25 @@ class SolutionSensitivity:
             held_rows=held[count:],
             targets=targets[count:],
         )
-        return sides, point
+        change, force = point.symbols - symbols, point.multipliers - rows_forces
+        gradient = here.gradient + here.hessian @ change + here.jacobian.T @ force
+        near = replace(here, gradient=gradient, rows=here.rows + here.jacobian @ change)
+        return active, point, near
 
     def _optimum(
-        self, sides: tuple[_Side, ...], point: PrimalDual, here: Derivatives
+        self, active: Mask, point: PrimalDual, here: Derivatives, *, exact: bool
     ) -> Optimum | NotDifferentiable:
         change = moved(point, here, here.gradient_slope, here.row_slope)
         if isinstance(change, NotDifferentiable):
             return change
-        limits = _limits(sides, point, here, change)
-        for limit in limits:
-            if limit.margin < COMPLEMENTARY:
-                return NotDifferentiable(f"{limit.name} is just about to reach or to leave its limit")
+        margins = _margins(self._sides, active, point, here)
+        slopes = np.full((len(margins), len(here.cost_slope)), np.nan)
+        if exact:
+            slopes = _slopes(self._sides, active, here, change)
+        limits = LimitTable(self._sides.names, active, margins, slopes)
+        if len(limits) and limits.margins.min() < COMPLEMENTARY:
+            name = limits.names[int(np.argmax(limits.margins < COMPLEMENTARY))]
+            return NotDifferentiable(f"{name} is just about to reach or to leave its limit")
         return Optimum(
             values=self.program.unpacked(point.symbols),
             slopes=self.program.unpacked(np.where(change.undetermined[:, None], np.nan, change.symbols)),
@@ -215,40 +297,31 @@ def _names(program: Program) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _sides(
-    names: Sequence[str], values: Array, forces: Array, lower: Array, upper: Array
-) -> tuple[_Side, ...]:
-    """Every inequality; it is active where its multiplier is larger than its slack."""
-    sides = []
-    for at, name in enumerate(names):
-        if lower[at] == upper[at]:
-            continue
-        for sign, limit in ((-1.0, lower[at]), (1.0, upper[at])):
-            if np.isfinite(limit):
-                active = bool(sign * forces[at] > sign * (limit - values[at]))
-                sides.append(_Side(name, at, sign, float(limit), active))
-    return tuple(sides)
+def _sides(names: Sequence[str], lower: Array, upper: Array) -> _Sides:
+    """Every inequality; a row with one value only has none."""
+    found = [
+        (name, at, sign, limits[at])
+        for at, name in enumerate(names)
+        for sign, limits in ((-1.0, lower), (1.0, upper))
+        if lower[at] != upper[at] and np.isfinite(limits[at])
+    ]
+    labels, places, signs, limits = zip(*found, strict=True) if found else ((), (), (), ())
+    return _Sides(tuple(labels), np.array(places, dtype=np.intp), np.array(signs), np.array(limits))
 
 
-def _limits(
-    sides: tuple[_Side, ...], point: PrimalDual, here: Derivatives, change: Change
-) -> tuple[Limit, ...]:
-    """Margin and slope of every inequality."""
-    symbols, multipliers = change.symbols, change.multipliers
+def _margins(sides: _Sides, active: Mask, point: PrimalDual, here: Derivatives) -> Array:
+    """Multiplier of every active inequality, slack of every other one."""
     forces = np.concatenate([-here.gradient, point.multipliers])
+    values = np.concatenate([point.symbols, here.rows])
+    return np.asarray(sides.signs * np.where(active, forces[sides.at], sides.limits - values[sides.at]))
+
+
+def _slopes(sides: _Sides, active: Mask, here: Derivatives, change: Change) -> Array:
+    """Of the margins, shape (inequalities, parameters)."""
+    symbols, multipliers = change.symbols, change.multipliers
     force_slopes = np.concatenate(
         [-(here.hessian @ symbols + here.jacobian.T @ multipliers + here.gradient_slope), multipliers]
     )
-    values = np.concatenate([point.symbols, here.rows])
     value_slopes = np.concatenate([symbols, here.jacobian @ symbols + here.row_slope])
-    return tuple(
-        Limit(side.name, True, float(side.sign * forces[side.at]), side.sign * force_slopes[side.at])
-        if side.active
-        else Limit(
-            side.name,
-            False,
-            float(side.sign * (side.limit - values[side.at])),
-            -side.sign * value_slopes[side.at],
-        )
-        for side in sides
-    )
+    slopes = np.where(active[:, None], force_slopes[sides.at], -value_slopes[sides.at])
+    return np.asarray(sides.signs[:, None] * slopes)

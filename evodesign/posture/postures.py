@@ -127,13 +127,17 @@ class PostureProblem:
         return case_solution(self._setting.scene.case(task), trials)
 
     def derivative(
-        self, design: Sequence[float], solution: CaseSolution
+        self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
-        """How a solved posture moves with the design, or why it has no derivative."""
+        """How a solved posture moves with the design, or why it has no derivative.
+
+        `exact` is that of `SolutionSensitivity.at`.
+        """
         if solution.attempt is None:
             return NotDifferentiable(solution.reason)
         name, task = solution.attempt.formulation, solution.case.task
-        return self._formulation(name, task, self._methods(name)[0]).derivative(design, solution)
+        formulation = self._formulation(name, task, self._methods(name)[0])
+        return formulation.derivative(design, solution, exact=exact)
 
     def landscape(self, task: Task) -> Landscape:
         """The cost for a task of the formulation that is tried first, of which portfolios are made."""

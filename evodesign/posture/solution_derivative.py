@@ -16,6 +16,7 @@ import numpy as np
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
+from evodesign.posture.assemble import Slot
 from evodesign.posture.results import CaseSolution, Instant
 from evodesign.posture.symmetry import Form
 from evodesign.posture.warm_start import Layout, instants_of
@@ -52,27 +53,43 @@ class PostureDerivative:
     cost: float
     cost_slope: Array
     compared: float
-    limits: tuple[Limit, ...]
+    limits: Sequence[Limit]
 
     def moved(self, step: Array) -> tuple[Instant, ...]:
         """To first order, the postures of a design that differs by a step, one number per parameter."""
         moved = {name: value + self.slopes[name] @ step for name, value in self.values.items()}
         return instants_of(self.layout, self.forms, self.scene, moved, self.times)
 
+    def along_torques(
+        self, instant: int, load_case: int, weights: Mapping[str, Mapping[str, float]]
+    ) -> Array:
+        """The gradient of a weighted sum of torques, one per parameter.
+
+        Args:
+            instant: its number.
+            load_case: zero for the undisturbed one, else one more than the disturbance's number.
+            weights: by agent and joint.
+        """
+        found = np.zeros(len(self.cost_slope))
+        for form in self.forms:
+            agent = form.agent.name
+            if agent in weights:
+                slopes = self.slopes[self.layout[Slot(instant, load_case, agent, "torques")]]
+                found += form.folded(weights[agent]) @ slopes
+        return found
+
 
 def found_again(
     derivative: PostureDerivative, solution: CaseSolution
 ) -> PostureDerivative | NotDifferentiable:
     """The derivative, if its posture is the one that was solved and everything of the agents has a slope."""
-    found = derivative.moved(np.zeros_like(derivative.cost_slope))
-    same = all(
-        abs(again.postures[agent].torques[joint] - torque) < SAME
-        for again, instant in zip(found, solution.instants, strict=True)
-        for agent, posture in instant.postures.items()
-        for joint, torque in posture.torques.items()
-    )
-    if not same:
-        return NotDifferentiable("the posture was not found again")
+    for number, instant in enumerate(solution.instants):
+        for form in derivative.forms:
+            again = derivative.values[derivative.layout[Slot(number, 0, form.agent.name, "torques")]]
+            torques = instant.postures[form.agent.name].torques
+            known = np.array([torques[joint] for joint in form.joints])
+            if not (np.abs(again - known) < SAME).all():
+                return NotDifferentiable("the posture was not found again")
     if any(np.isnan(derivative.slopes[name]).any() for name in derivative.layout.values()):
         return NotDifferentiable("the posture can move at no cost")
     return derivative

@@ -85,6 +85,19 @@ class Form:
             foot_wrenches=feet,
         )
 
+    def folded(self, by_joint: Mapping[str, float]) -> Array:
+        """Weights of the whole agent's torques as weights of those that are variables, one per joint.
+
+        The torque of a mirrored joint is that of its twin, but for the sign; one of the middle line that is
+        no variable does not move.
+        """
+        found = np.array([by_joint.get(name, 0.0) for name in self.joints])
+        if self.mirror is None:
+            return found
+        twins = [(self.mirror.joints[name], self.mirror.signs[name]) for name in self.joints]
+        own = zip(self.joints, twins, strict=True)
+        return found + [0.0 if twin == name else sign * by_joint.get(twin, 0.0) for name, (twin, sign) in own]
+
     def parts(self, posture: AgentPosture) -> dict[str, Array]:
         """What `expand` takes, from a posture of the whole agent; hands pass six numbers."""
         return {

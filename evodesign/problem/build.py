@@ -50,7 +50,7 @@ from evodesign.records import (
     Sense,
     Task,
 )
-from evodesign.searches.base import JOINT_STARTS
+from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS
 from evodesign.tree.model import Tree
 
 __all__ = ["DesignProblem", "build_problem"]
@@ -143,6 +143,7 @@ class DesignProblem:
         if algorithm == JOINT_STARTS:
             refuse_constraints(self.constraints, self.source)
             refuse_choices(self.space, self.source)
+        gradients = algorithm in GRADIENT_SEARCHES if table.gradients is None else table.gradients
         return SearchSettings(
             algorithm=algorithm,
             dimension=len(self.space.parameters),
@@ -152,7 +153,22 @@ class DesignProblem:
             start=self.joint_start if algorithm == JOINT_STARTS else self.start,
             asynchronous=table.asynchronous if asynchronous is None else asynchronous,
             choices=self.space.counts if any(self.space.counts) else msgspec.UNSET,
+            reference=self._reference(),
+            gradients=True if gradients and algorithm != JOINT_STARTS else msgspec.UNSET,
         )
+
+    def _reference(self) -> tuple[float | None, ...] | msgspec.UnsetType:
+        """The reference point that the file gives, as objectives are minimised."""
+        given = self.search.reference
+        signs = {each.name: -1.0 if each.sense is Sense.MAXIMISE else 1.0 for each in self.objectives}
+        for name in given:
+            if name not in signs:
+                found = f"'{name}'{nearest_name(name, signs)}"
+                wanted = f"one of the objectives {', '.join(signs)}"
+                raise InputError(self.source.path, f"search.reference.{name}", wanted, found)
+        if not given:
+            return msgspec.UNSET
+        return tuple(sign * given[name] if name in given else None for name, sign in signs.items())
 
 
 def build_problem(source: ProblemSource) -> DesignProblem:

@@ -5,6 +5,7 @@ An evaluation depends on problem and design alone: no state is carried from one 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,18 +14,18 @@ import msgspec
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
-from evodesign.nlp.solver import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.reach import Reach, ReachProblem, common_reach
-from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.formulations.reach import Reach, common_reach
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.gradients import assessed_gradients
+from evodesign.problem.inner import inner_problems
 from evodesign.problem.judge import is_judged
 from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import (
     AgentDetail,
     Assessed,
@@ -55,25 +56,14 @@ class Evaluator:
     Attributes:
         problem: whose designs they are.
         known: what is known beforehand.
+        inner: its inner problems.
     """
 
     def __init__(self, problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
         self.problem = problem
         self.known = known
-        space, options, symmetry = problem.space, problem.options, problem.symmetry
-        solvers = SolverCache()
-        settings = [Setting(scene, space, problem.weights, options) for scene in problem.scenes]
-        self._postures = {
-            setting.scene.pair: PostureProblem(setting, symmetry, known, solvers) for setting in settings
-        }
-        symmetric = symmetry is not Symmetry.OFF
-        self._reaches = {
-            setting.scene.payload.label: ReachProblem(
-                setting, symmetric=symmetric, known=known, solvers=solvers
-            )
-            for setting in settings
-        }
-        self._growths = space.growths(problem.scene.robot.tree)
+        self.inner = inner_problems(problem, known)
+        self._growths = problem.space.growths(problem.scene.robot.tree)
         self._robot = AgentModel.of(problem.scene.robot, problem.scene.robot.tree)
         self._people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
@@ -82,7 +72,7 @@ class Evaluator:
         problem = self.problem
         tree = problem.space.resized(problem.scene.robot.tree, values, self._growths)
         check = Checker(problem.scene, self._robot.resized(tree), self._people[problem.scene.human.label])
-        reach = common_reach([reach.solve(values) for reach in self._reaches.values()])
+        reach = common_reach([reach.solve(values) for reach in self.inner.reaches.values()])
         cases: list[CaseSolution] = []
         for case in problem.cases:
             scene = shared_scene(problem.scene_of(case), problem.space, values)
@@ -115,12 +105,30 @@ class Evaluator:
     def assess(self, genome: Genome) -> Assessed:
         """The results of a genome, with its postures."""
         values = self.problem.space.values(genome)
-        assessed = self.assess_values(values)
+        return self._with_judgement(genome, self.assess_values(values))
+
+    def assess_with_gradients(self, genome: Genome) -> Assessed:
+        """The same with gradients, and what they took."""
+        values = self.problem.space.values(genome)
+        result = self.solve(values)
+        began = time.perf_counter()
+        gradients = assessed_gradients(self.problem, self._sensitivities, values, result)
+        seconds = time.perf_counter() - began
+        assessed = self._assessed(values, result)
+        assessment = msgspec.structs.replace(assessed.assessment, gradients=gradients)
+        assessed = msgspec.structs.replace(assessed, assessment=assessment, gradient_seconds=seconds)
+        return self._with_judgement(genome, assessed)
+
+    def _with_judgement(self, genome: Genome, assessed: Assessed) -> Assessed:
         if not self._native or not is_judged(genome):
             return assessed
-        judged = self._judge.assess_values(values).assessment.objectives
+        judged = self._judge.assess_values(self.problem.space.values(genome)).assessment.objectives
         assessment = msgspec.structs.replace(assessed.assessment, judged=judged)
         return msgspec.structs.replace(assessed, assessment=assessment)
+
+    @cached_property
+    def _sensitivities(self) -> Sensitivities:
+        return Sensitivities(self.problem, self.known, self.inner)
 
     @property
     def _native(self) -> bool:
@@ -134,7 +142,9 @@ class Evaluator:
 
     def assess_values(self, values: Sequence[float]) -> Assessed:
         """The results of a design given as one number per parameter, with its postures."""
-        result = self.solve(values)
+        return self._assessed(values, self.solve(values))
+
+    def _assessed(self, values: Sequence[float], result: DesignResult) -> Assessed:
         details = tuple(detail_of(solution) for solution in result.cases if solution.solved)
         return Assessed(assessment=self.assessment(values, result), cases=details)
 
@@ -170,7 +180,7 @@ class Evaluator:
             reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
             return CaseSolution(case, Status.INFEASIBLE, reason)
         neighbour = self._neighbour(before, case)
-        return self._postures[case.pair].solve(values, case.task, checker, neighbour)
+        return self.inner.postures[case.pair].solve(values, case.task, checker, neighbour)
 
 
 def reach_of(reach: Reach) -> ReachOutcome:
@@ -253,11 +263,13 @@ class AssessmentFactory:
         digest: of the problem's source; two factories of equal digest build the same evaluation.
         problem: as built from its source.
         known: what was worked out beforehand; it follows from the problem.
+        gradients: whether results come with their gradients.
     """
 
     digest: str
     problem: DesignProblem = field(compare=False)
     known: Precomputed = field(compare=False)
+    gradients: bool = False
 
     @property
     def source(self) -> ProblemSource:
@@ -271,4 +283,5 @@ class AssessmentFactory:
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to results."""
-        return Evaluator(self.problem, self.known).assess
+        evaluator = Evaluator(self.problem, self.known)
+        return evaluator.assess_with_gradients if self.gradients else evaluator.assess

@@ -16,7 +16,7 @@ import os
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import msgspec
 
@@ -71,7 +71,8 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
     """
     problem = build_problem(header.problem)
     if header.search.algorithm != JOINT_STARTS:
-        return _assessment_factory(problem, pool, progress)
+        evaluation = _assessment_factory(problem, pool, progress)
+        return replace(evaluation, gradients=header.search.with_gradients)
     factory = BaselineFactory(f"{digest(header.problem)}-{JOINT_STARTS}", header.problem, problem.limits)
     compilation = _compilation(BaselineFactory, factory.digest, problem.joint.options, progress)
     if compilation:
@@ -213,6 +214,9 @@ EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
 PASSING = frozenset({Status.TIME_LIMIT, Status.WORKER_LOST})
 """What another try might not give."""
 
+GRADIENTS = "gradients"
+"""What the key of an evaluation says that comes with them."""
+
 Task = Callable[[Genome], Assessed]
 
 
@@ -240,7 +244,8 @@ class Remembering:
         if any(is_outside(quantity.name) for quantity in quantities):
             return self.factory()
         shelf = f"evaluations/{problem_digest(self.factory.source)}"
-        return functools.partial(_remembered, functools.cache(self.factory), shelf)
+        kind = GRADIENTS if self.factory.gradients else ""
+        return functools.partial(_remembered, functools.cache(self.factory), shelf, kind)
 
 
 def problem_digest(source: ProblemSource) -> str:
@@ -254,9 +259,9 @@ def problem_digest(source: ProblemSource) -> str:
     return digest((tables, named, code_digest(*EVALUATING)), without=NO_PART_OF_EVALUATIONS)
 
 
-def _remembered(task: Callable[[], Task], shelf: str, genome: Genome) -> Assessed:
+def _remembered(task: Callable[[], Task], shelf: str, kind: str, genome: Genome) -> Assessed:
     """What a genome is worth: as kept, or worked out by one process while others wait for it."""
-    key = digest(genome)
+    key = digest((genome, kind) if kind else genome)
     cache = _cache(f"{shelf}/{key[:2]}")
     if cache is None:
         return task()(genome)
@@ -264,7 +269,9 @@ def _remembered(task: Callable[[], Task], shelf: str, genome: Genome) -> Assesse
         with suppress(OSError):  # without the lock, at worst the work is done twice
             held.enter_context(cache.lock(key, keep=False))
         known = _read(cache, key)
-        return known if known is not None else _kept(cache, key, task()(genome))
+        if known is not None:
+            return msgspec.structs.replace(known, gradient_seconds=0.0)
+        return _kept(cache, key, task()(genome))
 
 
 def _kept(cache: Cache, key: str, assessed: Assessed) -> Assessed:

@@ -239,7 +239,12 @@ class BoundsTable(Table, frozen=True):
 
 
 class SearchTable(Table, frozen=True):
-    """`[search]`: how the design space is searched; `start` names a file of designs to begin with."""
+    """`[search]`: how the design space is searched; `start` names a file of designs to begin with.
+
+    `gradients` says whether every evaluation comes with its gradients; left out, as the algorithm wants it.
+    `reference` names values of objectives beyond which a design counts for nothing to a search that measures
+    hypervolumes against a point (`surrogate`).
+    """
 
     algorithm: Name = "nsga2"
     population: Annotated[int, Meta(ge=2, le=100_000)] = 48
@@ -249,6 +254,8 @@ class SearchTable(Table, frozen=True):
     stagnation_generations: Annotated[int, Meta(ge=0)] | None = None
     start: Name | None = None
     asynchronous: bool = False
+    gradients: bool | None = None
+    reference: dict[str, float] = msgspec.field(default_factory=dict)
 
 
 class SolverTable(Table, frozen=True):

@@ -24,18 +24,24 @@ import numpy as np
 
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
-from evodesign.nlp.solver import SolverCache
-from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
-from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.inner import InnerProblems, inner_problems
 from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.records import Status
 
-__all__ = ["DesignDerivative", "ObjectiveSensitivity", "Sensitivities", "posture_notes", "reach_notes"]
+__all__ = [
+    "STEP",
+    "DesignDerivative",
+    "ObjectiveSensitivity",
+    "Sensitivities",
+    "five_point",
+    "posture_notes",
+    "reach_notes",
+]
 
 
 STEP = 1e-4
@@ -110,7 +116,7 @@ class DesignDerivative:
             found = [x for result in results if (x := value(result)) is not None]
             if len(found) < len(results):
                 return ObjectiveSensitivity(None, tuple(notes))
-            gradient[parameter.name] = _slope(found, step)
+            gradient[parameter.name] = five_point(found, step)
             if _not_smooth(found):
                 notes.append(
                     f"its formula has a kink in {parameter.name}, where another value becomes largest"
@@ -133,24 +139,22 @@ class DesignDerivative:
 
 
 class Sensitivities:
-    """Tangents of a problem's designs; built when somebody asks, for no search needs them."""
+    """Tangents of a problem's designs.
 
-    def __init__(self, problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
+    Args:
+        problem: whose designs they are.
+        known: what is known beforehand.
+        inner: its inner problems, where they are built already.
+    """
+
+    def __init__(
+        self,
+        problem: DesignProblem,
+        known: Precomputed = NOTHING_PRECOMPUTED,
+        inner: InnerProblems | None = None,
+    ) -> None:
         self._problem = problem
-        symmetric = problem.symmetry is not Symmetry.OFF
-        settings = [
-            Setting(scene, problem.space, problem.weights, problem.options) for scene in problem.scenes
-        ]
-        loads = {setting.scene.payload.label: setting for setting in settings}
-        solvers = SolverCache()
-        self._reaches = [
-            ReachProblem(setting, symmetric=symmetric, known=known, solvers=solvers)
-            for setting in loads.values()
-        ]
-        self._postures = {
-            setting.scene.pair: PostureProblem(setting, problem.symmetry, known, solvers)
-            for setting in settings
-        }
+        self._inner = inner or inner_problems(problem, known)
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
@@ -158,16 +162,22 @@ class Sensitivities:
             problem=self._problem,
             values=tuple(values),
             result=result,
-            cases=tuple(
-                self._postures[solution.case.pair].derivative(values, solution) for solution in result.cases
-            ),
-            highest=self._end(values, HIGHEST),
-            lowest=self._end(values, LOWEST),
+            cases=tuple(self.of_case(values, solution) for solution in result.cases),
+            highest=self.of_reach(values, HIGHEST),
+            lowest=self.of_reach(values, LOWEST),
         )
 
-    def _end(self, values: Sequence[float], sense: float) -> ReachDerivative | NotDifferentiable:
+    def of_case(
+        self, values: Sequence[float], solution: CaseSolution, *, exact: bool = True
+    ) -> PostureDerivative | NotDifferentiable:
+        """How the posture of a case moves; `exact` is that of `SolutionSensitivity.at`."""
+        return self._inner.postures[solution.case.pair].derivative(values, solution, exact=exact)
+
+    def of_reach(
+        self, values: Sequence[float], sense: float, *, exact: bool = True
+    ) -> ReachDerivative | NotDifferentiable:
         """The extreme height of the load that binds: the least of the highest, the largest of the lowest."""
-        found = [reach.derivative(values, sense) for reach in self._reaches]
+        found = [reach.derivative(values, sense, exact=exact) for reach in self._inner.reaches.values()]
         notes = [derivative for derivative in found if isinstance(derivative, NotDifferentiable)]
         ends = [derivative for derivative in found if isinstance(derivative, ReachDerivative)]
         return notes[0] if notes else max(ends, key=lambda derivative: sense * derivative.height)
@@ -194,7 +204,7 @@ def _without(solution: CaseSolution) -> CaseSolution:
     return replace(solution, status=Status.NUMERICAL_FAILURE, instants=(), residuals={})
 
 
-def _slope(values: Sequence[float], step: float) -> float:
+def five_point(values: Sequence[float], step: float) -> float:
     """Five-point difference."""
     return (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step)
 

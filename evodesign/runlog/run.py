@@ -196,6 +196,6 @@ def digest(evaluations: Iterable[Evaluation]) -> str:
     """SHA-256, in hexadecimal, of the evaluations in the order given, without times and workers."""
     found = hashlib.sha256()
     for evaluation in evaluations:
-        bare = msgspec.structs.replace(evaluation, seconds=0.0, worker="")
+        bare = msgspec.structs.replace(evaluation, seconds=0.0, worker="", gradient_seconds=0.0)
         found.update(msgspec.json.encode(bare, order="deterministic") + b"\n")
     return found.hexdigest()

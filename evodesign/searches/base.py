@@ -18,10 +18,17 @@ from typing import Protocol
 
 from evodesign.records import Genome
 
-__all__ = ["JOINT_STARTS", "AsynchronousSearch", "Outcome", "Search"]
+__all__ = ["GRADIENT_SEARCHES", "JOINT_STARTS", "AsynchronousSearch", "Gradient", "Outcome", "Search"]
+
+Gradient = tuple[float | None, ...]
+"""Derivatives by coordinate of the genome; None for a discrete one."""
 
 JOINT_STARTS = "joint-starts"
 """Name of the search whose genomes are starts of another solver, and not designs to assess."""
+
+
+GRADIENT_SEARCHES = frozenset({"surrogate"})
+"""Names of the searches that use gradients where evaluations have them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +38,17 @@ class Outcome:
     Args:
         objectives: values, all to be minimised; None when one of them does not exist.
         violation: sum of constraint violations, zero when feasible; None when a failure left it unknown.
+        gradients: of each objective, None for one that does not exist; none at all where none were asked for.
+        margins: how far the design lies beyond each constraint's bounds, negative within them; None where it
+            is unknown. None at all where only the violation is told.
+        margin_gradients: of each margin, as of objectives.
     """
 
     objectives: tuple[float, ...] | None
     violation: float | None
+    gradients: tuple[Gradient | None, ...] = ()
+    margins: tuple[float | None, ...] = ()
+    margin_gradients: tuple[Gradient | None, ...] = ()
 
     @property
     def feasible(self) -> bool:

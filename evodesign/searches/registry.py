@@ -24,12 +24,14 @@ SEARCHES: Final[Mapping[str, str]] = {
     JOINT_STARTS: "evodesign.searches.quasi_random:QuasiRandom",
     "nsga2": "evodesign.searches.nsga2:Nsga2",
     "random": "evodesign.searches.quasi_random:QuasiRandom",
+    "surrogate": "evodesign.searches.surrogate.search:Surrogate",
 }
 
 ASYNCHRONOUS_SEARCHES: Final[Mapping[str, str]] = {
     "cma-es": "evodesign.searches.cma_es:AsynchronousCmaEs",
     "nsga2": "evodesign.searches.nsga2:AsynchronousNsga2",
     "random": "evodesign.searches.quasi_random:AsynchronousRandom",
+    "surrogate": "evodesign.searches.surrogate.search:AsynchronousSurrogate",
 }
 """The same without generations."""
 

@@ -23,10 +23,8 @@ def nearest_point() -> Program:
 
 
 def optimum(program: Program, parameters: list[float]) -> Optimum | NotDifferentiable:
-    options = SolverOptions()
-    given = {"wanted": parameters}
-    found = Solver(program, options).solve(given, {})
-    return SolutionSensitivity(program, options).at(given, found.values)
+    given, solver = {"wanted": parameters}, Solver(program, SolverOptions())
+    return SolutionSensitivity(solver).at(given, solver.solve(given, {}).values)
 
 
 @pytest.mark.parametrize(

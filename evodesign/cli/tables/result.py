@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Mapping, Sequence
+from statistics import median
 
 from evodesign.analysis.choice import Choice, choose
 from evodesign.analysis.decision_making import knees
@@ -61,12 +62,22 @@ def result_lines(run: RunLog, chosen: Chosen) -> list[str]:
     """What the run holds; where nothing is feasible, what comes nearest and what may help."""
     whole = Choice()
     found = choose(run.header.objectives, run.evaluations, whole)
-    lines = front_lines(run, whole, found, len(found.front))
+    lines = [*front_lines(run, whole, found, len(found.front)), *_gradient_lines(run)]
     if not chosen and run.evaluations:
         lines.append(
             "what may help: lower heights in [task], wider bounds in [[design.length]], or more evaluations"
         )
     return lines
+
+
+def _gradient_lines(run: RunLog) -> list[str]:
+    """What gradients took of the time of the evaluations that have them."""
+    costs = [each.gradient_seconds for each in run.evaluations if each.gradient_seconds]
+    if not costs:
+        return []
+    others = [each.seconds - each.gradient_seconds for each in run.evaluations if each.gradient_seconds]
+    much, share = 1e3 * median(costs), median(costs) / max(median(others), 1e-9)
+    return [f"gradients took {much:.1f} ms a design, {share:.2g} of the rest of its evaluation (medians)"]
 
 
 def next_commands(run: RunLog, chosen: Chosen) -> tuple[str, str, str]:

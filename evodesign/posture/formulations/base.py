@@ -79,9 +79,9 @@ class Formulation(Protocol):
         """The cost, of which a portfolio of starts is made."""
 
     def derivative(
-        self, design: Sequence[float], solution: CaseSolution
+        self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
-        """How a solution that this formulation found moves with the design."""
+        """How a solution that this formulation found moves with the design (`SolutionSensitivity.at`)."""
 
 
 def program_key(formulation: str, *parts: object) -> str:

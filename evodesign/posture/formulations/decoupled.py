@@ -27,7 +27,7 @@ from numpy.polynomial import Chebyshev
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Array, Program, Start
-from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
+from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity, no_limits
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
@@ -39,7 +39,6 @@ from evodesign.posture.formulations.human_value import (
     HumanProblem,
     HumanValue,
     chebyshev_sum,
-    human_program,
 )
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
@@ -101,12 +100,7 @@ class DecoupledPostures:
 
     @cached_property
     def _sensitivities(self) -> tuple[SolutionSensitivity, SolutionSensitivity]:
-        setting = self._setting
-        human = human_program(self._forms[1], setting.scene, setting.weights.human)
-        return (
-            SolutionSensitivity(self._robot_program(), setting.options),
-            SolutionSensitivity(human, setting.options),
-        )
+        return SolutionSensitivity(self._robot), SolutionSensitivity(self._human.solver)
 
     def _robot_program(self) -> Program:
         return robot_program(self._forms[0], self._setting)
@@ -174,18 +168,18 @@ class DecoupledPostures:
         return np.asarray(-len(SIDES) * self._setting.scene.robot.sign * left_hand[0])
 
     def derivative(
-        self, design: Sequence[float], solution: CaseSolution
+        self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this pair of programs found moves with the design."""
         value, (robots, humans) = self._values[solution.case.task], self._sensitivities
         start = start_from(robots.program, self._forms, solution.instants)
-        found = robots.at({"design": design, **self._beside(solution.case.task)}, start)
+        found = robots.at({"design": design, **self._beside(solution.case.task)}, start, exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
         robot, hand = found.along("design"), _left_hand(robots.program)
         internal, change = float(self._force(robot.values[hand])), self._force(robot.slopes[hand])
-        held = any(limit.active and limit.name == PUSH for limit in robot.limits)
-        person = self._person(solution, internal, held=held)
+        held = robot.limits.holds(PUSH)
+        person = self._person(solution, internal, held=held, exact=exact)
         if isinstance(person, NotDifferentiable):
             return person
         human = person.along("internal_force", change[None, :])
@@ -201,21 +195,25 @@ class DecoupledPostures:
             cost=robot.cost - float(expected(internal)) + human.cost,
             cost_slope=robot.cost_slope + human.cost_slope + surprise,
             compared=robot.cost,
-            limits=(*robot.limits, *human.limits),
+            limits=robot.limits + human.limits,
         )
         return found_again(derivative, solution)
 
-    def _person(self, solution: CaseSolution, internal: float, *, held: bool) -> Optimum | NotDifferentiable:
+    def _person(
+        self, solution: CaseSolution, internal: float, *, held: bool, exact: bool
+    ) -> Optimum | NotDifferentiable:
         """The person under an internal force [N]; one that is held at its limit does not move the person."""
-        humans = self._sensitivities[1]
-        mass = self._setting.scene.payload.mass
-        parameters = {**solution.case.task.given, "mass": mass, "internal_force": internal}
-        start = start_from(humans.program, self._forms, solution.instants)
-        raw = humans.solve(parameters, start)
+        humans, task = self._sensitivities[1], solution.case.task
+        parameters = {**task.given, "mass": self._setting.scene.payload.mass, "internal_force": internal}
         if not held:
-            return humans.of(parameters, raw)
+            start = start_from(humans.program, self._forms, solution.instants)
+            return humans.at(parameters, start, exact=exact)
+        push = float(np.copysign(self._setting.scene.stance.push, internal))
+        raw = self._human.best(task.height_m, push, self._values[task])
         still = {name: np.zeros((len(value), len(parameters))) for name, value in raw.values.items()}
-        return Optimum(raw.values, still, raw.cost, np.zeros(len(parameters)), (), humans.program.columns)
+        unmoved = np.zeros(len(parameters))
+        columns, limits = humans.program.columns, no_limits(len(parameters))
+        return Optimum(raw.values, still, raw.cost, unmoved, limits, columns)
 
 
 def _left_hand(program: Program) -> str:

@@ -101,7 +101,7 @@ class HumanProblem:
         self._push = scene.stance.push
         self._mass = scene.payload.mass
         key = program_key("person", scene, form, weight)
-        self._solver = (solvers or SolverCache()).solver(
+        self.solver = (solvers or SolverCache()).solver(
             key, lambda: human_program(form, scene, weight), options
         )
         self._pushed_to_the_end: dict[tuple[float, float], RawSolution] = {}
@@ -109,14 +109,14 @@ class HumanProblem:
     @property
     def program(self) -> Program:
         """What is solved."""
-        return self._solver.program
+        return self.solver.program
 
     def _parameters(self, height: float, push: float) -> Mapping[str, float]:
         return {"height": height, "mass": self._mass, "internal_force": push}
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
-        return self._solver.solve(self._parameters(height, push), start)
+        return self.solver.solve(self._parameters(height, push), start)
 
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
         """The person's posture at a height [m] under a push [N], about as good as V promises.
@@ -133,7 +133,7 @@ class HumanProblem:
         """From the nearest node, close to the solution; if that fails or is dearer than V, from the next."""
         nearest = value.nearest(push)[:NODES_TRIED]
         ends: list[RawSolution] = []
-        for solver, start in [(self._solver.near, nearest[0]), *((self._solver, start) for start in nearest)]:
+        for solver, start in [(self.solver.near, nearest[0]), *((self.solver, start) for start in nearest)]:
             ends.append(solver.solve(self._parameters(height, push), start))
             if ends[-1].status is Status.SOLVED and ends[-1].cost <= value.cost(push) + LARGEST_ERROR:
                 return ends[-1]

@@ -82,7 +82,7 @@ class JointPostures:
 
     @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
-        return SolutionSensitivity(self._program(), self._setting.options)
+        return SolutionSensitivity(self._solver)
 
     def _program(self) -> Program:
         return posture_program(self._forms, self._setting, self._kind)
@@ -118,13 +118,13 @@ class JointPostures:
         return self._trial(design, task, [("polish", self._start(known))], checker)
 
     def derivative(
-        self, design: Sequence[float], solution: CaseSolution
+        self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this program found moves with the design."""
         program = self._sensitivity.program
         start = start_from(program, self._forms, solution.instants)
         parameters = {"design": design, **self._beside(solution.case.task)}
-        found = self._sensitivity.at(parameters, with_worst(start, program, parameters))
+        found = self._sensitivity.at(parameters, with_worst(start, program, parameters), exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
         own = found.along("design")

@@ -136,6 +136,7 @@ class ReachProblem:
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         self._setting, self._solvers = setting, solvers or SolverCache()
         self._starts = {HIGHEST: known.highest.starts, LOWEST: known.lowest.starts}
+        self._latest: dict[float, tuple[tuple[float, ...], list[RawSolution]]] = {}
 
     @cached_property
     def _solver(self) -> Solver:
@@ -144,7 +145,7 @@ class ReachProblem:
 
     @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
-        return SolutionSensitivity(self._program(), self._setting.options)
+        return SolutionSensitivity(self._solver)
 
     def _program(self) -> Program:
         return robot_reach_program(self.form, self._setting)
@@ -174,7 +175,14 @@ class ReachProblem:
         return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
 
     def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
-        """The result of every start in one sense."""
+        """The result of every start in one sense; that of the latest design is at hand."""
+        of, known = self._latest.get(sense, ((), []))
+        if of != tuple(design):
+            known = self._solves(design, sense)
+            self._latest[sense] = tuple(design), known
+        return known
+
+    def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
         found = [self._solver.solve(parameters, start) for start in starts]
@@ -191,13 +199,15 @@ class ReachProblem:
         best = min(solved, key=lambda raw: sense * _height(raw))
         return _height(best), best
 
-    def derivative(self, design: Sequence[float], sense: float) -> ReachDerivative | NotDifferentiable:
+    def derivative(
+        self, design: Sequence[float], sense: float, *, exact: bool = True
+    ) -> ReachDerivative | NotDifferentiable:
         """How a design's highest or lowest load moves with the design, or why it has no derivative.
 
         An extreme height is the solution of the reach problem, not its optimal cost (which holds a little
         regularisation), so its derivative is that of the solution. Every start is solved as for the reach
         itself; the one that counts is differentiated, and the next best other optimum is where another one
-        may win.
+        may win; `exact` is that of `SolutionSensitivity.at`.
         """
         solves = self.solves(design, sense)
         heights = {start: _height(raw) for start, raw in enumerate(solves) if raw.status is Status.SOLVED}
@@ -206,7 +216,8 @@ class ReachProblem:
         start = min(heights, key=lambda number: sense * heights[number])
         if self._at_end(heights[start]):
             return ReachDerivative(heights[start], np.zeros(len(design)), start, len(solves), None, ())
-        found = self._sensitivity.at({"design": design, **self._beside(sense)}, solves[start].values)
+        parameters = {"design": design, **self._beside(sense)}
+        found = self._sensitivity.at(parameters, solves[start].values, exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
         own = found.along("design")

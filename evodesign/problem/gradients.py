@@ -1,0 +1,190 @@
+"""Gradients of a design's objectives and constraints, quickly, as a search asks for with an evaluation.
+
+The postures' tangents are those of `posture.solution_derivative`, good to one part in 10^6. A quantity of
+torques follows by the chain rule, since torques are variables of the posture problem,
+
+    d |tau| / d pi = tau . (d tau / d pi) / |tau|
+
+and the mean, the largest value or a quantile over cases is that of the same cases. Reach has its own
+tangent. What depends on the robot's bodies alone is differenced along the resized robot. Everything else
+goes along the whole tangent, as in `sensitivities`, which takes many times as long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from evodesign.nlp.optimality import Array, NotDifferentiable
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST
+from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.objectives import (
+    QUANTITIES,
+    REACH,
+    SHARED_REACH,
+    WORST,
+    ByTorque,
+    CaseQuantity,
+    DesignResult,
+    objective_value,
+    split_name,
+)
+from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
+from evodesign.records import Gradients
+from evodesign.violations import HEIGHT
+
+__all__ = ["assessed_gradients"]
+
+OF_THE_ROBOT = frozenset({"mass", "com_height"})
+"""Objectives that depend on the robot's bodies alone."""
+
+Found = Array | NotDifferentiable
+
+
+def assessed_gradients(
+    problem: DesignProblem, sensitivities: Sensitivities, values: Sequence[float], result: DesignResult
+) -> Gradients:
+    """The gradients of a design's objectives, constrained quantities and height margin, as they are logged.
+
+    Args:
+        problem: whose design it is.
+        sensitivities: of the same problem.
+        values: of the design, one number per parameter.
+        result: what was computed of it.
+    """
+    design = _Design(problem, sensitivities, tuple(values), result)
+    names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
+    found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
+    spans = [(p.name, p.upper - p.lower) for p in problem.space.records if not p.choices]
+    places = [place for place, p in enumerate(problem.space.records) if not p.choices]
+    return Gradients(
+        values={
+            name: {
+                parameter: float(gradient[place]) * span
+                for place, (parameter, span) in zip(places, spans, strict=True)
+            }
+            for name, gradient in found.items()
+            if not isinstance(gradient, NotDifferentiable)
+        },
+        absent={name: each.reason for name, each in found.items() if isinstance(each, NotDifferentiable)},
+    )
+
+
+class _Design:
+    """A design whose tangents are taken when something asks for them."""
+
+    def __init__(
+        self,
+        problem: DesignProblem,
+        sensitivities: Sensitivities,
+        values: tuple[float, ...],
+        result: DesignResult,
+    ) -> None:
+        self._problem, self._sensitivities = problem, sensitivities
+        self._values, self._result = values, result
+
+    @cached_property
+    def _cases(self) -> list[PostureDerivative | NotDifferentiable]:
+        of_case = self._sensitivities.of_case
+        return [of_case(self._values, solution, exact=False) for solution in self._result.cases]
+
+    @cached_property
+    def _highest(self) -> ReachDerivative | NotDifferentiable:
+        return self._sensitivities.of_reach(self._values, HIGHEST, exact=False)
+
+    @cached_property
+    def _lowest(self) -> ReachDerivative | NotDifferentiable:
+        return self._sensitivities.of_reach(self._values, LOWEST, exact=False)
+
+    def gradient(self, name: str) -> Found:
+        """One per parameter, in the quantity's unit per unit of the parameter."""
+        if objective_value(name, self._result) is None:
+            return NotDifferentiable("the design has no such value")
+        way, quantity = split_name(name)
+        known = QUANTITIES.get(quantity)
+        if known is not None and known.by_torque is not None:
+            return self._over_cases(known, known.by_torque, way)
+        if name == REACH:
+            return _slope(self._highest)
+        if name == SHARED_REACH:
+            return self._of_shared_reach()
+        if name in OF_THE_ROBOT:
+            return self._of_robot(name)
+        sensitivity = self._sensitivities.at(self._values, self._result).sensitivities()[name]
+        if sensitivity.gradient is None:
+            return NotDifferentiable("; ".join(sensitivity.notes) or "no derivative exists")
+        return np.array(list(sensitivity.gradient.values()))
+
+    def of_height(self) -> Found:
+        """Of the margin by which the worst required height is missed (`violations.height_margin`)."""
+        reach = self._result.reach
+        if reach.highest is None or reach.lowest is None:
+            return NotDifferentiable("the reach is not known")
+        heights = [height for solution in self._result.cases for height in solution.case.task.heights]
+        if reach.lowest - min(heights) > max(heights) - reach.highest:
+            return _slope(self._lowest)
+        found = _slope(self._highest)
+        return found if isinstance(found, NotDifferentiable) else -found
+
+    def _over_cases(self, quantity: CaseQuantity, by_torque: ByTorque, way: str) -> Found:
+        """By the chain rule in every case, weighted as the value is."""
+        values, gradients = [], []
+        for solution, derivative in zip(self._result.cases, self._cases, strict=True):
+            if isinstance(derivative, NotDifferentiable):
+                return derivative
+            scene = self._result.scene_of(solution.case)
+            for number, instant in enumerate(solution.instants):
+                for load_case, postures in enumerate((instant.postures, *instant.disturbed.values())):
+                    values.append(quantity.value(scene, postures))
+                    weights = by_torque(scene, postures)
+                    gradients.append(derivative.along_torques(number, load_case, weights))
+        return np.asarray(_weights(values, way) @ np.array(gradients))
+
+    def _of_shared_reach(self) -> Found:
+        people, robot = self._result.people_highest, self._result.reach.highest
+        if people is not None and robot is not None and people < robot:
+            return np.zeros(len(self._values))
+        return _slope(self._highest)
+
+    def _of_robot(self, name: str) -> Found:
+        space, tree = self._problem.space, self._result.robot.tree
+
+        def value(position: int, step: float) -> float:
+            moved = list(self._values)
+            moved[position] += step
+            found = objective_value(name, replace(self._result, tree=space.resized(tree, moved)))
+            return 0.0 if found is None else found  # it exists: it does for the design itself
+
+        return np.array(
+            [
+                0.0
+                if parameter.choices
+                else _difference(value, position, STEP * (parameter.upper - parameter.lower))
+                for position, parameter in enumerate(space.records)
+            ]
+        )
+
+
+def _difference(value: Callable[[int, float], float], position: int, step: float) -> float:
+    return five_point([value(position, count * step) for count in range(-2, 3)], step)
+
+
+def _slope(derivative: ReachDerivative | NotDifferentiable) -> Found:
+    return derivative if isinstance(derivative, NotDifferentiable) else derivative.slope
+
+
+def _weights(values: Sequence[float], way: str) -> Array:
+    """How much each case counts in the mean, the largest value or a quantile of all."""
+    count, weights = len(values), np.zeros(len(values))
+    order = np.argsort(values)
+    if not way:
+        return np.full(count, 1.0 / count)
+    place = (count - 1.0) if way == WORST else (count - 1) * float(way[1:-1]) / 100.0
+    below = int(place)
+    weights[order[below]] += 1.0 - (place - below)
+    weights[order[min(below + 1, count - 1)]] += place - below
+    return weights

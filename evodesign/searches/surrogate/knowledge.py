@@ -1,0 +1,232 @@
+"""What a search has been told, as arrays, and the models made of it.
+
+The models of objectives know feasible designs, those of margins all designs whose margins are known. When
+they are made anew from more than a thousand, those stay that few others dominate, and the newest.
+
+Hypervolumes are measured against a reference point. Where none is given it moves with the front: its worst
+values, but none worse than nine in ten of the first designs, and a tenth of the first designs' range beyond.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import moocore
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.records import Genome, SearchSettings
+from evodesign.searches.base import Gradient, Outcome
+from evodesign.searches.ranking import usable
+from evodesign.searches.surrogate.approximation import (
+    FEWEST_FIRST,
+    FIRST_PER_DIMENSION,
+    KEPT,
+    REDRAWN,
+    Approximation,
+    Known,
+)
+from evodesign.searches.surrogate.feasibility import LATEST, Feasibility, margins_of_violations
+
+__all__ = ["Knowledge"]
+
+Array = NDArray[np.float64]
+
+NEWEST = 200
+"""Designs that stay whatever they are worth."""
+
+USUAL, MARGIN = 0.9, 0.1
+"""Of the first designs, the share that no reference is worse than, and that of their range beyond it."""
+
+FEWEST = 4
+"""Designs without which there is no model."""
+
+
+class Knowledge:
+    """Everything told, in the order of telling.
+
+    Args:
+        settings: dimension, objectives, choices and seed.
+    """
+
+    def __init__(self, settings: SearchSettings) -> None:
+        self._settings = settings
+        self._discrete = np.array(settings.counts) > 0
+        self._genomes: list[Genome] = []
+        self._outcomes: list[Outcome] = []
+        self._feasible: list[int] = []
+        self._objectives: list[tuple[float, ...]] = []
+        self._known: list[int] = []
+        self._model, self._margins, self._failures = (_Maintained(self._discrete) for _ in range(3))
+
+    def __len__(self) -> int:
+        return len(self._genomes)
+
+    def add(self, genome: Genome, outcome: Outcome) -> None:
+        """Take note of an outcome."""
+        values = usable(outcome)
+        if _violation(outcome) is not None:
+            self._known.append(len(self._genomes))
+        if values is not None:
+            self._feasible.append(len(self._genomes))
+            self._objectives.append(values)
+        self._genomes.append(genome)
+        self._outcomes.append(outcome)
+
+    @property
+    def points(self) -> Array:
+        """Every genome told [designs x dimension]."""
+        return np.array(self._genomes).reshape(-1, self._settings.dimension)
+
+    def front(self) -> tuple[Array, Array]:
+        """Points and objectives of the feasible designs that no other dominates."""
+        values = self._values()
+        if not len(values):
+            return np.empty((0, self._settings.dimension)), values
+        best = np.asarray(moocore.is_nondominated(values))
+        return self.points[self._feasible][best], values[best]
+
+    def _values(self) -> Array:
+        return np.array(self._objectives).reshape(-1, self._settings.objectives)
+
+    def reference(self) -> Array:
+        """Values of the objectives beyond which a design counts for nothing; ones while none is feasible."""
+        if not self._feasible:
+            return np.ones(self._settings.objectives)
+        first = self._values()[: max(FEWEST_FIRST, int(FIRST_PER_DIMENSION * self._settings.dimension))]
+        _, front = self.front()
+        usual = np.minimum(front.max(axis=0), np.quantile(first, USUAL, axis=0))
+        extent = np.ptp(first, axis=0)
+        margin = MARGIN * np.where(extent > 0.0, extent, np.maximum(np.abs(usual), 1.0))
+        given = np.array([math.nan if each is None else each for each in self._settings.reference_values])
+        return np.where(np.isnan(given), usual + margin, given)
+
+    def modelled(self, generator: np.random.Generator) -> Approximation | None:
+        """The model of the objectives; None while too few designs are feasible.
+
+        Args:
+            generator: draws features when they are drawn anew.
+        """
+        return self._model.of(len(self._feasible), self._reported, self._kept, generator)
+
+    def _reported(self, first: int) -> Known:
+        """Feasible designs from one on."""
+        places = self._feasible[first:]
+        rows = [self._outcomes[place].gradients for place in places]
+        return Known(
+            np.array([self._genomes[place] for place in places]),
+            np.array(self._objectives[first:]),
+            self._gradients(rows, self._settings.objectives),
+        )
+
+    def _gradients(self, rows: Sequence[tuple[Gradient | None, ...]], outputs: int) -> Array:
+        """[designs x outputs x dimension], nan where unknown."""
+        found = np.full((len(rows), outputs, self._settings.dimension), np.nan)
+        for place, row in enumerate(rows):
+            for output, gradient in enumerate(row):
+                if gradient is not None:
+                    found[place, output] = [math.nan if each is None else each for each in gradient]
+        return found
+
+    def _kept(self) -> NDArray[np.intp]:
+        """Which feasible designs a new model is made of, of more than may be."""
+        values = self._values()
+        ranks = np.asarray(moocore.pareto_rank(values)).astype(float)
+        ranks[-NEWEST:] = -1.0
+        return np.sort(np.argsort(ranks, kind="stable")[:KEPT])
+
+    def feasibility(self, generator: np.random.Generator) -> Feasibility:
+        """Where designs are expected to be feasible.
+
+        Args:
+            generator: draws the features of the margins' model.
+        """
+        latest = list(map(_violation, self._outcomes[-LATEST:]))
+        margins = failures = None
+        if any(_violation(self._outcomes[place]) for place in self._known):
+            margins = self._margins.of(
+                len(self._known), self._margins_reported, _newest(len(self._known)), generator
+            )
+        if 0 < len(self._known) < len(self):
+            failures = self._failures.of(len(self), self._failures_reported, _newest(len(self)), generator)
+        share = latest.count(None) / max(len(latest), 1)
+        return Feasibility(
+            None if margins is None else margins.expected(),
+            None if failures is None else failures.expected(),
+            share,
+        )
+
+    def _failures_reported(self, first: int) -> Known:
+        """+1 for designs that failed, -1 for others."""
+        signs = np.array([[1.0 if _violation(each) is None else -1.0] for each in self._outcomes[first:]])
+        return Known(self.points[first:], signs, self._gradients([()] * len(signs), 1))
+
+    def _margins_reported(self, first: int) -> Known:
+        """Of the designs whose violation is known."""
+        places = self._known[first:]
+        violations = np.array([_violation(self._outcomes[place]) for place in places], dtype=float)
+        return self._margins_of(places, violations)
+
+    def _margins_of(self, places: Sequence[int], violations: Array) -> Known:
+        told = [self._outcomes[place] for place in places]
+        points = self.points[list(places)]
+        if all(outcome.margins and None not in outcome.margins for outcome in told):
+            margins = np.array([outcome.margins for outcome in told], dtype=float)
+            gradients = self._gradients([outcome.margin_gradients for outcome in told], margins.shape[1])
+            return Known(points, margins, gradients)
+        margins = margins_of_violations(violations)
+        return Known(points, margins, self._gradients([()] * len(told), 1))
+
+
+def _violation(outcome: Outcome) -> float | None:
+    """Of an outcome that did not fail: zero or more."""
+    if usable(outcome) is not None:
+        return 0.0
+    violation = outcome.violation
+    return violation if violation is not None and 0.0 < violation < math.inf else None
+
+
+def _newest(count: int) -> Callable[[], NDArray[np.intp]]:
+    """The places of the newest of so many."""
+    return lambda: np.arange(max(0, count - KEPT), count)
+
+
+class _Maintained:
+    """A model to which designs are added, made anew now and then.
+
+    Args:
+        discrete: which coordinates have no gradients.
+    """
+
+    def __init__(self, discrete: NDArray[np.bool_]) -> None:
+        self._discrete = discrete
+        self._model: Approximation | None = None
+        self._made_at = self._count = 0
+
+    def of(
+        self,
+        count: int,
+        reported: Callable[[int], Known],
+        kept: Callable[[], NDArray[np.intp]],
+        generator: np.random.Generator,
+    ) -> Approximation | None:
+        """The model of so many designs; None of too few.
+
+        Args:
+            count: of the designs.
+            reported: gives those from one on.
+            kept: gives the places of those that stay where there are more than may be.
+            generator: draws features when they are drawn anew.
+        """
+        if count < FEWEST:
+            return None
+        model = self._model
+        if model is None or count >= self._made_at + min(REDRAWN, self._made_at):
+            known = reported(0)
+            model = Approximation(known.part(kept()) if count > KEPT else known, self._discrete, generator)
+            self._made_at = count
+        elif count > self._count:
+            model.add(reported(self._count))
+        self._model, self._count = model, count
+        return model

@@ -1,0 +1,157 @@
+"""Which genomes are to be evaluated next, by the model.
+
+Half of a batch comes from Thompson samples of the global model, four from each, the other half from its
+mean with the local residual: the first explore, the second refine. Each part is the best of a small
+evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). Designs on their
+way count as if they were what the model expects. A genome that is known already is moved a little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.records import Genome, SearchSettings
+from evodesign.searches.discrete import snapped
+from evodesign.searches.surrogate.approximation import Function
+from evodesign.searches.surrogate.evolution import MEMBERS, Judged, Members, evolved
+from evodesign.searches.surrogate.feasibility import Feasibility
+from evodesign.searches.surrogate.knowledge import Knowledge
+from evodesign.searches.surrogate.selection import FRONT, chosen
+
+__all__ = ["proposals"]
+
+Array = NDArray[np.float64]
+
+OF_ONE_SAMPLE = 4
+FIRST_GENERATIONS, GENERATIONS = 25, 12
+ANYWHERE = 20
+"""Random points among those an evolution starts from."""
+
+LEAST = 1e-6
+"""Distance of ideal and reference, relative to the latter, that is always left between them."""
+
+SAME = 1e-8
+"""Squared distance below which a genome is known already."""
+
+MOVED, TRIES = 0.03, 50
+
+
+def proposals(
+    knowledge: Knowledge,
+    settings: SearchSettings,
+    count: int,
+    generator: np.random.Generator,
+    on_their_way: Sequence[Genome] = (),
+) -> tuple[Genome, ...]:
+    """So many genomes, or none while nothing can be learnt from what is known.
+
+    Args:
+        knowledge: what was told.
+        settings: of the search.
+        count: how many genomes.
+        generator: the only source of randomness.
+        on_their_way: genomes that were asked for, and are not told yet.
+    """
+    model = knowledge.modelled(generator)
+    feasibility = knowledge.feasibility(generator)
+    points, values = knowledge.front()
+    if model is None and not feasibility.informed:
+        return ()
+    batch = _Batch(settings, feasibility, points, values, knowledge.reference(), generator)
+    if model is None:
+        batch.take(None, count, FIRST_GENERATIONS)
+        return batch.genomes(knowledge.points)
+    expected = model.expected()
+    batch.expect(expected, on_their_way)
+    drawn = (count + len(knowledge) % 2) // 2
+    for first in range(0, drawn, OF_ONE_SAMPLE):
+        generations = FIRST_GENERATIONS if first == 0 else GENERATIONS
+        batch.take(model.drawn(generator), min(OF_ONE_SAMPLE, drawn - first), generations)
+    batch.take(expected, count - drawn, GENERATIONS if drawn else FIRST_GENERATIONS)
+    return batch.genomes(knowledge.points)
+
+
+class _Batch:
+    """The genomes of a batch, as they are found."""
+
+    def __init__(
+        self,
+        settings: SearchSettings,
+        feasibility: Feasibility,
+        points: Array,
+        values: Array,
+        reference: Array,
+        generator: np.random.Generator,
+    ) -> None:
+        self._settings, self._feasibility, self._generator = settings, feasibility, generator
+        self._ideal, self._range = np.zeros(settings.objectives), np.ones(settings.objectives)
+        if len(values):
+            self._ideal = values.min(axis=0)
+            self._range = np.maximum(reference - self._ideal, LEAST * np.maximum(np.abs(reference), 1.0))
+        order = generator.permutation(len(points))
+        self._ends, self._front = points[order], self._scaled(values)[order][: FRONT.get(settings.objectives)]
+        self._population = np.empty((0, settings.dimension))
+        self._found: list[Array] = []
+
+    def _scaled(self, values: Array) -> Array:
+        return np.asarray((values - self._ideal) / self._range)
+
+    def expect(self, function: Function, genomes: Sequence[Genome]) -> None:
+        """Reckon with designs on their way as the model expects them."""
+        if genomes:
+            self._front = np.vstack([self._front, self._scaled(function(np.array(genomes)))])
+
+    def take(self, function: Function | None, count: int, generations: int) -> None:
+        """Add the best of an evolution on a function; None stands for nothing but feasibility."""
+        if count == 0:
+            return
+        counts, generator = self._settings.counts, self._generator
+        anywhere = snapped(generator.random((ANYWHERE, self._settings.dimension)), counts)
+        start = np.vstack([self._ends[:MEMBERS], self._population, anywhere])
+        members = evolved(self._judged(function), start, generations, counts, generator)
+        self._population = members.points
+        for place in chosen(_without(members, self._found), self._front, count, generator):
+            self._found.append(members.points[place])
+            self._front = np.vstack([self._front, members.objectives[place]])
+
+    def _judged(self, function: Function | None) -> Judged:
+        def judged(points: Array) -> tuple[Array, Array]:
+            nothing = np.zeros((len(points), self._settings.objectives))
+            objectives = nothing if function is None else self._scaled(function(points))
+            return objectives, self._feasibility(points)
+
+        return judged
+
+    def genomes(self, known: Array) -> tuple[Genome, ...]:
+        """All that were found, moved where they are known."""
+        taken = known
+        found: list[Genome] = []
+        for point in self._found:
+            moved = self._unknown(point, taken)
+            taken = np.vstack([taken, moved])
+            found.append(tuple(moved.tolist()))
+        return tuple(found)
+
+    def _unknown(self, point: Array, known: Array) -> Array:
+        """A point, or one near it that is not known; anywhere in the end, where there are few choices."""
+        counts, generator = self._settings.counts, self._generator
+        discrete, moved = np.array(counts) > 0, point
+        for attempt in range(TRIES):
+            if ((known - moved) ** 2).sum(axis=1).min(initial=np.inf) > SAME:
+                return moved
+            step = MOVED * generator.standard_normal(len(point))
+            anew = generator.random(len(point))
+            changed = discrete & (generator.random(len(point)) < attempt / TRIES)
+            moved = snapped(np.clip(np.where(changed, anew, point + step), 0.0, 1.0)[None], counts)[0]
+        return moved
+
+
+def _without(members: Members, found: Sequence[Array]) -> Members:
+    """The members that are none of the points that were found."""
+    if not found:
+        return members
+    distances = ((members.points[:, None] - np.array(found)) ** 2).sum(axis=2).min(axis=1)
+    return members.part(np.flatnonzero(distances > SAME))

@@ -1,0 +1,174 @@
+"""Gradients that come with an evaluation: against differences, and from pool to log and search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+import pytest
+
+from evodesign.errors import InputError
+from evodesign.evolve import Silent, replay, resume, start
+from evodesign.pool.joblib_pool import JoblibPool
+from evodesign.pool.worker import SerialPool
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.evaluate import AssessmentFactory, Evaluator
+from evodesign.problem.objectives import objective_kinds
+from evodesign.records import Assessment, Constraint, Genome, Objective, Sense
+from evodesign.runlog.header import header_of
+from evodesign.runlog.run import digest, read_run
+from evodesign.session import search_outcome
+from evodesign.violations import bound_margin, height_margin, total_violation
+
+STEP = 1e-4
+"""Of the differences, as a share of a parameter's range."""
+
+
+def drawn(count: int, dimension: int, seed: int) -> list[Genome]:
+    return [
+        tuple(row) for row in np.random.default_rng(seed).uniform(0.05, 0.95, (count, dimension)).tolist()
+    ]
+
+
+def quantities(assessment: Assessment) -> dict[str, float]:
+    margin = height_margin(assessment.reach, assessment.cases)
+    return {**assessment.objectives, **({} if margin is None else {"height": margin})}
+
+
+def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genome]) -> list[dict[str, float]]:
+    """Relative error of each gradient along one direction per design, evaluated in the processes of a pool.
+
+    Central differences at two steps, extrapolated to none. Left out are designs at whose neighbours the two
+    differences disagree: a limit is reached or another optimum wins in between.
+    """
+    tight = replace(problem, options=replace(problem.options, tolerance=1e-12))
+    factory = AssessmentFactory("gradients", tight, known, gradients=True)
+    generator = np.random.default_rng(5)
+    along = generator.standard_normal((len(genomes), len(genomes[0])))
+    asked = []
+    for genome, direction in zip(genomes, along, strict=True):
+        shares = (0.0, STEP, -STEP, STEP / 2.0, -STEP / 2.0)
+        asked += [tuple((np.array(genome) + share * direction).tolist()) for share in shares]
+    with JoblibPool(2) as pool:
+        ends = sorted(pool.run(factory, asked), key=lambda end: end.index)
+    assert [end.failure for end in ends] == [None] * len(asked)
+    found = [end.value.assessment for end in ends]
+    errors = []
+    for number, direction in enumerate(along):
+        middle, *sides = found[5 * number : 5 * number + 5]
+        values = [quantities(side) for side in sides]
+        error = {}
+        for name, row in middle.gradients.values.items():
+            if not all(name in each for each in values):
+                continue
+            far, near = (
+                (values[k][name] - values[k + 1][name]) / (2.0 * STEP / (1 + k // 2)) for k in (0, 2)
+            )
+            slope = float(np.dot(list(row.values()), direction))
+            size = max(float(np.abs(list(row.values())).max()), 1e-2 * abs(quantities(middle)[name]))
+            if abs(far - near) < 1e-4 * size:
+                error[name] = abs((4.0 * near - far) / 3.0 - slope) / size
+        errors.append(error)
+    return errors
+
+
+def test_gradients_agree_with_differences_through_the_pool(
+    problem: DesignProblem, known: Precomputed
+) -> None:
+    errors = worst_errors(problem, known, drawn(4, len(problem.space.parameters), 1))
+    compared = [error for each in errors for error in each.values()]
+    assert len(compared) >= 10
+    assert max(compared) < 1e-5
+
+
+@pytest.mark.slow
+def test_gradients_of_forty_designs_agree_with_differences(
+    problem: DesignProblem, known: Precomputed
+) -> None:
+    errors = worst_errors(problem, known, drawn(40, len(problem.space.parameters), 2))
+    compared = [error for each in errors for error in each.values()]
+    assert len(compared) >= 100
+    assert max(compared) < 1e-5
+
+
+def test_the_quick_gradients_are_the_exact_ones(problem: DesignProblem, known: Precomputed) -> None:
+    """Of every objective, against five-point differences along the exact tangent (`sensitivities`)."""
+    limits = dict.fromkeys(problem.scene.robot.joints, 30.0)
+    robot = replace(problem.scene.robot, torque_limits=limits)
+    scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
+    names = [name for name in objective_kinds() if name != "shared_reach_height"]
+    every = tuple(
+        Objective(name=name, sense=Sense.MINIMISE, unit="") for name in [*names, "q90_robot_torque"]
+    )
+    evaluator = Evaluator(replace(problem, scenes=scenes, objectives=every), known)
+    (genome,) = drawn(1, len(problem.space.parameters), 3)
+    values = problem.space.values(genome)
+    exact = evaluator._sensitivities.at(values, evaluator.solve(values)).sensitivities()
+    quick = evaluator.assess_with_gradients(genome).assessment.gradients
+    assert quick.absent == {}
+    spans = {each.name: each.upper - each.lower for each in problem.space.records}
+    for objective in every:
+        expected = {name: slope * spans[name] for name, slope in exact[objective.name].gradient.items()}
+        size = max(map(abs, expected.values()))
+        assert quick.values[objective.name] == pytest.approx(expected, abs=1e-5 * size + 1e-7)
+
+
+def test_what_does_not_exist_has_no_gradient_and_a_reason(problem: DesignProblem, known: Precomputed) -> None:
+    far = tuple(msgspec.structs.replace(task, height_m=4.0) for task in problem.tasks)
+    evaluator = Evaluator(replace(problem, tasks=far[:1]), known)
+    gradients = evaluator.assess_with_gradients((0.5,) * len(problem.space.parameters)).assessment.gradients
+    assert set(gradients.values) == {"reach_height", "height"}
+    assert gradients.absent == dict.fromkeys(("robot_torque", "human_torque"), "the design has no such value")
+    reach = gradients.values["reach_height"]
+    assert gradients.values["height"] == pytest.approx({name: -slope for name, slope in reach.items()})
+
+
+def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
+    problem: DesignProblem, known: Precomputed, tmp_path
+) -> None:
+    settings = msgspec.structs.replace(problem.settings("surrogate", 8, 1), start=())
+    assert settings.with_gradients
+    factory = AssessmentFactory("run", problem, known, gradients=True)
+    with SerialPool() as pool:
+        whole = start(tmp_path / "whole", header_of(problem, settings, 32), factory, pool, Silent())
+        start(tmp_path / "parts", header_of(problem, settings, 28), factory, pool, Silent())
+        parts = resume(tmp_path / "parts", lambda _: factory, pool, Silent(), 32)
+    assert digest(parts.evaluations) == digest(whole.evaluations)
+    replay(whole)
+    for evaluation in read_run(tmp_path / "whole").evaluations:
+        assert 0.0 < evaluation.gradient_seconds < evaluation.seconds
+        gradients = evaluation.assessment.gradients
+        outcome = search_outcome(whole.header, evaluation)
+        reach = whole.header.objectives[-1]
+        assert (reach.name, reach.sense) == ("reach_height", Sense.MAXIMISE)
+        assert outcome.gradients[-1] == tuple(-slope for slope in gradients.values["reach_height"].values())
+
+
+def test_an_evaluation_without_gradients_is_as_before(problem: DesignProblem, known: Precomputed) -> None:
+    settings = problem.settings("nsga2")
+    assert not settings.with_gradients
+    (genome,) = drawn(1, len(problem.space.parameters), 4)
+    evaluator = Evaluator(problem, known)
+    plain, full = evaluator.assess(genome), evaluator.assess_with_gradients(genome)
+    assert b"gradient" not in msgspec.json.encode(plain.assessment)
+    assert msgspec.structs.replace(full.assessment, gradients=msgspec.UNSET) == plain.assessment
+
+
+def test_a_reference_point_is_given_by_objective(problem: DesignProblem) -> None:
+    search = msgspec.structs.replace(problem.search, reference={"reach_height": 1.2, "robot_torque": 30.0})
+    assert replace(problem, search=search).settings("surrogate").reference == (30.0, None, -1.2)
+    search = msgspec.structs.replace(problem.search, reference={"reach": 1.2})
+    with pytest.raises(InputError, match=r"search\.reference\.reach: wanted one of the objectives"):
+        replace(problem, search=search).settings()
+
+
+@pytest.mark.parametrize("value", [1.0, 2.5, 4.0, 5.0])
+def test_a_margin_is_the_violation_where_it_is_positive(value: float) -> None:
+    constraint = Constraint(name="mass", unit="kg", lower=2.0, upper=4.0)
+    margin, slope = bound_margin(constraint, value)
+    assert max(margin, 0.0) == pytest.approx(total_violation((constraint,), {"mass": value}, 0.0))
+    step = 1e-6
+    ends = [bound_margin(constraint, value + sign * step)[0] for sign in (1.0, -1.0)]
+    assert slope == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=1e-4) or value in (1.0, 4.0)

@@ -1,0 +1,202 @@
+"""The parts of the surrogate search against closed forms."""
+
+import moocore
+import numpy as np
+import pytest
+
+from evodesign.records import SearchSettings
+from evodesign.searches.base import Outcome
+from evodesign.searches.registry import make_search
+from evodesign.searches.surrogate.approximation import KEPT, Approximation, Known
+from evodesign.searches.surrogate.evolution import Members
+from evodesign.searches.surrogate.feasibility import Feasibility, margins_of_violations
+from evodesign.searches.surrogate.global_model import GlobalModel
+from evodesign.searches.surrogate.knowledge import Knowledge
+from evodesign.searches.surrogate.local_residual import LocalResidual
+from evodesign.searches.surrogate.selection import chosen
+
+DIMENSION = 4
+CONTINUOUS = np.zeros(DIMENSION, bool)
+
+
+def curved(points):
+    """Two outputs, and their gradients."""
+    waves = 3.0 * points
+    values = np.stack([np.sin(waves).sum(axis=1), ((points - 0.3) ** 2).sum(axis=1)], axis=1)
+    gradients = np.stack([3.0 * np.cos(waves), 2.0 * (points - 0.3)], axis=1)
+    return values, gradients
+
+
+def known(count, *, gradients=True):
+    points = np.random.default_rng(count).random((count, DIMENSION))
+    values, slopes = curved(points)
+    return Known(points, values, slopes if gradients else np.full_like(slopes, np.nan))
+
+
+def model(designs):
+    return Approximation(designs, CONTINUOUS, np.random.default_rng(2))
+
+
+def test_sums_over_designs_are_those_of_the_regression_they_stand_for():
+    """Normal equations from rows written out one by one, with differences for the features' gradients."""
+    some, step = known(5), 1e-6
+    found = GlobalModel(np.full(DIMENSION, 0.8), ~CONTINUOUS, 2, np.random.default_rng(1))
+    found.add(some.points, some.targets, some.gradients)
+    rows, right, weights = [found.features(some.points)], [some.targets], [np.ones(5)]
+    for axis in range(DIMENSION):
+        away = step * np.eye(DIMENSION)[axis]
+        slope = (found.features(some.points + away) - found.features(some.points - away)) / (2.0 * step)
+        rows.append(slope)
+        right.append(some.gradients[:, :, axis])
+        weights.append(np.full(5, 0.1))
+    design, targets, weight = np.vstack(rows), np.vstack(right), np.concatenate(weights)
+    precision = design.T @ (weight[:, None] * design) / 0.01 + np.eye(design.shape[1])
+    expected = np.linalg.solve(precision, design.T @ (weight[:, None] * targets) / 0.01)
+    fitted = found.solved(np.zeros(2), np.ones(2))
+    assert fitted.at(some.points, fitted.weights) == pytest.approx(rows[0] @ expected, abs=1e-6)
+
+
+def test_slopes_of_the_model_are_its_differences():
+    designs, step = known(30), 1e-5
+    found = GlobalModel(np.full(DIMENSION, 0.8), ~CONTINUOUS, 2, np.random.default_rng(1))
+    found.add(designs.points, designs.targets, designs.gradients)
+    fitted = found.solved(designs.targets.mean(axis=0), designs.targets.std(axis=0))
+    slopes = fitted.slopes(designs.points)
+    for axis in range(DIMENSION):
+        away = step * np.eye(DIMENSION)[axis]
+        ends = [fitted.at(designs.points + sign * away, fitted.weights) for sign in (1.0, -1.0)]
+        assert slopes[:, :, axis] == pytest.approx((ends[0] - ends[1]) / (2.0 * step), abs=1e-6)
+
+
+def test_gradients_make_the_model_better():
+    asked = np.random.default_rng(9).random((200, DIMENSION))
+    values, _ = curved(asked)
+    errors = [
+        np.abs(model(known(25, gradients=given)).expected()(asked) - values).mean() for given in (True, False)
+    ]
+    assert errors[0] < 0.6 * errors[1]
+
+
+def test_the_model_passes_through_what_is_known_with_its_slopes():
+    designs = known(25)
+    expected = model(designs).expected()
+    assert expected(designs.points) == pytest.approx(designs.targets, abs=1e-6)
+    near = designs.points + 1e-3
+    first_order = designs.targets + 1e-3 * designs.gradients.sum(axis=2)
+    assert expected(near) == pytest.approx(first_order, abs=2e-5)
+
+
+def test_far_from_everything_no_residual_is_left():
+    one = LocalResidual(np.zeros((1, 2)), np.ones(2), np.array([[5.0]]), np.array([[[1.0, 0.0]]]))
+    assert one(np.array([[1e-5, 0.0], [4.0, 0.0]])) == pytest.approx(np.array([[5.0], [0.0]]), abs=1e-4)
+
+
+def test_adding_designs_equals_beginning_with_them_but_for_their_scaling():
+    whole = known(40)
+    grown = model(whole.part(np.arange(39)))
+    before = grown.expected()(whole.points[39:])
+    grown.add(whole.part(np.arange(39, 40)))
+    after = grown.expected()(whole.points[39:])
+    assert after == pytest.approx(whole.targets[39:], abs=1e-6)
+    assert np.abs(before - whole.targets[39:]).max() > 1e-3
+
+
+def test_draws_agree_where_designs_are_and_differ_elsewhere():
+    found, generator = model(known(60)), np.random.default_rng(4)
+    draws = [found.drawn(generator) for _ in range(8)]
+    near, far = known(60).points, np.full((1, DIMENSION), 3.0)
+    assert np.std([draw(near) for draw in draws], axis=0).mean() < 0.1
+    assert np.std([draw(far) for draw in draws], axis=0).mean() > 0.3
+
+
+def test_margins_of_violations_are_negative_inside():
+    assert margins_of_violations(np.array([0.0, 2.0, 4.0]))[:, 0].tolist() == [-3.0, 2.0, 4.0]
+
+
+def test_infeasibility_adds_violations_and_expected_failures():
+    def margins(points):
+        return np.stack([points[:, 0] - 0.5, points[:, 1] - 0.5], axis=1)
+
+    def failure(points):
+        return np.where(points[:, :1] > 0.9, 1.0, -1.0)
+
+    points = np.array([[0.1, 0.1], [0.7, 0.6], [0.95, 0.0]])
+    assert Feasibility(margins, failure, 0.0)(points) == pytest.approx([0.0, 0.3, 1.45])
+
+
+def test_the_chosen_add_most_together():
+    """Areas of one and of two rectangles, by hand."""
+    generator = np.random.default_rng(3)
+    objectives = generator.random((12, 2))
+    members = Members(generator.random((12, 3)), objectives, np.zeros(12))
+    first, second = chosen(members, np.empty((0, 2)), 2, generator)
+    sides = 1.0 - objectives
+    areas = sides.prod(axis=1)
+    assert first == int(np.argmax(areas))
+    together = areas + areas[first] - np.minimum(sides, sides[first]).prod(axis=1)
+    assert second == int(np.argmax(together))
+
+
+def settings(**others):
+    given = {"dimension": 6, "objectives": 2, "population": 8, "seed": 3} | others
+    return SearchSettings(algorithm="surrogate", **given)
+
+
+def sloped(genome, signs=(1.0, 1.0)):
+    """Two bowls with their gradients."""
+    point = np.array(genome)
+    centres = (0.25, 0.6)
+    values = tuple(float(((point - centre) ** 2).sum()) for centre in centres)
+    rows = tuple(tuple((2.0 * (point - centre)).tolist()) for centre in centres)
+    return Outcome(values, 0.0, gradients=rows)
+
+
+def searched(search, generations, outcome):
+    found = []
+    for _ in range(generations):
+        outcomes = [outcome(genome) for genome in search.ask()]
+        found += [each.objectives for each in outcomes]
+        search.tell(outcomes)
+    return found
+
+
+def test_gradients_are_worth_evaluations():
+    with_gradients = searched(make_search(settings()), 6, sloped)
+    without = searched(make_search(settings()), 6, lambda genome: Outcome(sloped(genome).objectives, 0.0))
+    volumes = [moocore.hypervolume(np.array(each), ref=(1.0, 1.0)) for each in (with_gradients, without)]
+    assert volumes[0] > volumes[1]
+
+
+def test_a_gradient_that_is_missing_is_no_zero():
+    """Without one of its rows a design counts with its values alone, so that it changes what is asked."""
+
+    def gap(genome):
+        outcome = sloped(genome)
+        return Outcome(outcome.objectives, 0.0, gradients=(outcome.gradients[0], None))
+
+    def flat(genome):
+        outcome = sloped(genome)
+        return Outcome(outcome.objectives, 0.0, gradients=(outcome.gradients[0], (0.0,) * 6))
+
+    gaps = searched(make_search(settings()), 6, gap)
+    zeros = searched(make_search(settings()), 6, flat)
+    volumes = [moocore.hypervolume(np.array(each), ref=(1.0, 1.0)) for each in (gaps, zeros)]
+    assert volumes[0] > volumes[1]
+
+
+def test_what_lies_beyond_a_given_reference_is_left_alone():
+    limited = settings(reference=(0.15, None))
+    late = [np.array(searched(make_search(each), 12, sloped))[-32:, 0] for each in (limited, settings())]
+    assert (late[0] < 0.2).mean() > (late[1] < 0.2).mean()
+
+
+def test_a_model_of_many_designs_is_made_of_a_thousand():
+    knowledge, generator = Knowledge(settings()), np.random.default_rng(5)
+    for genome in generator.random((3000, 6)).tolist():
+        knowledge.add(tuple(genome), sloped(genome))
+    found = knowledge.modelled(generator)
+    assert len(found._known.points) == KEPT
+    front, values = knowledge.front()
+    kept = {tuple(point) for point in found._known.points.tolist()}
+    assert all(tuple(point) in kept for point in front.tolist())
+    assert len(values) == len(front)
