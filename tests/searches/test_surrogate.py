@@ -1,5 +1,10 @@
 """The parts of the surrogate search against closed forms."""
 
+import hashlib
+import os
+import subprocess
+import sys
+
 import moocore
 import numpy as np
 import pytest
@@ -200,3 +205,29 @@ def test_a_model_of_many_designs_is_made_of_a_thousand():
     kept = {tuple(point) for point in found._known.points.tolist()}
     assert all(tuple(point) in kept for point in front.tolist())
     assert len(values) == len(front)
+
+
+def test_proposals_do_not_depend_on_the_number_of_threads():
+    """In processes whose BLAS has one thread and two, which add up in another order."""
+    digests = set()
+    for threads in ("1", "2"):
+        given = os.environ | {"OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
+        done = subprocess.run(
+            [sys.executable, "-m", __spec__.name], env=given, capture_output=True, text=True, check=True
+        )
+        digests.add(done.stdout)
+    assert len(digests) == 1
+    assert "" not in digests
+
+
+def digest_of_proposals():
+    """What a search in 16 dimensions asks for."""
+    search, digest = make_search(settings(dimension=16)), hashlib.sha256()
+    for _ in range(9):
+        digest.update(np.array(search.ask()).tobytes())
+        search.tell([sloped(genome) for genome in search.ask()])
+    return digest.hexdigest()
+
+
+if __name__ == "__main__":
+    sys.stdout.write(digest_of_proposals())

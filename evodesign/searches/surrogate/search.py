@@ -24,6 +24,7 @@ from evodesign.searches.ranking import check_outcomes
 from evodesign.searches.surrogate.approximation import FEWEST_FIRST, FIRST_PER_DIMENSION
 from evodesign.searches.surrogate.knowledge import Knowledge
 from evodesign.searches.surrogate.proposal import proposals
+from evodesign.searches.surrogate.threads import one_thread
 
 __all__ = ["AsynchronousSurrogate", "Surrogate"]
 
@@ -67,6 +68,10 @@ class Surrogate:
             ValueError: outcomes that do not fit the genomes asked.
         """
         check_outcomes(self._asked, outcomes, self._settings.objectives)
+        with one_thread():
+            self._learn(outcomes)
+
+    def _learn(self, outcomes: Sequence[Outcome]) -> None:
         for genome, outcome in zip(self._asked, outcomes, strict=True):
             self._knowledge.add(genome, outcome)
         proposed: tuple[Genome, ...] = ()
@@ -107,6 +112,10 @@ class AsynchronousSurrogate:
 
     def tell(self, turn: int, outcome: Outcome) -> None:
         """Learn, and propose anew when enough have come."""
+        with one_thread():
+            self._learn(turn, outcome)
+
+    def _learn(self, turn: int, outcome: Outcome) -> None:
         self._knowledge.add(self._asked.pop(turn), outcome)
         known = len(self._knowledge)
         if known < _first(self._settings) or known % BATCH:
