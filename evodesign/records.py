@@ -17,6 +17,7 @@ from evodesign.tasks import Hold, Record, Task
 
 __all__ = [
     "FORMAT_VERSION",
+    "NO_SECONDS",
     "AgentDetail",
     "Assessed",
     "Assessment",
@@ -220,6 +221,10 @@ class CaseOutcome(Record, frozen=True, omit_defaults=True):
     fallbacks: int = 0
 
 
+NO_SECONDS = 0.0
+"""One object, by whose identity msgspec leaves a default out of what is written."""
+
+
 class Gradients(Record, frozen=True):
     """How quantities of a design move with its genome.
 
@@ -323,7 +328,7 @@ class Assessed(Record, frozen=True):
 
     assessment: Assessment
     cases: tuple[CaseDetail, ...] = ()
-    gradient_seconds: float = 0.0
+    gradient_seconds: float = NO_SECONDS
 
 
 class Detail(Record, frozen=True):
@@ -359,7 +364,7 @@ class Evaluation(Record, frozen=True, omit_defaults=True):
     seconds: float
     worker: str
     turn: Turn | None = None
-    gradient_seconds: float = 0.0
+    gradient_seconds: float = NO_SECONDS
 
     @property
     def feasible(self) -> bool:

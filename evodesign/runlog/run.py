@@ -17,7 +17,7 @@ from typing import TypeVar
 import msgspec
 
 from evodesign.errors import RunError
-from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
+from evodesign.records import NO_SECONDS, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.directory import run_segments, segments
 from evodesign.runlog.gaps import record_gaps, segment_gaps
 from evodesign.runlog.header import differences
@@ -196,6 +196,6 @@ def digest(evaluations: Iterable[Evaluation]) -> str:
     """SHA-256, in hexadecimal, of the evaluations in the order given, without times and workers."""
     found = hashlib.sha256()
     for evaluation in evaluations:
-        bare = msgspec.structs.replace(evaluation, seconds=0.0, worker="", gradient_seconds=0.0)
+        bare = msgspec.structs.replace(evaluation, seconds=0.0, worker="", gradient_seconds=NO_SECONDS)
         found.update(msgspec.json.encode(bare, order="deterministic") + b"\n")
     return found.hexdigest()

@@ -46,7 +46,7 @@ def test_postures_end_where_reach_ends(problem: DesignProblem) -> None:
         scene, AgentModel.of(scene.robot, result.tree), AgentModel.of(scene.human, scene.human.tree)
     )
     assert result.reach.highest is not None
-    (postures,) = evaluator._postures.values()
+    (postures,) = evaluator.inner.postures.values()
     below = postures.solve(values, Hold(height_m=result.reach.highest - 0.005), checker)
     above = postures.solve(values, Hold(height_m=result.reach.highest + 0.02), checker)
     assert below.status is Status.SOLVED

@@ -34,6 +34,7 @@ class Counting:
     status: Status = Status.SOLVED
     value: float = 1.0 / 3.0
     seconds: float = 0.0
+    gradients: bool = False
     limits: Limits = field(default_factory=Limits)
 
     @property
