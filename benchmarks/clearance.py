@@ -2,8 +2,8 @@
 
     python -m benchmarks.clearance [--problem NAME] [--designs N]
 
-Random designs of a problem, with its own `feet_gap_m` and with feet that may stand on each other: solved
-postures in which two bodies overlap by more than 5 mm, the pairs, and how deep they are at worst.
+Random designs of a problem, with a gap of 5 mm between the feet and without: solved postures in which two
+bodies overlap by more than 5 mm, the pairs, and how deep they are at worst.
 Written to benchmarks/results/clearance.json, printed as a table.
 """
 
@@ -24,6 +24,7 @@ from evodesign.problem.source import read_source
 
 RESULTS = Path(__file__).parent / "results" / "clearance.json"
 DEEP = 0.005  # [m]
+GAP = 0.005  # [m]
 SHOWN = 8
 
 
@@ -59,11 +60,11 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=100)
     arguments = parser.parse_args()
     own = build_problem(read_source(Path("problems") / f"{arguments.problem}.toml"))
-    scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=None)) for each in own.scenes)
-    found = {
-        "with feet_gap_m": measured(own, arguments.designs),
-        "without": measured(replace(own, scenes=scenes, start_portfolio=False), arguments.designs),
-    }
+    found = {}
+    for gap in (GAP, None):
+        scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=gap)) for each in own.scenes)
+        problem = replace(own, scenes=scenes, start_portfolio=False)
+        found[f"feet_gap_m = {gap}"] = measured(problem, arguments.designs)
     for name, figures in found.items():
         print(name, json.dumps(figures, indent=2))
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
