@@ -81,11 +81,12 @@ class Judge:
         self.problem = problem
         self._starts = starts
         self._evaluator = Evaluator(problem, known)
-        setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
+        settings = [Setting(each, problem.space, problem.weights, problem.options) for each in problem.scenes]
         self._first, self._joint = (
-            PostureProblem(setting, problem.symmetry, given) for given in (known, Precomputed())
+            {each.scene.pair: PostureProblem(each, problem.symmetry, given) for each in settings}
+            for given in (known, Precomputed())
         )
-        self._reach = ReachProblem(setting, symmetric=problem.symmetry is not Symmetry.OFF)
+        self._reach = ReachProblem(settings[0], symmetric=problem.symmetry is not Symmetry.OFF)
 
     def judged(self, number: int, design: Design, joint: bool) -> tuple[Ends, list[Row]]:
         """The reach of a design, and a row for each height that it can reach."""
@@ -96,10 +97,11 @@ class Judge:
         for solution in result.cases:
             if result.reach.distance(solution.case.task.height_m) != 0.0:
                 continue
-            own = self._first.landscape(solution.case.task)
+            pair, task = solution.case.pair, solution.case.task
+            own = self._first[pair].landscape(task)
             costs = [attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED]
             best = self._best(own, design, rng)
-            both = self._best(self._joint.landscape(solution.case.task), design, rng) if joint else np.nan
+            both = self._best(self._joint[pair].landscape(task), design, rng) if joint else np.nan
             row = Row(
                 solution.case.task.height_m,
                 str(solution.status),
