@@ -42,6 +42,9 @@ Places = NDArray[np.intp]
 
 NEAR_TOLERANCE = 1e-10
 NEWTON_STEPS = 8
+MOST_COMPILED = 100
+"""Symbols of a program whose second derivatives are compiled; a larger one's take the compiler minutes."""
+
 EXACT = 1e-12
 """Residual of the optimality conditions, in the program's own units, of a solution that counts as exact."""
 
@@ -185,7 +188,8 @@ class SolutionSensitivity:
         pairs = zip(solver.program.bounds, solver.program.limits, strict=True)
         self._lower, self._upper = (np.concatenate(pair) for pair in pairs)
         self._sides = _sides(_names(solver.program), self._lower, self._upper)
-        self._conditions = Conditions(solver.program, compiled=solver.native)
+        small = solver.program.symbols.numel() <= MOST_COMPILED
+        self._conditions = Conditions(solver.program, compiled=solver.native and small)
 
     @cached_property
     def _ipopt(self) -> Solver:
