@@ -35,6 +35,7 @@ def show(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.problem.clearance import distance_json, overlaps
+    from evodesign.records import hold_names
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
 
@@ -54,13 +55,13 @@ def show(
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in _ergonomics(opened)]
-        gaps = [distance_json(gap) for gap in _gaps(opened).values()]
-        print_json({"run": str(run), **told, "ergonomics": asked, "clearances": gaps})
+        nearest = [hold_names(case) | distance_json(each) for case, each in _distances(opened).items()]
+        print_json({"run": str(run), **told, "ergonomics": asked, "clearances": nearest})
     else:
         from evodesign.cli.tables.card import card
 
         console().print(card(opened, _ergonomics(opened)))
-        show_notes(overlaps(_gaps(opened).items()))
+        show_notes(overlaps(_distances(opened).items()))
     damage.end(logged, accepted=damaged)
 
 
@@ -75,12 +76,12 @@ def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
         return ()
 
 
-def _gaps(opened: OpenedDesign) -> dict[Case, BodyDistance]:
+def _distances(opened: OpenedDesign) -> dict[Case, BodyDistance]:
     """How near bodies come in its postures; none, and a note, if the problem cannot be built here."""
     from evodesign.cli.output import show_notes
 
     try:
-        return opened.gaps()
+        return opened.body_distances()
     except InputError as error:
         show_notes([f"how near bodies come to each other is left out ({error})"])
         return {}

@@ -15,6 +15,7 @@ from evodesign.body.shape import Box
 from evodesign.collision.clearance import BodyDistance, PlacedSolids, Places, SolidBodies, places_of
 from evodesign.collision.pairs import collision_pairs, holding_links
 from evodesign.collision.shapes import box_solid
+from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
@@ -54,12 +55,17 @@ class Clearances:
         Args:
             robot: the design's tree.
             cases: its postures.
+        Raises:
+            RunError: the problem has not a case's person or load.
         """
         solids = SolidBodies.of_tree(robot)
         return [self._nearest(robot, solids, each) for each in cases]
 
     def _nearest(self, robot: Tree, solids: SolidBodies, case: CaseDetail) -> BodyDistance:
-        scene = self._scenes[case.case.pair]
+        scene = self._scenes.get(case.case.pair)
+        if scene is None:
+            name = on_one_line(case.case.name)
+            raise RunError(f"the logged postures of case '{name}' are not those of the run's problem")
         person = self._people[scene.human.label]
         load = SolidBodies((LOAD,), (box_solid(Box(*scene.payload.size)),))
         middle = Placement(translation=(0.0, 0.0, case.case.task.height_m))

@@ -77,13 +77,13 @@ class OpenedDesign:
         values = [design[parameter.name] for parameter in problem.space.parameters]
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
 
-    def gaps(self) -> dict[Case, BodyDistance]:
+    def body_distances(self) -> dict[Case, BodyDistance]:
         """The nearest two bodies in each of its postures."""
         from evodesign.problem.clearance import Clearances
 
         problem, robot = self.rebuilt.problem, self.scene_set().robot
-        gaps = Clearances(problem.scenes).of(robot, self.cases)
-        return {detail.case: gap for detail, gap in zip(self.cases, gaps, strict=True)}
+        found = Clearances(problem.scenes).of(robot, self.cases)
+        return {detail.case: each for detail, each in zip(self.cases, found, strict=True)}
 
     def ergonomics(self) -> tuple[Ergonomics, ...]:
         """What the design's postures ask of the people, one for each.

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
+from evodesign.errors import RunError
 from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
@@ -89,3 +91,10 @@ def test_evaluate_tells_the_nearest_bodies_of_each_case(problem: DesignProblem, 
             "bodies": [found.first, found.second],
             "distance_m": found.distance,
         }
+
+
+def test_a_posture_of_a_stranger_is_refused_in_a_sentence(problem: DesignProblem, free: DesignResult) -> None:
+    (case, *_) = [detail_of(solution) for solution in free.cases]
+    stranger = msgspec.structs.replace(case, case=msgspec.structs.replace(case.case, person="nobody"))
+    with pytest.raises(RunError, match="nobody"):
+        Clearances(problem.scenes).of(free.tree, [stranger])

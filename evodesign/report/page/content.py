@@ -203,7 +203,7 @@ class DesignContent(Part, frozen=True):
     Attributes:
         cases: how each ended.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
-        clearances: as many as postures.
+        clearances: as many as postures; none where a posture is of a stranger to the run's problem.
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
     """

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.front import front
-from evodesign.errors import EvodesignError
+from evodesign.errors import EvodesignError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import Clearances
 from evodesign.problem.factory import evaluator_of
@@ -180,11 +180,14 @@ def _design(
     values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
     links, joints = changes(problem, values)
     robot = problem.space.resized(problem.scene.robot.tree, values)
-    gaps = tuple(
-        ClearanceContent(first=gap.first, second=gap.second, distance_m=gap.distance)
-        for gap in clearances.of(robot, detail.cases)
+    try:
+        found = clearances.of(robot, detail.cases)
+    except RunError:  # postures of strangers, whom the page does not draw
+        found = []
+    nearest = tuple(
+        ClearanceContent(first=each.first, second=each.second, distance_m=each.distance) for each in found
     )
-    return DesignContent(cases=cases, postures=detail.cases, clearances=gaps, links=links, joints=joints)
+    return DesignContent(cases=cases, postures=detail.cases, clearances=nearest, links=links, joints=joints)
 
 
 def with_gradients(content: Content, run: RunLog, jobs: int, progress: PrecomputeProgress) -> Content:
