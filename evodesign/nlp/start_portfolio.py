@@ -33,6 +33,7 @@ __all__ = [
     "random_start",
     "spread_designs",
     "start_portfolio",
+    "widened",
 ]
 
 NEAR = (0.01, 1e-4)
@@ -148,6 +149,34 @@ def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: T
         learned = [study for study, well in zip(fresh, good, strict=True) if not well]
         chosen = _grown(landscape, chosen, learned, training)
     return StartPortfolio(chosen, coverage)
+
+
+def widened(
+    portfolio: StartPortfolio, offers: Sequence[Start], cases: Iterator[tuple[Landscape, Design]], most: int
+) -> StartPortfolio:
+    """The portfolio with those offered starts that serve cases which its own do not.
+
+    Args:
+        portfolio: of one of the landscapes.
+        offers: starts of similar landscapes.
+        cases: that are to be served.
+        most: starts that the portfolio may hold.
+    """
+    starts = (*portfolio.starts, *offers)
+    good = np.array([_served(*case, starts) for case in cases], bool).reshape(-1, len(starts))
+    chosen = list(range(len(portfolio.starts)))
+    while len(chosen) < most:
+        served = good[~good[:, chosen].any(axis=1)].sum(axis=0)
+        if not served.any():
+            break
+        chosen.append(int(np.argmax(served)))
+    return StartPortfolio(tuple(starts[place] for place in chosen), portfolio.coverage)
+
+
+def _served(landscape: Landscape, design: Design, starts: Sequence[Start]) -> NDArray[np.bool_]:
+    """Which starts lead close to the best optimum that any of them leads to."""
+    costs = np.array([_cost(landscape.solve(design, start)) for start in starts])
+    return np.asarray(np.isfinite(costs) & landscape.good(costs, costs.min()))
 
 
 def random_start(landscape: Landscape, rng: np.random.Generator) -> Start:

@@ -29,12 +29,13 @@ WORK: Mapping[Subject, float] = {
     Subject.HIGHEST: 1.0,
     Subject.LOWEST: 1.0,
     Subject.POSTURE: 1.7,
+    Subject.WIDER: 0.5,
     Subject.PERSON: 0.3,
     Subject.PERSON_REACH: 0.3,
 }
 """How much work a piece is, by its subject: medians of public robots. It serves until one of them is done."""
 
-COMPILING = PendingPiece("compiled inner problems", "compiling", work=0.1, stage=2)
+COMPILING = PendingPiece("compiled inner problems", "compiling", work=0.1, stage=3)
 """What comes last; little, since pieces have the functions compiled that they need."""
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import islice
 
 import msgspec
 import numpy as np
@@ -18,7 +19,7 @@ from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene, scene_of
 from evodesign.nlp.solver import SolverOptions
-from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio
+from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio, widened
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
@@ -32,7 +33,7 @@ __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "
 
 REACH_TRAINING = Training(designs=32, starts=8)
 HALF_TRAINING = Training(designs=48, starts=8)
-DISTURBED_TRAINING = Training(designs=24, starts=6, rounds=2)
+DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=2)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=6, portfolio=8, rounds=2)
 
@@ -42,6 +43,9 @@ STRICTER = 0.4
 Whole postures have many optima that lie close to each other; from random starts the best one is rarely found,
 but the optima of other designs lead there.
 """
+
+WIDER_DESIGNS, MOST_WIDER = 24, 8
+"""Designs for which starts of other heights are tried with everyone, and starts of a portfolio with them."""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -58,6 +62,7 @@ class Subject(StrEnum):
     HIGHEST = "starts of the highest load"
     LOWEST = "starts of the lowest load"
     POSTURE = "starts of postures"
+    WIDER = "starts of other heights"
 
 
 OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH)
@@ -72,11 +77,13 @@ class Piece:
         subject: what it is about.
         pair: names of the person and the load that it is of, or is worked out with.
         task: None if it belongs to none.
+        beside: other tasks that it follows from.
     """
 
     subject: Subject
     pair: tuple[str, str]
     task: Task | None = None
+    beside: tuple[Task, ...] = ()
 
     def __str__(self) -> str:
         name = str(self.subject) if self.task is None else f"{self.subject} at {self.task}"
@@ -129,12 +136,20 @@ NO_PART_OF_A_PERSONS: Exceptions = {
     Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
 }
 
+NO_PART_OF_WIDER: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "scenes"
+    },
+}
+
 NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.PERSON: NO_PART_OF_A_PERSONS,
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
     Subject.HIGHEST: NO_PART_OF_PIECES,
     Subject.LOWEST: NO_PART_OF_PIECES,
     Subject.POSTURE: NO_PART_OF_PIECES,
+    Subject.WIDER: NO_PART_OF_WIDER,
 }
 """Fields on which a piece does not depend, by its subject, with the reason."""
 
@@ -160,10 +175,17 @@ def stages(
     if not portfolios:
         return [people]
     middle = setting.middle.pair
-    return [
+    found = [
         [Piece(Subject.HIGHEST, middle), Piece(Subject.LOWEST, middle), *people],
         [Piece(Subject.POSTURE, middle, task) for task in tasks],
     ]
+    if setting.symmetric and setting.middle.disturbances:
+        found.append([_wider(middle, task, tasks) for task in tasks])
+    return found
+
+
+def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Task]) -> Piece:
+    return Piece(Subject.WIDER, pair, task, tuple(other for other in tasks if other != task))
 
 
 def _push_alone(scene: Scene, space: DesignSpace) -> bool:
@@ -254,6 +276,12 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         return task is None or reach.solve(design).beyond(task.heights) == 0.0
 
     looked_at = LOOKED_AT * training.designs
-    return start_portfolio(
-        landscape, spread_designs(len(space.parameters), space.values, wanted, looked_at), training
-    )
+    designs = spread_designs(len(space.parameters), space.values, wanted, looked_at)
+    if task is None or piece.subject is not Subject.WIDER:
+        return start_portfolio(landscape, designs, training)
+    offers = [start for other in piece.beside for start in known.postures[other].starts]
+    settings = [replace(own, scene=each) for each in setting.scenes]
+    landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
+    few = list(islice(designs, WIDER_DESIGNS))
+    cases = ((each, design) for design in few for each in landscapes)
+    return widened(known.postures[task], offers, cases, MOST_WIDER)
