@@ -12,7 +12,14 @@ import pytest
 
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import Solver, SolverOptions
-from evodesign.nlp.start_portfolio import Landscape, Training, random_start, spread_designs, start_portfolio
+from evodesign.nlp.start_portfolio import (
+    Landscape,
+    Training,
+    random_start,
+    spread_designs,
+    start_portfolio,
+    widened,
+)
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
@@ -152,3 +159,17 @@ def test_seeds_reach_higher_than_fixed_starts(
     assert seeded is not None
     assert fixed is not None
     assert seeded > fixed + 0.05
+
+
+def test_starts_of_similar_landscapes_are_taken_where_they_serve_more() -> None:
+    one = start_portfolio(landscape(), designs(), replace(TRAINING, portfolio=1))
+    offers = [{"robot.joints": [well]} for well in WELLS]
+    cases = ((landscape(), design) for design in designs(40))
+    wider = widened(one, offers, cases, most=8)
+    wells = {min(WELLS, key=lambda well: abs(well - start["robot.joints"][0])) for start in wider.starts}
+    assert wider.starts[0] == one.starts[0]
+    assert wells == set(WELLS)
+    assert len(wider.starts) == len(WELLS)
+    served = widened(one, offers, iter([(landscape(), (one.starts[0]["robot.joints"][0],))]), most=8)
+    assert served.starts == one.starts
+    assert len(widened(one, offers, ((landscape(), each) for each in designs(40)), most=2).starts) == 2
