@@ -2,8 +2,9 @@
 
     python -m benchmarks.clearance [--problem NAME] [--designs N]
 
-Random designs of a problem, with a gap of 5 mm between the feet and without: solved postures in which two
-bodies overlap by more than 5 mm, the pairs, and how deep they are at worst.
+Random designs of a problem, with a `[collisions]` table, with a gap of 5 mm between the feet, and without
+either: solved postures in which two bodies overlap by more than 5 mm, the pairs, how deep they are at worst,
+and processor time per design.
 Written to benchmarks/results/clearance.json, printed as a table.
 """
 
@@ -11,10 +12,12 @@ from __future__ import annotations
 
 import argparse
 import json
+import time
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import numpy as np
 
 from evodesign.problem.build import DesignProblem, build_problem
@@ -31,10 +34,14 @@ SHOWN = 8
 def measured(problem: DesignProblem, designs: int) -> dict[str, object]:
     """Overlaps in the postures of random designs."""
     evaluator, rng = evaluator_of(problem, 1), np.random.default_rng(0)
+    evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))  # compiles
+    seconds = 0.0
     solved, missed, pairs, depths = 0, 0, Counter[str](), dict[str, float]()
     for _ in range(designs):
         values = problem.space.values(tuple(rng.random(len(problem.space.parameters)).tolist()))
+        began = time.process_time()
         result = evaluator.solve(values)
+        seconds += time.process_time() - began
         gaps = solved_distances(result)
         solved, missed = solved + len(gaps), missed + len(result.cases) - len(gaps)
         for gap in gaps.values():
@@ -49,6 +56,7 @@ def measured(problem: DesignProblem, designs: int) -> dict[str, object]:
         "overlapping": pairs.total(),
         "pairs": dict(pairs.most_common(SHOWN)),
         "deepest_mm": deepest,
+        "milliseconds_per_design": round(1e3 * seconds / designs, 2),
     }
 
 
@@ -59,12 +67,13 @@ def main() -> None:
     parser.add_argument("--problem", default="icub_lifting")
     parser.add_argument("--designs", type=int, default=100)
     arguments = parser.parse_args()
-    own = build_problem(read_source(Path("problems") / f"{arguments.problem}.toml"))
-    found = {}
-    for gap in (GAP, None):
-        scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=gap)) for each in own.scenes)
-        problem = replace(own, scenes=scenes, start_portfolio=False)
-        found[f"feet_gap_m = {gap}"] = measured(problem, arguments.designs)
+    source = read_source(Path("problems") / f"{arguments.problem}.toml")
+    own = build_problem(source)
+    apart = build_problem(msgspec.structs.replace(source, text=f"{source.text}\n[collisions]\n"))
+    found = {"[collisions]": measured(apart, arguments.designs), "neither": measured(own, arguments.designs)}
+    scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=GAP)) for each in own.scenes)
+    gap = replace(own, scenes=scenes, start_portfolio=False)
+    found[f"feet_gap_m = {GAP}"] = measured(gap, arguments.designs)
     for name, figures in found.items():
         print(name, json.dumps(figures, indent=2))
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}

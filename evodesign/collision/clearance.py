@@ -9,7 +9,8 @@ Source: coal (formerly hpp-fcl): Gilbert, Johnson and Keerthi (1988), and expand
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import coal
@@ -17,11 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
+from evodesign.collision.rules import FLOOR
 from evodesign.collision.shapes import Array, ConvexSolid, solids_of
 from evodesign.tree.model import Tree
 
-__all__ = ["BodyDistance", "PlacedSolids", "Places", "SolidBodies", "places_of"]
+__all__ = ["BodyDistance", "Indices", "PlacedSolids", "Places", "SolidBodies", "places_of"]
 
+
+UP = np.array([0.0, 0.0, 1.0])
+
+Indices = NDArray[np.intp]
+"""Places of solids."""
 
 Places = NDArray[np.intp]
 """Pairs of solids by their places, shape (n, 2)."""
@@ -55,7 +62,7 @@ class BodyDistance:
     distance: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SolidBodies:
     """Convex solids by the names of the bodies that they belong to: one body may have several.
 
@@ -73,6 +80,18 @@ class SolidBodies:
         found = [(link.name, solid) for link in tree.links for solid in solids_of(link)]
         return cls(tuple(name for name, _ in found), tuple(solid for _, solid in found))
 
+    def named(self, name: Callable[[str], str]) -> SolidBodies:
+        """The same by other names."""
+        return SolidBodies(tuple(map(name, self.names)), self.solids)
+
+    def beside(self, *others: SolidBodies) -> SolidBodies:
+        """All together."""
+        everyone = (self, *others)
+        return SolidBodies(
+            tuple(name for each in everyone for name in each.names),
+            tuple(solid for each in everyone for solid in each.solids),
+        )
+
     def placed(self, frames: Mapping[str, Placement]) -> PlacedSolids:
         """The solids where the frames are that they belong to.
 
@@ -80,16 +99,38 @@ class SolidBodies:
             frames: world_from_body, by name; of numbers.
         """
         turns = np.array([frames[name].rotation for name in self.names], float)
-        origins = np.array([frames[name].translation for name in self.names], float)
-        local = [(solid.rotation, solid.position, solid.centre) for solid in self.solids]
-        rotations, positions, centres = (np.array([each[k] for each in local]) for k in range(3))
-        return PlacedSolids(
-            self.names,
-            self.solids,
-            turns @ rotations,
-            origins + (turns @ positions[:, :, None])[:, :, 0],
-            origins + (turns @ centres[:, :, None])[:, :, 0],
-        )
+        return self.placed_at(turns, np.array([frames[name].translation for name in self.names], float))
+
+    def placed_at(self, turns: Array, origins: Array) -> PlacedSolids:
+        """The solids where their bodies' frames are.
+
+        Args:
+            turns: rotations world_from_body, shape (n, 3, 3).
+            origins: in the world [m], shape (n, 3).
+        """
+        rotations, points = self._local
+        placed = origins[:, None, :] + points @ turns.transpose(0, 2, 1)
+        return PlacedSolids(self, turns @ rotations, *placed.transpose(1, 0, 2))
+
+    @cached_property
+    def radii(self) -> Array:
+        """Of the balls about the solids [m]."""
+        return np.array([solid.radius for solid in self.solids])
+
+    @cached_property
+    def half_sides(self) -> Array:
+        """Of the boxes about the solids, shape (n, 3) [m]."""
+        return np.array([solid.half_sides for solid in self.solids])
+
+    @cached_property
+    def _local(self) -> tuple[Array, Array]:
+        """Rotations, and the middles of geometries, balls and boxes, in the bodies' frames."""
+        rotations = np.array([solid.rotation for solid in self.solids])
+        points = [
+            (solid.position, solid.centre, solid.position + solid.rotation @ solid.middle)
+            for solid in self.solids
+        ]
+        return rotations, np.array(points)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,34 +138,34 @@ class PlacedSolids:
     """Solids in the world.
 
     Args:
-        names: of each solid's body.
-        solids: as many.
+        bodies: what they are.
         rotations, positions: world_from_geometry of each, shapes (n, 3, 3) and (n, 3) [m].
         centres: of the balls about them, shape (n, 3) [m].
+        middles: of the boxes about them, shape (n, 3) [m].
     """
 
-    names: tuple[str, ...]
-    solids: tuple[ConvexSolid, ...]
+    bodies: SolidBodies
     rotations: Array
     positions: Array
     centres: Array
+    middles: Array
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of each solid's body."""
+        return self.bodies.names
 
     def named(self, name: Callable[[str], str]) -> PlacedSolids:
         """The same by other names."""
-        return PlacedSolids(
-            tuple(map(name, self.names)), self.solids, self.rotations, self.positions, self.centres
-        )
+        return replace(self, bodies=self.bodies.named(name))
 
     def beside(self, *others: PlacedSolids) -> PlacedSolids:
         """All together."""
         everyone = (self, *others)
+        places = ("rotations", "positions", "centres", "middles")
         return PlacedSolids(
-            tuple(name for each in everyone for name in each.names),
-            tuple(solid for each in everyone for solid in each.solids),
-            *(
-                np.concatenate([getattr(each, k) for each in everyone])
-                for k in ("rotations", "positions", "centres")
-            ),
+            self.bodies.beside(*(each.bodies for each in others)),
+            *(np.concatenate([getattr(each, k) for each in everyone]) for k in places),
         )
 
     def nearest(self, places: Places) -> BodyDistance:
@@ -133,7 +174,8 @@ class PlacedSolids:
         Args:
             places: of the pairs among the solids, at least one; see `places_of`.
         """
-        order, gaps = self._by_balls(places)
+        gaps = self._balls_apart(places)
+        order = np.argsort(gaps, kind="stable").tolist()
         best = self._gap(places[order[0]])
         for at in order[1:]:
             if gaps[at] > best.distance:
@@ -141,26 +183,47 @@ class PlacedSolids:
             best = min(best, self._gap(places[at]), key=lambda gap: gap.distance)
         return best
 
-    def overlapping(self, places: Places) -> list[BodyDistance]:
-        """Those of some pairs that overlap, once each."""
-        order, gaps = self._by_balls(places)
+    def overlapping(self, places: Places, within: float = 0.0) -> list[BodyDistance]:
+        """Those of some pairs that are nearer to each other than a distance [m], once each."""
+        near = places[self._balls_apart(places) < within]
+        near = near[self._boxes_apart(near) < within]
         found: dict[tuple[str, str], BodyDistance] = {}
-        for at in order:
-            if gaps[at] >= 0.0:
-                break
-            gap = self._gap(places[at])
+        for gap in map(self._gap, near):
             known = found.get((gap.first, gap.second))
-            if gap.distance < (0.0 if known is None else known.distance):
+            if gap.distance < (within if known is None else known.distance):
                 found[gap.first, gap.second] = gap
         return list(found.values())
 
-    def _by_balls(self, places: Places) -> tuple[list[int], Array]:
-        """The order of pairs by the distances of the balls about them, and these [m]."""
+    def near_floor(self, floor: Indices, within: float = 0.0) -> list[BodyDistance]:
+        """Those of some solids that are nearer to the floor z = 0 than a distance [m]."""
+        low = floor[self.centres[floor, 2] - self.bodies.radii[floor] < within].tolist()
+        found = [BodyDistance(self.names[i], FLOOR, self._above_floor(i)) for i in low]
+        return [gap for gap in found if gap.distance < within]
+
+    def _above_floor(self, i: int) -> float:
+        """How far a solid is above the floor [m]."""
+        request, result, ground = coal.DistanceRequest(), coal.DistanceResult(), coal.Halfspace(UP, 0.0)
+        return float(coal.distance(*self._geometry(i), ground, coal.Transform3s(), request, result))
+
+    def _balls_apart(self, places: Places) -> Array:
+        """How far the balls about pairs of solids are apart [m]."""
         first, second = places.T
-        radii = np.array([solid.radius for solid in self.solids])
-        between = np.linalg.norm(self.centres[first] - self.centres[second], axis=1)
-        gaps = between - radii[first] - radii[second]
-        return np.argsort(gaps, kind="stable").tolist(), gaps
+        between = self.centres[first] - self.centres[second]
+        distances = np.sqrt(np.einsum("ij,ij->i", between, between))
+        return np.asarray(distances - self.bodies.radii[first] - self.bodies.radii[second])
+
+    def _boxes_apart(self, places: Places) -> Array:
+        """How far the boxes about pairs of solids are apart at least [m]: along the normals of faces."""
+        first, second = places.T
+        half, other_half = self.bodies.half_sides[first], self.bodies.half_sides[second]
+        one, other = self.rotations[first], self.rotations[second]
+        between = self.middles[second] - self.middles[first]
+        turned = np.abs(one.transpose(0, 2, 1) @ other)
+        along_one = np.abs(np.einsum("pij,pi->pj", one, between)) - half
+        along_one -= np.einsum("pij,pj->pi", turned, other_half)
+        along_other = np.abs(np.einsum("pij,pi->pj", other, between)) - other_half
+        along_other -= np.einsum("pij,pi->pj", turned, half)
+        return np.asarray(np.maximum(along_one, along_other).max(axis=1, initial=-np.inf))
 
     def _gap(self, places: Places) -> BodyDistance:
         i, j = places.tolist()
@@ -173,4 +236,4 @@ class PlacedSolids:
 
     def _geometry(self, place: int) -> tuple[Any, Any]:
         where = coal.Transform3s(self.rotations[place], self.positions[place])
-        return self.solids[place].geometry, where
+        return self.bodies.solids[place].geometry, where

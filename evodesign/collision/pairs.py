@@ -12,17 +12,18 @@ So MoveIt fills its matrix of allowed collisions: adjacent, always, never.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["collision_pairs", "holding_links"]
+__all__ = ["checked_pairs", "collision_pairs", "holding_links"]
 
 BETWEEN, AXES = 1, 3
 """Links with a body, or joints that move, between two neighbours."""
@@ -36,16 +37,34 @@ SAMPLES, MOST = 100, 0.5
 TURN = np.pi  # [rad], of a joint without limits
 
 
-def collision_pairs(tree: Tree) -> tuple[tuple[str, str], ...]:
-    """Pairs of links that must not overlap, in the tree's order.
+def checked_pairs(
+    tree: Tree, hands: Mapping[str, str], soles: Mapping[str, str], resized: Sequence[Tree] = ()
+) -> tuple[BodyPair, ...]:
+    """Pairs of links, and of links with load, floor and partner, that must not overlap, in the tree's order.
 
     Args:
         tree: of the agent, unscaled.
+        resized: trees of some designs: what always overlaps in one of them is a matter of its build.
+        hands: frames at the grasps, by side.
+        soles: frames under the feet, by side.
     """
+    names = tuple(dict.fromkeys(SolidBodies.of_tree(tree).names))
+    holding = holding_links(tree, hands)
+    standing = {link for sole in soles.values() for link in _foot(tree, sole)}
+    return (
+        *collision_pairs(tree, resized),
+        *((name, LOAD) for name in names if name not in holding),
+        *((name, FLOOR) for name in names if name not in standing),
+        *((name, PARTNER) for name in names if name not in holding),
+    )
+
+
+def collision_pairs(tree: Tree, resized: Sequence[Tree] = ()) -> tuple[BodyPair, ...]:
+    """Pairs of links that must not overlap, in the tree's order; for the arguments see `checked_pairs`."""
     bodies = SolidBodies.of_tree(tree)
     names = tuple(dict.fromkeys(bodies.names))
     pairs = [pair for pair in combinations(names, 2) if not _near_by(tree, frozenset(names), *pair)]
-    always = _always_in_touch(tree, bodies, pairs)
+    always = _always_in_touch(tree, pairs).union(*(_always_in_touch(each, pairs) for each in resized))
     return tuple(pair for pair in pairs if pair not in always)
 
 
@@ -66,6 +85,21 @@ def holding_links(tree: Tree, hands: Mapping[str, str]) -> frozenset[str]:
                 break
             name = tree.parent_joint[name].parent
     return frozenset(found)
+
+
+def _foot(tree: Tree, sole: str) -> Iterator[str]:
+    """All below the last joint that moves above a sole, and what is below that: a toe."""
+    name = sole
+    while name in tree.parent_joint and tree.parent_joint[name].kind is JointKind.FIXED:
+        name = tree.parent_joint[name].parent
+    yield name
+    yield from _below(tree, name)
+
+
+def _below(tree: Tree, name: str) -> Iterator[str]:
+    for joint in tree.child_joints[name]:
+        yield joint.child
+        yield from _below(tree, joint.child)
 
 
 def _welded_below(tree: Tree, name: str) -> Iterator[str]:
@@ -92,11 +126,9 @@ def _to_root(tree: Tree, name: str) -> list[str]:
     return found
 
 
-def _always_in_touch(
-    tree: Tree, bodies: SolidBodies, pairs: Collection[tuple[str, str]]
-) -> frozenset[tuple[str, str]]:
+def _always_in_touch(tree: Tree, pairs: Collection[BodyPair]) -> frozenset[BodyPair]:
     """Pairs that overlap in most postures, drawn from the joints' ranges; always the same ones."""
-    rng = np.random.default_rng(0)
+    rng, bodies = np.random.default_rng(0), SolidBodies.of_tree(tree)
     moving = [joint for joint in tree.joints if joint.kind is not JointKind.FIXED]
     counts: Counter[tuple[str, str]] = Counter()
     places = places_of(bodies.names, pairs)

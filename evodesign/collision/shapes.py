@@ -22,7 +22,7 @@ from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface
 
-__all__ = ["ConvexSolid", "box_solid", "solids_of"]
+__all__ = ["ConvexSolid", "box_solid", "hull_corners", "solids_of"]
 
 Array = NDArray[np.float64]
 
@@ -39,6 +39,7 @@ class ConvexSolid:
         position: of the geometry's origin in the link [m].
         centre: of a ball about the solid, in the link [m].
         radius: of the ball [m].
+        middle, half_sides: of a box about the solid along the geometry's axes, about its origin [m].
     """
 
     geometry: Any
@@ -46,6 +47,8 @@ class ConvexSolid:
     position: Array
     centre: Array
     radius: float
+    middle: Array
+    half_sides: Array
 
 
 def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
@@ -66,26 +69,30 @@ def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
     rotation, position = np.array(place.rotation, float), np.array(place.translation, float)
     if isinstance(shape, Sphere):
         geometry, radius = coal.Sphere(float(shape.radius)), float(shape.radius)
+        half = np.full(3, radius)
     elif isinstance(shape, Cylinder):
         geometry = coal.Cylinder(float(shape.radius), float(shape.length))
-        radius = float(np.hypot(shape.radius, shape.length / 2.0))
+        half = np.array([shape.radius, shape.radius, shape.length / 2.0], float)
+        radius = float(np.linalg.norm(half[1:]))
     else:
-        geometry, radius = coal.Box(*map(float, shape.sides)), float(np.linalg.norm(shape.sides) / 2.0)
-    return ConvexSolid(geometry, rotation, position, position, radius)
+        half = np.array(shape.sides, float) / 2.0
+        geometry, radius = coal.Box(*map(float, shape.sides)), float(np.linalg.norm(half))
+    return ConvexSolid(geometry, rotation, position, position, radius, np.zeros(3), half)
 
 
 def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
     """The hull of a mesh at its place in its link."""
     turn = np.array(mesh.stretch, float) @ np.array(mesh.link_from_mesh.rotation, float)
-    points = _corners(surface) * np.array(mesh.scale, float) @ turn.T
+    points = hull_corners(surface) * np.array(mesh.scale, float) @ turn.T
     points = points + np.array(mesh.link_from_mesh.translation, float)
-    centre = (points.max(axis=0) + points.min(axis=0)) / 2.0
+    low, high = points.min(axis=0), points.max(axis=0)
+    centre = (high + low) / 2.0
     radius = float(np.linalg.norm(points - centre, axis=1).max())
-    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius)
+    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius, centre, (high - low) / 2.0)
 
 
 @functools.lru_cache(maxsize=1024)
-def _corners(surface: Surface) -> Array:
+def hull_corners(surface: Surface) -> Array:
     """The corners of a surface's convex hull, which scaling and stretching keep."""
     from scipy.spatial import ConvexHull, QhullError  # takes a fifth of a second to load
 

@@ -15,6 +15,7 @@ from enum import StrEnum
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
+from evodesign.collision.rules import CollisionRules
 from evodesign.human.coupled_joints import CoupledJoints
 from evodesign.human.strength import JointStrength
 from evodesign.mechanics.contact import Ground, SoleSize
@@ -152,6 +153,7 @@ class Agent:
         coupled_joints: ranges that several of its joints share.
         torque_limits: largest torque [N m] of each joint that moves and has a limit.
         limits_torques: whether these limits hold in every posture.
+        collisions: what its bodies keep clear of; None: they may pass through anything.
     """
 
     name: str
@@ -166,6 +168,7 @@ class Agent:
     torque_limits: Mapping[str, float] = field(default_factory=dict)
     limits_torques: bool = False
     coupled_joints: tuple[CoupledJoints, ...] = ()
+    collisions: CollisionRules | None = None
 
     @property
     def pushed_frame(self) -> str:

@@ -6,16 +6,16 @@ sees numbers of order one; everything outside is in SI units.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
 
-__all__ = ["ConstraintBlock", "Program", "Start", "Variable"]
+__all__ = ["ConstraintBlock", "Program", "Start", "Switches", "Variable"]
 
 Array = Any
 Expression = Any
@@ -74,15 +74,61 @@ class ConstraintBlock:
     labels: tuple[str, ...] = ()
 
 
+class Switches(Protocol):
+    """Rows that a program leaves out until a solution violates them.
+
+    The program with all of them has the same variables, and parameters that say which of its rows are on: a
+    solve takes those from its start. So most solves are spared the rows.
+    """
+
+    @property
+    def names(self) -> Collection[str]:
+        """Of the parameters."""
+        ...
+
+    @property
+    def program(self) -> Program:
+        """With all rows."""
+        ...
+
+    def begun(self, values: Start, given: Mapping[str, Any]) -> Start:
+        """Parameters that switch on every row, for a solve that begins at some values.
+
+        Args:
+            values: where it begins.
+            given: the other parameters.
+        """
+        ...
+
+    def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0, rank: int = 0) -> Start:
+        """Parameters that switch on the rows that a solution violates; none where all hold.
+
+        Args:
+            values: of the solution, with the parameters that are on.
+            given: the other parameters.
+            short: by how much [m] a row may hold and still be switched on.
+            rank: zero for what seems best, one for the next best, ...
+        """
+        ...
+
+    def better(self, values: Start, given: Mapping[str, Any]) -> Start:
+        """Parameters with which rows that hold a solution leave it more room; none where there are none."""
+        ...
+
+
 @dataclass(frozen=True)
 class Program:
-    """Minimise a cost over variables, subject to constraints, with numbers given as parameters, by name."""
+    """Minimise a cost over variables, subject to constraints, with numbers given as parameters, by name.
+
+    Some rows may be left out until they are violated (`switches`).
+    """
 
     name: str
     variables: tuple[Variable, ...]
     constraints: tuple[ConstraintBlock, ...]
     cost: Expression
     parameters: Mapping[str, Expression]
+    switches: Switches | None = None
 
     @cached_property
     def symbols(self) -> Expression:
@@ -137,6 +183,16 @@ class Program:
             v.name: v.scale * symbols[place] for v, place in zip(self.variables, self._places, strict=True)
         }
 
+    @property
+    def switched(self) -> bool:
+        """Whether it has all rows, and its switches among its parameters."""
+        return self.switches is not None and set(self.switches.names) <= self.parameters.keys()
+
+    def held(self, start: Start) -> dict[str, Array]:
+        """The parameters that a solve takes from its start; zero where that says nothing."""
+        names = self.switches.names if self.switches is not None and self.switched else ()
+        return {name: np.asarray(start.get(name, np.zeros(self.parameters[name].numel()))) for name in names}
+
     @cached_property
     def _scales(self) -> Array:
         """Size of one unit of each symbol, in SI units."""
@@ -152,12 +208,17 @@ class Program:
         ends = np.cumsum([0, *self.counts.values()]).tolist()
         return tuple(slice(first, last) for first, last in pairwise(ends))
 
-    def packed_parameters(self, values: Mapping[str, Any]) -> Array:
+    def packed_parameters(self, values: Mapping[str, Any], start: Start | None = None) -> Array:
         """The column of `given` from a number or several for each parameter.
 
+        Args:
+            values: by name.
+            start: from which the parameters of switches are taken.
         Raises:
             ValueError: other parameters than the program's are given.
         """
+        if self.switched:
+            values = {**values, **self.held(start or {})}
         if values.keys() != self.parameters.keys():
             wanted, found = ", ".join(sorted(self.parameters)), ", ".join(sorted(values))
             raise ValueError(f"program '{self.name}' wants parameters {wanted}; found {found}")

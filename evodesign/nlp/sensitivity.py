@@ -42,6 +42,9 @@ Places = NDArray[np.intp]
 
 NEAR_TOLERANCE = 1e-10
 NEWTON_STEPS = 8
+TOUCHING = 1e-3
+"""How little may be missing to the violation of rows that are switched on, in their unit [m]."""
+
 MOST_COMPILED = 100
 """Symbols of a program whose second derivatives are compiled; a larger one's take the compiler minutes."""
 
@@ -182,7 +185,7 @@ class SolutionSensitivity:
     """
 
     def __init__(self, solver: Solver) -> None:
-        self.program = solver.program
+        self._solver, self.program = solver, solver.program
         self._near = solver.near if solver.native else None
         self._options = replace(solver.options, tolerance=NEAR_TOLERANCE, near=True, compiled=False)
         pairs = zip(solver.program.bounds, solver.program.limits, strict=True)
@@ -207,11 +210,21 @@ class SolutionSensitivity:
             exact: whether it is made exact to rounding; otherwise slopes are good to about one part in 10^6,
                 in half the time, and those of limits are nan.
         """
+        switches = self.program.switches
+        if switches is not None and not self.program.switched:
+            on = switches.violated(start, parameters, TOUCHING)
+            if on:
+                return self._parted.at(parameters, {**start, **on}, exact=exact)
         if self._near is not None:
             found = self.of(parameters, self._near.solve(parameters, start), exact=exact)
             if isinstance(found, Optimum):
                 return found
         return self.of(parameters, self._ipopt.solve(parameters, start), exact=exact)
+
+    @cached_property
+    def _parted(self) -> SolutionSensitivity:
+        """The same with all rows."""
+        return SolutionSensitivity(self._solver.parted)
 
     def of(
         self, parameters: Mapping[str, Any], raw: RawSolution, *, exact: bool = True
@@ -219,7 +232,7 @@ class SolutionSensitivity:
         """The local optimum at a solution with multipliers; `exact` as in `at`."""
         if raw.status is not Status.SOLVED:
             return NotDifferentiable(f"the solution was not found again: {raw.reason}")
-        given = self.program.packed_parameters(parameters)
+        given = self.program.packed_parameters(parameters, raw.values)
         active, point, here = self._begin(given, raw)
         for _ in range(NEWTON_STEPS):
             if error(point, here) < (EXACT if exact else CLOSE):

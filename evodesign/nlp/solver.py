@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from evodesign.nlp.codegen import CompiledFunctions, Library, NotCompiled
 from evodesign.nlp.ipopt import Ipopt
 from evodesign.nlp.method import Method, MethodName, SolverOptions
 from evodesign.nlp.native.library import method_library, native_method
-from evodesign.nlp.program import Array, Program
+from evodesign.nlp.program import Array, Program, Start
 from evodesign.records import Status
 
-__all__ = ["Multipliers", "RawSolution", "Solver", "SolverCache", "SolverOptions", "available"]
+__all__ = ["Multipliers", "RawSolution", "Solver", "SolverCache", "SolverOptions", "available", "has_any"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +51,7 @@ class RawSolution:
             theorem).
         multipliers: of bounds and constraints.
         method: who solved.
+        start: where the solve began.
     """
 
     values: Mapping[str, Array]
@@ -60,7 +63,19 @@ class RawSolution:
     cost_slope: Array
     multipliers: Multipliers
     method: MethodName = MethodName.IPOPT
+    start: Start = field(default_factory=dict)
 
+
+ROUNDS = 6
+"""How often rows are switched on, one solve after the other."""
+
+WAYS = 3
+"""Ways to keep a row that are tried."""
+
+GAIN = 1e-6
+"""Share of its cost by which a solution must get better to be solved again."""
+
+UNSETTLED = "rows remain that are to be switched on"
 
 _STATUS = {
     "Solve_Succeeded": Status.SOLVED,
@@ -110,12 +125,15 @@ class Solver:
 
     def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Array]) -> RawSolution:
         """Solve for parameters, by name, from a start (variables left out begin at the program's own)."""
+        if self._is_parted(start):
+            return self.parted.solve(parameters, start)
         began = time.perf_counter()
         ending = self._method.solve(
-            self.options, self.program.packed(start), self.program.packed_parameters(parameters)
+            self.options, self.program.packed(start), self.program.packed_parameters(parameters, start)
         )
         return RawSolution(
-            values=self.program.unpacked(ending.symbols),
+            start=start,
+            values={**self.program.unpacked(ending.symbols), **self.program.held(start)},
             status=_STATUS.get(ending.word, Status.NUMERICAL_FAILURE),
             reason=ending.word,
             iterations=ending.iterations,
@@ -125,6 +143,85 @@ class Solver:
             multipliers=Multipliers(ending.bounds, ending.rows),
             method=self._method.name,
         )
+
+    @cached_property
+    def parted(self) -> Solver:
+        """The same with all rows, for starts that switch some on."""
+        switches = self.program.switches
+        return self if switches is None else Solver(switches.program, self.options)
+
+    def _is_parted(self, start: Start) -> bool:
+        switches = self.program.switches
+        return switches is not None and not self.program.switched and has_any(switches.names, start)
+
+    def settled(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
+        """A solution with the rows on that it violates; as it is where it violates none.
+
+        Where going on from it leads nowhere, the solve begins anew with all rows on.
+
+        Args:
+            parameters: that it was found for.
+            raw: the solution; one that failed stays as it is.
+        """
+        switches = self.program.switches
+        if switches is None or raw.status is not Status.SOLVED:
+            return raw
+        found = self._without_violations(parameters, raw)
+        if found is raw and not has_any(switches.names, raw.values):
+            return raw
+        if found.status is not Status.SOLVED and not has_any(switches.names, raw.start):
+            found = self._without_violations(
+                parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
+            )
+        return self._bettered(parameters, found)
+
+    def parted_start(self, parameters: Mapping[str, Any], start: Start) -> Start:
+        """A start with all rows on, unless it has some on already."""
+        switches = self.program.switches
+        if switches is None or has_any(switches.names, start):
+            return start
+        return {**start, **switches.begun(start, parameters)}
+
+    def _bettered(self, parameters: Mapping[str, Any], found: RawSolution) -> RawSolution:
+        """Rows that hold a solution are kept in better ways, as long as it gains by them."""
+        switches = self.program.switches
+        for _ in range(ROUNDS):
+            if switches is None or found.status is not Status.SOLVED:
+                break
+            better = switches.better(found.values, parameters)
+            other = self._solved_from(parameters, found, better) if better else found
+            other = self._without_violations(parameters, other)
+            if other.status is not Status.SOLVED or not other.cost < found.cost - abs(found.cost) * GAIN:
+                break
+            found = other
+        return found
+
+    def _without_violations(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
+        """Rows are switched on until none is violated; where that leads nowhere, in the next best way."""
+        switches = self.program.switches
+        for _ in range(ROUNDS):
+            if switches is None or raw.status is not Status.SOLVED:
+                return raw
+            for rank in range(WAYS):
+                on = switches.violated(raw.values, parameters, rank=rank)
+                if not on:
+                    return raw
+                found = self._solved_from(parameters, raw, on)
+                if found.status is Status.SOLVED:
+                    break
+            raw = found
+        return replace(raw, status=Status.NUMERICAL_FAILURE, reason=UNSETTLED)
+
+    def _solved_from(self, parameters: Mapping[str, Any], raw: RawSolution, on: Start) -> RawSolution:
+        """The solve that goes on from another one, with rows switched on."""
+        again = self.solve(parameters, {**raw.values, **on})
+        iterations, seconds = again.iterations + raw.iterations, again.seconds + raw.seconds
+        return replace(again, start=raw.start, iterations=iterations, seconds=seconds)
+
+
+def has_any(names: Collection[str], start: Start) -> bool:
+    """Whether a start has something else than zeros under some names."""
+    return any(np.any(start[name]) for name in names if name in start)
 
 
 def _made(

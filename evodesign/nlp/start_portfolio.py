@@ -76,6 +76,7 @@ class Landscape:
         starts: fixed ones, for any design.
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
             and in the cost's unit.
+        parted: whether rows that are switched off at first elsewhere are on from the beginning.
     """
 
     solver: Solver
@@ -83,10 +84,14 @@ class Landscape:
     starts: tuple[Start, ...]
     relative: float
     absolute: float
+    parted: bool = False
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
-        return self.solver.solve({"design": design, **self.beside}, start)
+        parameters = {"design": design, **self.beside}
+        if self.parted:
+            start = self.solver.parted_start(parameters, start)
+        return self.solver.settled(parameters, self.solver.solve(parameters, start))
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
         """Which costs are close enough to the best ones."""
@@ -99,7 +104,7 @@ class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Args:
         designs: how many were tried.
         good: how many of them converge close to their best known optimum.
-        worst: largest distance from the best known optimum, in the cost's unit.
+        worst: largest distance of one that converges from the best known optimum, in the cost's unit.
     """
 
     designs: int
@@ -143,7 +148,8 @@ def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: T
         fresh = studies(chosen)
         least = np.array([study.known for study in fresh])
         good = landscape.good(least, _best(fresh))
-        coverage = Coverage(len(fresh), int(good.sum()), float(np.max(least - _best(fresh), initial=0.0)))
+        short = (least - _best(fresh))[np.isfinite(least)]
+        coverage = Coverage(len(fresh), int(good.sum()), float(np.max(short, initial=0.0)))
         if coverage.share >= training.share or len(chosen) == training.portfolio:
             break
         learned = [study for study, well in zip(fresh, good, strict=True) if not well]

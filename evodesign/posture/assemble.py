@@ -12,12 +12,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.limit_groups import Enforced
+from evodesign.posture.parting import PartedBody
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
     TORQUE_UNIT,
@@ -30,6 +32,7 @@ from evodesign.posture.terms.base import (
     Unknown,
     both_hands,
 )
+from evodesign.posture.terms.collisions import PARTING, directed
 from evodesign.posture.terms.grasp import hand_unknowns, moment_cost
 from evodesign.posture.terms.torque import effort
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
@@ -156,11 +159,15 @@ class Assembly:
     Args:
         variables, constraints: of all parties and load cases, instant after instant.
         instants: load cases of each instant, the undisturbed one first.
+        given: parameters that a solve takes from its start, by name.
+        parted: bodies that they part.
     """
 
     variables: tuple[Variable, ...]
     constraints: tuple[ConstraintBlock, ...]
     instants: tuple[tuple[LoadCase, ...], ...]
+    given: Mapping[str, Expression]
+    parted: tuple[PartedBody, ...]
 
     @property
     def undisturbed(self) -> LoadCase:
@@ -181,6 +188,8 @@ def assemble(
     terms: Iterable[BodyTerm | SystemTerm],
     case: CaseSymbols,
     enforced: Enforced = EVERYTHING,
+    *,
+    switched: bool = False,
 ) -> Assembly:
     """Variables, constraints and costs of parties in a case.
 
@@ -189,8 +198,9 @@ def assemble(
         terms: what is said of them, in order.
         case: numbers or expressions.
         enforced: groups of limits that are left out are left out with their rows, bounds and costs.
+        switched: whether rows are there that are left out until they are violated.
     """
-    return _Assembler(parties, tuple(terms), case, enforced).assembly()
+    return _Assembler(parties, tuple(terms), case, enforced, switched=switched).assembly()
 
 
 class _Assembler:
@@ -200,19 +210,24 @@ class _Assembler:
         terms: Sequence[BodyTerm | SystemTerm],
         case: CaseSymbols,
         enforced: Enforced,
+        *,
+        switched: bool,
     ) -> None:
         self._embodied = [party for party in parties if isinstance(party, Embodied)]
         self._hands = [party for party in parties if isinstance(party, FreeHands)]
         self._body_terms = [term for term in terms if isinstance(term, BodyTerm)]
         self._system_terms = [term for term in terms if isinstance(term, SystemTerm)]
-        self._case, self._enforced = case, enforced
+        self._case, self._enforced, self._switched = case, enforced, switched
         self._symmetric = any(party.form.mirror is not None for party in self._embodied)
         self._variables: list[Variable] = []
         self._constraints: list[ConstraintBlock] = []
+        self._given: dict[str, Expression] = {}
+        self._parted: list[PartedBody] = []
 
     def assembly(self) -> Assembly:
         instants = tuple(self._instant(number) for number in range(len(self._case.load_heights)))
-        return Assembly(tuple(self._variables), tuple(self._constraints), instants)
+        bodies = tuple(self._parted)
+        return Assembly(tuple(self._variables), tuple(self._constraints), instants, self._given, bodies)
 
     def _instant(self, number: int) -> tuple[LoadCase, ...]:
         postures: dict[str, _Posture] = {}
@@ -232,10 +247,14 @@ class _Assembler:
         bodies: dict[str, Body] = {}
         for party in self._embodied:
             values = self._unknown_values(party, Slot(instant, number, party.name, ""), prefix, again=again)
+            block = f"{prefix}{party.name}"
             if not again:
+                values |= self._held_values(party, block)
                 postures[party.name] = _Posture.of(party, values)
-            posture = postures[party.name]
-            bodies[party.name] = posture.body(party, self._case, instant, values, disturbance)
+            body = postures[party.name].body(party, self._case, instant, values, disturbance)
+            bodies[party.name] = body
+            if not again and directed(party.form):
+                self._parted.append(PartedBody(f"{block}.{PARTING}", body))
         hands = {name: body.hands for name, body in bodies.items()}
         for free in self._hands:
             asked, slot = hand_unknowns(free.sides, scene.payload), Slot(instant, number, free.name, "")
@@ -268,11 +287,16 @@ class _Assembler:
         asked = [
             unknown for term in self._body_terms for unknown in term.unknowns(party.form, self._case.scene)
         ]
-        return {
-            unknown.part: self._variable(unknown, f"{prefix}{party.name}", slot)
-            for unknown in asked
-            if not (again and unknown.posture_only)
-        }
+        wanted = [unknown for unknown in asked if not (again and unknown.posture_only)]
+        return {unknown.part: self._variable(unknown, f"{prefix}{party.name}", slot) for unknown in wanted}
+
+    def _held_values(self, party: Embodied, block: str) -> dict[str, Expression]:
+        """New parameters of an agent's posture, by part."""
+        asking = self._body_terms if self._switched else ()
+        held = [each for term in asking for each in term.held(party.form, self._case.scene)]
+        values = {each.part: ca.SX.sym(f"{block}.{each.part}", each.count) for each in held}
+        self._given |= {f"{block}.{part}": symbol for part, symbol in values.items()}
+        return values
 
     def _variable(self, unknown: Unknown, block: str, slot: Slot) -> Expression:
         """The value of a new variable; without its bounds, unless they are enforced."""

@@ -49,29 +49,42 @@ def checked(formulation: str, start: str, raw: RawSolution, residuals: Sequence[
         worst = max(residuals, key=lambda residual: residual.size)
         if not worst.size <= TOLERANCE:
             status = Status.NUMERICAL_FAILURE
-            reason = f"the check found {worst.name} {worst.size:.1e} above {TOLERANCE:g}"
+            reason = f"the check found {worst.name} {worst.size:.1e} above {TOLERANCE:g} ({worst.words})"
     return Attempt(formulation, start, status, reason, raw.iterations, raw.seconds, raw.cost, raw.method)
 
 
 def cheapest(
     formulation: str,
     ends: Sequence[tuple[str, RawSolution]],
+    settle: Callable[[RawSolution], RawSolution],
     finish: Callable[[str, RawSolution], Candidate],
 ) -> Trial:
-    """Finish and check solves from the cheapest on, until one holds.
+    """Settle, finish and check solves from the cheapest on, until one holds.
 
     Args:
         formulation: its name.
         ends: the name of each start, and where it led.
+        settle: goes on from a solution that violates rows which were switched off; what it gives costs more.
         finish: makes a candidate of a solve that succeeded.
     """
+    starts, raws = [start for start, _ in ends], [raw for _, raw in ends]
     attempts = [checked(formulation, start, raw, ()) for start, raw in ends]
-    solved = [place for place, (_, raw) in enumerate(ends) if raw.status is Status.SOLVED]
-    for place in sorted(solved, key=lambda place: ends[place][1].cost):
-        candidate = finish(*ends[place])
-        attempts[place] = candidate.attempt
-        if candidate.solved:
-            return Trial(tuple(attempts), candidate)
+    left = {place for place, raw in enumerate(raws) if raw.status is Status.SOLVED}
+    settled: set[int] = set()
+    while left:
+        place = min(left, key=lambda place: (raws[place].cost, place))
+        if place not in settled:
+            settled.add(place)
+            raws[place] = settle(raws[place])
+            attempts[place] = checked(formulation, starts[place], raws[place], ())
+        else:
+            candidate = finish(starts[place], raws[place])
+            attempts[place] = candidate.attempt
+            if candidate.solved:
+                return Trial(tuple(attempts), candidate)
+            left.remove(place)
+        if raws[place].status is not Status.SOLVED:
+            left.discard(place)
     return Trial(tuple(attempts), None)
 
 

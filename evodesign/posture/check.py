@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evodesign.body.placement import Vector
+from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import Agent, Scene
@@ -36,15 +38,19 @@ class AgentModel:
 
     agent: Agent
     body: FloatingBody
+    solid: CheckedBodies | None
 
     @classmethod
     def of(cls, agent: Agent, tree: Tree) -> AgentModel:
         """The agent with a tree of numbers (a design's)."""
-        return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)))
+        rules = agent.collisions
+        solid = None if rules is None else CheckedBodies.of(tree, rules.checked)
+        return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)), solid)
 
     def resized(self, tree: Tree) -> AgentModel:
         """The same agent with the tree of another design."""
-        return replace(self, body=self.body.resized(tree))
+        solid = None if self.solid is None else self.solid.resized(tree)
+        return replace(self, body=self.body.resized(tree), solid=solid)
 
     def at(self, posture: AgentPosture) -> BodyState:
         """Kinematics, Jacobians and gravity torques of a posture."""
@@ -58,12 +64,21 @@ class Checker:
     def __init__(self, scene: Scene, robot: AgentModel, human: AgentModel) -> None:
         self._scene = scene
         self._models = (robot, human)
+        self._solids: dict[tuple[int, Vector], SceneBodies | None] = {}
 
     def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
         """The check of the same robot in another scene."""
         other = copy(self)
         other._scene, other._models = scene, (self._models[0], human)
         return other
+
+    def _bodies(self) -> SceneBodies | None:
+        """Of the robot, the scene's person and its load; worked out once for all scenes that have them."""
+        key = id(self._models[1]), self._scene.payload.size
+        if key not in self._solids:
+            solids = {model.agent.name: model.solid for model in self._models if model.solid is not None}
+            self._solids[key] = SceneBodies(solids, self._scene.payload.size) if solids else None
+        return self._solids[key]
 
     def residuals(self, instant: Instant, load_height: float) -> tuple[Residual, ...]:
         """What each term finds violated, SI units; zero or rounding for a posture that holds.
@@ -111,7 +126,7 @@ class Checker:
         payload = self._scene.payload
         if disturbance is not UNDISTURBED:
             payload = payload.disturbed(disturbance)
-        system = MeasuredSystem(self._scene, payload, bodies, disturbance)
+        system = MeasuredSystem(self._scene, payload, bodies, disturbance, self._bodies())
         for term in TERMS.values():
             if isinstance(term, BodyTerm):
                 for name, body in bodies.items():

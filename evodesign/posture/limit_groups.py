@@ -22,6 +22,8 @@ class LimitGroup(StrEnum):
     """Unilateral feet, friction, the centre of pressure within the sole, and any bound of a wrench."""
     STANCE = "stance"
     """Trunk clear of the load, feet apart and not turned, base tilt, internal force."""
+    COLLISIONS = "bodies apart"
+    """No body in another, the load, the floor or the partner; where a problem asks for it."""
     UPRIGHT = "upright feet"
     """Where joint limits do not hold, a foot can be flat upside down, which Eq. 14 f and g exclude."""
 
@@ -47,5 +49,6 @@ class Enforced:
             LimitGroup.JOINT_LIMITS: self.joint_limits,
             LimitGroup.CONTACT: self.contact,
             LimitGroup.STANCE: self.stance,
+            LimitGroup.COLLISIONS: True,
             LimitGroup.UPRIGHT: not self.joint_limits,
         }[group]

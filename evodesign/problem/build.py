@@ -23,6 +23,7 @@ from evodesign.problem.agents import (
     refuse_unrated,
     robot_agent,
 )
+from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints
 from evodesign.problem.design_space import (
     check_allocations,
@@ -190,7 +191,8 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = _space(tables, source, robot.tree)
     resolved = resolved_symmetry(tables, source, scenes, space)
-    scenes, robot = resolved.scenes, resolved.scenes[0].robot
+    scenes = with_collisions(tables, source, resolved.scenes, space)
+    robot = scenes[0].robot
     people = tuple(scene.human for scene in scenes[:: len(loads)])
     start: dict[str, Genome] = {}
     if tables.search.start is not None:

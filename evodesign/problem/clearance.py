@@ -90,6 +90,9 @@ class Clearances:
             yield from ((_name(agent.name, link), LOAD) for link in links[agent.name] if link not in holding)
 
     def _of_agent(self, agent: Agent) -> Pairs:
+        if agent.collisions is not None:
+            names = agent.tree.link_by_name
+            return tuple(pair for pair in agent.collisions.checked if pair[1] in names)
         if id(agent.tree) not in self._own:
             self._own[id(agent.tree)] = collision_pairs(agent.tree)
         return self._own[id(agent.tree)]

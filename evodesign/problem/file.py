@@ -25,6 +25,7 @@ from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, T
 from evodesign.tree.urdf_read import InertiaRule
 
 __all__ = [
+    "CollisionsTable",
     "DisturbanceTable",
     "Facing",
     "HumanTable",
@@ -224,6 +225,18 @@ class LimitsTable(Table, frozen=True):
     push_n: NotNegative = 5.0
 
 
+class CollisionsTable(Table, frozen=True):
+    """`[collisions]`: bodies keep clear of each other, of load, floor and partner by at least `margin_m`.
+
+    `ignore` names pairs that may overlap, `part` pairs that have rows in programs beside those that are found
+    to come near each other. Left out, bodies may pass through anything.
+    """
+
+    margin_m: NotNegative = 0.005
+    ignore: tuple[tuple[Name, Name], ...] = ()
+    part: tuple[tuple[Name, Name], ...] = ()
+
+
 class ObjectivesTable(Table, frozen=True):
     """`[objectives]`: names from the registry of objectives."""
 
@@ -288,6 +301,7 @@ class ProblemFile(Table, frozen=True):
     solver: SolverTable = SolverTable()
     baseline: BaselineTable = BaselineTable()
     disturbance: tuple[DisturbanceTable, ...] = ()
+    collisions: CollisionsTable | None = None
     description: str = ""
 
     @property

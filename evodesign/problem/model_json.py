@@ -39,6 +39,7 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
         **({"constraints": [*map(msgspec.to_builtins, problem.constraints)]} if problem.constraints else {}),
         "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
         "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
+        **_collisions(problem),
         **_materials(problem),
     }
 
@@ -51,6 +52,16 @@ def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
         "push_n": list(disturbance.push),
         "at": str(disturbance.at),
     }
+
+
+def _collisions(problem: DesignProblem) -> dict[str, Any]:
+    """Pairs of bodies that are kept apart, under a key that other problems do not have."""
+    agents = {agent.name: agent for agent in (problem.scene.robot, problem.scene.human)}
+    rules = {name: agent.collisions for name, agent in agents.items() if agent.collisions is not None}
+    if not rules:
+        return {}
+    pairs = {name: [list(pair) for pair in each.checked] for name, each in rules.items()}
+    return {"collisions": {"margin_m": next(iter(rules.values())).margin, "pairs": pairs}}
 
 
 def _materials(problem: DesignProblem) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from evodesign.records import ProblemSource
 __all__ = ["COMPILING", "precompute_setting", "precomputed"]
 
 WORK: Mapping[Subject, float] = {
+    Subject.MEETINGS: 0.3,
     Subject.HIGHEST: 1.0,
     Subject.LOWEST: 1.0,
     Subject.POSTURE: 1.7,
@@ -42,7 +43,13 @@ COMPILING = PendingPiece("compiled inner problems", "compiling", work=0.1, stage
 def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
     """What a problem's pieces follow from."""
     return PrecomputeSetting(
-        problem.scenes, problem.middle, problem.space, problem.weights, problem.options, problem.symmetry
+        problem.scenes,
+        problem.middle,
+        problem.space,
+        problem.weights,
+        problem.options,
+        problem.symmetry,
+        problem.tasks,
     )
 
 
@@ -93,7 +100,8 @@ def precomputed(
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)
                 known = with_piece(known, piece, content) or known
-        refuse_heights(problem, known)
+        if any(piece.subject is Subject.PERSON_REACH for piece in stage):
+            refuse_heights(problem, known)
     return known
 
 

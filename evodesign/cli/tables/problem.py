@@ -86,6 +86,11 @@ def _task_table(shown: dict[str, Any], constraints: Sequence[Constraint]) -> Tab
         name = load.get("payload_name", mass)
         told = mass if name == mass else f"{printable(name)}: {mass}"
         table.add_row("load", escape(f"{told}, {size}"))
+    if "collisions" in shown:
+        kept = shown["collisions"]
+        counts = " and ".join(f"{len(pairs)} of the {name}" for name, pairs in kept["pairs"].items())
+        margin = f"{1e3 * kept['margin_m']:g} mm"
+        table.add_row("kept apart", f"pairs of bodies, by {margin}: {counts}")
     table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
     for disturbance in shown.get("disturbances", ()):
         table.add_row("disturbance", escape(_disturbance_text(disturbance)))

@@ -36,6 +36,7 @@ from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
 from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.limit_groups import Enforced
+from evodesign.posture.parting import parted
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
@@ -154,7 +155,8 @@ class JointProblem:
         return self._from("polish", genome, start_from(self.program, self._forms, postures))
 
     def _from(self, name: str, genome: Genome, postures: Start) -> JointSolution:
-        raw = self._solver.solve({}, _inside(self.program, {GENOME: np.array(genome), **postures}))
+        start = _inside(self.program, {GENOME: np.array(genome), **postures})
+        raw = self._solver.settled({}, self._solver.solve({}, start))
         design = _values(self._space, raw.values[GENOME].tolist())
         if raw.status is Status.SOLVED:
             return self._checked(name, design, raw)
@@ -250,18 +252,26 @@ def _program(
     design: Variable,
     tasks: Sequence[Task],
     settings: JointSettings,
+    *,
+    switched: bool = False,
 ) -> Program:
+    given_scene = scene
     values = _values(space, ca.vertsplit(design.value))
     scene = shared_scene(scene, space, values)
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
     parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
     case = CaseSymbols(scene, tuple(task.height_m for task in tasks))
-    assembly = assemble(parties, TERMS.values(), case, settings.enforced)
+    assembly = assemble(parties, TERMS.values(), case, settings.enforced, switched=switched)
     for (load_case,) in assembly.instants:
         for part in _height_costs(load_case, settings):
             cost += part
-    return Program("joint", (design, *assembly.variables), assembly.constraints, cost, {})
+    variables = (design, *assembly.variables)
+    switches = parted(
+        assembly.parted,
+        lambda: _program(forms, given_scene, space, design, tasks, settings, switched=True),
+    )
+    return Program("joint", variables, assembly.constraints, cost, assembly.given, switches)
 
 
 def _height_costs(load_case: LoadCase, settings: JointSettings) -> list[Expression]:

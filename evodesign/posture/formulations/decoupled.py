@@ -40,6 +40,7 @@ from evodesign.posture.formulations.human_value import (
     HumanValue,
     chebyshev_sum,
 )
+from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
@@ -116,7 +117,7 @@ class DecoupledPostures:
         parameters = {"design": design, **self._beside(task)}
         starts = named_starts(self._robot, portfolio, self._fixed)
         ends = [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return self._trial(task, ends, checker)
+        return self._trial(task, parameters, ends, checker)
 
     def solve_beside(
         self,
@@ -136,14 +137,20 @@ class DecoupledPostures:
         if not neighbour.same_load:
             starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
-        return self._trial(task, ends, checker)
+        return self._trial(task, parameters, ends, checker)
 
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The robot's parameters beside the design."""
         mass, value = self._setting.scene.payload.mass, self._values[task]
         return {**task.given, "mass": mass, "value": value.coefficients}
 
-    def _trial(self, task: Task, ends: Sequence[tuple[str, RawSolution]], checker: Checker) -> Trial:
+    def _trial(
+        self,
+        task: Task,
+        parameters: Mapping[str, Any],
+        ends: Sequence[tuple[str, RawSolution]],
+        checker: Checker,
+    ) -> Trial:
         """The robot's postures with the person's at the internal force that was found."""
 
         def finish(start: str, robot: RawSolution) -> Candidate:
@@ -156,7 +163,7 @@ class DecoupledPostures:
             residuals = checker.task_residuals(instants, task.heights)
             return Candidate(checked(self.name, start, both, residuals), instants, residuals)
 
-        return cheapest(self.name, ends, finish)
+        return cheapest(self.name, ends, lambda raw: self._robot.settled(parameters, raw), finish)
 
     def _internal_force(self, robot: RawSolution) -> float:
         hand = robot.values[_left_hand(self._robot.program)]
@@ -235,14 +242,14 @@ def _joined(robot: RawSolution, human: RawSolution, expected: float) -> RawSolut
     )
 
 
-def robot_program(form: Form, setting: Setting) -> Program:
+def robot_program(form: Form, setting: Setting, *, switched: bool = False) -> Program:
     """The robot's program, given the design, the load's height and mass, and V's coefficients."""
     scene, mass = any_load(setting.scene)
     design = ca.SX.sym("design", len(setting.space.parameters))
     height, coefficients = ca.SX.sym("height"), ca.SX.sym("value", COEFFICIENTS)
     robot = Embodied(form, setting.space.resized(scene.robot.tree, ca.vertsplit(design)))
     parties = (robot, free_hands_beside(form))
-    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)), switched=switched)
     load_case = assembly.undisturbed
     internal = force_along_x(scene.robot, load_case.hands[ROBOT]) / scene.stance.push
     value = chebyshev_sum(ca.vertsplit(coefficients), internal)
@@ -251,5 +258,12 @@ def robot_program(form: Form, setting: Setting) -> Program:
         variables=assembly.variables,
         constraints=assembly.constraints,
         cost=total([load_case.effort({ROBOT: setting.weights.robot}), *load_case.regularisation, value]),
-        parameters={"design": design, "height": height, "mass": mass, "value": coefficients},
+        parameters={
+            "design": design,
+            "height": height,
+            "mass": mass,
+            "value": coefficients,
+            **assembly.given,
+        },
+        switches=parted(assembly.parted, lambda: robot_program(form, setting, switched=True)),
     )

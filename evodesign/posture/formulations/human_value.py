@@ -24,9 +24,10 @@ from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import Array, ConstraintBlock, Program
-from evodesign.nlp.solver import RawSolution, SolverCache, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import program_key
+from evodesign.posture.parting import parted
 from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import TORQUE_UNIT
@@ -116,7 +117,11 @@ class HumanProblem:
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
-        return self.solver.solve(self._parameters(height, push), start)
+        return self._settled(self.solver, height, push, start)
+
+    def _settled(self, solver: Solver, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
+        parameters = self._parameters(height, push)
+        return self.solver.settled(parameters, solver.solve(parameters, start))
 
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:
         """The person's posture at a height [m] under a push [N], about as good as V promises.
@@ -134,7 +139,7 @@ class HumanProblem:
         nearest = value.nearest(push)[:NODES_TRIED]
         ends: list[RawSolution] = []
         for solver, start in [(self.solver.near, nearest[0]), *((self.solver, start) for start in nearest)]:
-            ends.append(solver.solve(self._parameters(height, push), start))
+            ends.append(self._settled(solver, height, push, start))
             if ends[-1].status is Status.SOLVED and ends[-1].cost <= value.cost(push) + LARGEST_ERROR:
                 return ends[-1]
         return min(ends, key=lambda end: (end.status is not Status.SOLVED, end.cost))
@@ -179,12 +184,13 @@ class HumanProblem:
         return min(solved, key=lambda solution: solution.cost, default=None)
 
 
-def human_program(form: Form, scene: Scene, weight: float) -> Program:
+def human_program(form: Form, scene: Scene, weight: float, *, switched: bool = False) -> Program:
     """The person's program; its parameters are the load's height and mass, and the internal force."""
+    given_scene = scene
     scene, mass = any_load(scene)
     height, internal = ca.SX.sym("height"), ca.SX.sym("internal_force")
     parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
-    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)), switched=switched)
     load_case = assembly.undisturbed
     given = (force_along_x(scene.robot, load_case.hands[ROBOT]) - internal) / PUSH_UNIT
     return Program(
@@ -192,5 +198,6 @@ def human_program(form: Form, scene: Scene, weight: float) -> Program:
         variables=assembly.variables,
         constraints=(*assembly.constraints, ConstraintBlock("load.given_internal_force", given, 0.0, 0.0)),
         cost=total([load_case.effort({HUMAN: weight}), *load_case.regularisation]),
-        parameters={"height": height, "mass": mass, "internal_force": internal},
+        parameters={"height": height, "mass": mass, "internal_force": internal, **assembly.given},
+        switches=parted(assembly.parted, lambda: human_program(form, given_scene, weight, switched=True)),
     )

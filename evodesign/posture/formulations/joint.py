@@ -29,6 +29,7 @@ from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import aggregated, with_worst
+from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import STARTS_BESIDE, different_people, fixed_starts, named_starts
@@ -173,10 +174,12 @@ class JointPostures:
             residuals = checker.task_residuals(instants, task.heights)
             return Candidate(checked(self.name, start, raw, residuals), instants, residuals)
 
-        return cheapest(self.name, ends, finish)
+        return cheapest(self.name, ends, lambda raw: self._solver.settled(parameters, raw), finish)
 
 
-def posture_program(forms: tuple[Form, Form], setting: Setting, kind: type[TaskRecord] = Hold) -> Program:
+def posture_program(
+    forms: tuple[Form, Form], setting: Setting, kind: type[TaskRecord] = Hold, *, switched: bool = False
+) -> Program:
     """The program over both agents; its parameters are the design, the task's numbers and the load's mass."""
     space = setting.space
     scene, mass = any_load(setting.scene)
@@ -188,7 +191,7 @@ def posture_program(forms: tuple[Form, Form], setting: Setting, kind: type[TaskR
     robot = Embodied(forms[0], space.resized(scene.robot.tree, values))
     human = Embodied(forms[1], scene.human.tree)
     case = CaseSymbols(scene, kind.load_heights(given))
-    assembly = assemble((robot, human), TERMS.values(), case)
+    assembly = assemble((robot, human), TERMS.values(), case, switched=switched)
     undisturbed = [load_cases[0] for load_cases in assembly.instants]
     whole = [part for each in undisturbed for part in (each.effort(by_agent), *each.regularisation)]
     program = Program(
@@ -196,7 +199,8 @@ def posture_program(forms: tuple[Form, Form], setting: Setting, kind: type[TaskR
         variables=assembly.variables,
         constraints=assembly.constraints,
         cost=total(whole),
-        parameters={"design": design, **given, "mass": mass},
+        parameters={"design": design, **given, "mass": mass, **assembly.given},
+        switches=parted(assembly.parted, lambda: posture_program(forms, setting, kind, switched=True)),
     )
     if not scene.disturbances:
         return program

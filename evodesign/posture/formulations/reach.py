@@ -14,7 +14,7 @@ Source: feasibility constraints of Sartore et al. 2022, Eq. 14.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -30,6 +30,7 @@ from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.parting import parted
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.posture.starts import person_starts
@@ -132,6 +133,7 @@ class ReachProblem:
         known: Precomputed = NOTHING_PRECOMPUTED,
         solvers: SolverCache | None = None,
     ) -> None:
+        setting = _with_own_rows(setting)
         scene = setting.scene
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         self._setting, self._solvers = setting, solvers or SolverCache()
@@ -161,12 +163,12 @@ class ReachProblem:
 
     def landscape(self, sense: float) -> Landscape:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
-        return Landscape(self._solver, self._beside(sense), FIXED, 0.0, NEAR_HEIGHT)
+        return Landscape(self._solver, self._beside(sense), FIXED, 0.0, NEAR_HEIGHT, parted=sense == LOWEST)
 
     def solve(self, design: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
-        highest, high = self._extreme(design, HIGHEST)
-        lowest, low = self._extreme(design, LOWEST)
+        highest, high = self.extreme(design, HIGHEST)
+        lowest, low = self.extreme(design, LOWEST)
         status = worst_status([high.status, low.status])
         if status is not Status.SOLVED:
             which = "highest" if high.status is not Status.SOLVED else "lowest"
@@ -183,14 +185,22 @@ class ReachProblem:
         return known
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
+        """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on there."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        found = [self._solver.solve(parameters, start) for start in starts]
-        if self._solver.native and not any(raw.status is Status.SOLVED for raw in found):
-            return [self._solver.by_ipopt.solve(parameters, start) for start in starts]
+        solver = self._solver
+        if sense == LOWEST and self.program.switches is not None:
+            for begun in (starts, FIXED):
+                parted = [solver.parted_start(parameters, start) for start in begun]
+                found = _best_settled(solver, parameters, parted, sense)
+                if any(raw.status is Status.SOLVED for raw in found):
+                    return found
+        found = _best_settled(solver, parameters, starts, sense)
+        if solver.native and not any(raw.status is Status.SOLVED for raw in found):
+            return _best_settled(solver.by_ipopt, parameters, starts, sense)
         return found
 
-    def _extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
+    def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
         solves = self.solves(design, sense)
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
@@ -240,19 +250,46 @@ class ReachProblem:
         return bool(min(height - block.lower[0], block.upper[0] - height) < DISTINCT)
 
 
+def _with_own_rows(setting: Setting) -> Setting:
+    """The setting with the rows that keep bodies apart which meet at extreme heights."""
+    robot = setting.scene.robot
+    if robot.collisions is None:
+        return setting
+    robot = replace(robot, collisions=robot.collisions.at_reach)
+    return replace(setting, scene=replace(setting.scene, robot=robot))
+
+
+def _best_settled(
+    solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float
+) -> list[RawSolution]:
+    """The result of every start, of which the most extreme one violates nothing that was switched off."""
+    found = [solver.solve(parameters, start) for start in starts]
+    settled: set[int] = set()
+    while True:
+        solved = [place for place, raw in enumerate(found) if raw.status is Status.SOLVED]
+        best = min(solved, key=lambda place: sense * _height(found[place]), default=None)
+        if best is None or best in settled:
+            return found
+        found[best] = solver.settled(parameters, found[best])
+        settled.add(best)
+
+
 def _height(raw: RawSolution) -> float:
     return float(raw.values[HEIGHT][0])
 
 
-def robot_reach_program(form: Form, setting: Setting) -> Program:
+def robot_reach_program(form: Form, setting: Setting, *, switched: bool = False) -> Program:
     """The robot's program; its parameters are the design, the load's mass and the sense."""
     design = ca.SX.sym("design", len(setting.space.parameters))
     values = ca.vertsplit(design)
     tree = setting.space.resized(setting.scene.robot.tree, values)
-    return reach_program(form, tree, shared_scene(setting.scene, setting.space, values), {"design": design})
+    scene = shared_scene(setting.scene, setting.space, values)
+    return reach_program(form, tree, scene, {"design": design}, switched=switched)
 
 
-def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]) -> Program:
+def reach_program(
+    form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any], *, switched: bool = False
+) -> Program:
     """The program of an agent's extreme heights; the other agent is a pair of free hands.
 
     Args:
@@ -260,13 +297,15 @@ def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]
         tree: of the agent.
         scene: load, ground and stance.
         given: parameters that the tree depends on; the program's are these, the load's mass and the sense.
+        switched: whether it has the rows that are left out until they are violated.
     """
+    given_scene = scene
     scene, mass = any_load(scene)
     sense = ca.SX.sym("sense")
     floor = scene.payload.size[2] / 2.0
     height = Variable.column(HEIGHT, [floor], [5.0], [1.0], 1.0)
     parties = (Embodied(form, tree), free_hands_beside(form))
-    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)))
+    assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)), switched=switched)
     load_case = assembly.undisturbed
     disliked = total([*load_case.regularisation, load_case.free_moments])
     return Program(
@@ -274,7 +313,10 @@ def reach_program(form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any]
         variables=(height, *assembly.variables),
         constraints=assembly.constraints,
         cost=sense * height.value + WEIGHT_OF_REGULARISATION * disliked,
-        parameters={**given, "mass": mass, "sense": sense},
+        parameters={**given, "mass": mass, "sense": sense, **assembly.given},
+        switches=parted(
+            assembly.parted, lambda: reach_program(form, tree, given_scene, given, switched=True)
+        ),
     )
 
 
@@ -283,16 +325,17 @@ def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> Pe
 
     A person does not depend on the robot, so this is found once per person and load, as the best of many
     starts. Together with a robot's reach it gives the heights at which robot and everyone can hold the load.
+    A person's own bodies may pass through each other here.
     """
+    scene = replace(scene, human=replace(scene.human, collisions=None))
     form = symmetric_forms(scene)[1] if symmetric else whole(scene.human)
     solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}
     for sense in (LOWEST, HIGHEST):
-        solves = [
-            solver.solve({"mass": scene.payload.mass, "sense": sense}, {**start, HEIGHT: [height]})
-            for height in FIXED_HEIGHTS
-            for start in person_starts(solver.program)
-        ]
+        parameters = {"mass": scene.payload.mass, "sense": sense}
+        people = person_starts(solver.program)
+        starts = [{**start, HEIGHT: [height]} for height in FIXED_HEIGHTS for start in people]
+        solves = [solver.solve(parameters, start) for start in starts]
         heights = [float(raw.values[HEIGHT][0]) for raw in solves if raw.status is Status.SOLVED]
         if not heights:
             return None

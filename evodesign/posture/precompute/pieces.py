@@ -14,10 +14,11 @@ from itertools import islice
 import msgspec
 import numpy as np
 
+from evodesign.collision.rules import BodyPair
 from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.disturbance import Disturbances
-from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene, scene_of
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Grasp, Payload, Scene, scene_of
 from evodesign.nlp.solver import SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio, widened
 from evodesign.posture.allocation import EffortWeights
@@ -25,6 +26,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Hold, Task
@@ -36,6 +38,9 @@ HALF_TRAINING = Training(designs=48, starts=8)
 DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=2)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=6, portfolio=8, rounds=2)
+
+PARTED_STARTS = 1
+"""Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -57,6 +62,7 @@ LOOKED_AT = 12
 class Subject(StrEnum):
     """What a piece is about; the value is how it is told."""
 
+    MEETINGS = "bodies that come near each other"
     PERSON = "the person's part"
     PERSON_REACH = "the person's reach"
     HIGHEST = "starts of the highest load"
@@ -106,6 +112,7 @@ class PrecomputeSetting:
     weights: EffortWeights
     options: SolverOptions
     symmetry: Symmetry
+    tasks: tuple[Task, ...]
 
     @property
     def symmetric(self) -> bool:
@@ -118,6 +125,7 @@ NO_PART_OF_PIECES: Exceptions = {
         "scenes": "the one that a piece is worked out in counts",
         "middle": "says which scene that is",
         "symmetry": "polishing comes later: whether postures are symmetric counts",
+        "tasks": "a piece is about one of them, or none",
     },
     Piece: {"pair": "says which scene that is"},
     Agent: {"label": "is a word for results"},
@@ -143,7 +151,15 @@ NO_PART_OF_WIDER: Exceptions = {
     },
 }
 
+NO_PART_OF_MEETINGS: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "tasks"
+    },
+}
+
 NO_PART_OF: Mapping[Subject, Exceptions] = {
+    Subject.MEETINGS: NO_PART_OF_MEETINGS,
     Subject.PERSON: NO_PART_OF_A_PERSONS,
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
     Subject.HIGHEST: NO_PART_OF_PIECES,
@@ -165,6 +181,8 @@ def stages(
         portfolios: whether solves begin at portfolios of starts.
         person_reaches: whether the people's own reach is asked for.
     """
+    parting = [scene for scene in setting.scenes if scene.robot.collisions is not None]
+    meetings = [Piece(Subject.MEETINGS, scene.pair) for scene in parting]
     people = [Piece(Subject.PERSON_REACH, scene.pair) for scene in setting.scenes if person_reaches]
     people += [
         Piece(Subject.PERSON, scene.pair, task)
@@ -173,9 +191,10 @@ def stages(
         if setting.symmetric and _push_alone(scene, setting.space) and isinstance(task, Hold)
     ]
     if not portfolios:
-        return [people]
+        return [meetings, people]
     middle = setting.middle.pair
     found = [
+        meetings,
         [Piece(Subject.HIGHEST, middle), Piece(Subject.LOWEST, middle), *people],
         [Piece(Subject.POSTURE, middle, task) for task in tasks],
     ]
@@ -220,7 +239,12 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         piece: which one.
         known: what earlier stages gave.
     """
-    found: HumanValue | PersonReach | StartPortfolio | None
+    found: HumanValue | PersonReach | StartPortfolio | dict[str, list[BodyPair]] | None
+    if piece.subject is Subject.MEETINGS:
+        own = Setting(_scene_of(setting, piece), setting.space, setting.weights, setting.options)
+        return msgspec.json.encode(found_meetings(own, setting.tasks, symmetric=setting.symmetric))
+    scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
+    setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
     if piece.subject is Subject.PERSON and piece.task is not None:
         found = _person(setting, _scene_of(setting, piece), piece.task)
     elif piece.subject is Subject.PERSON_REACH:
@@ -238,6 +262,8 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
             person, payload = piece.pair
             case = Case(person=person, payload=payload, task=piece.task)
             return replace(known, values={**known.values, case: value}) if value else known
+        if piece.subject is Subject.MEETINGS:
+            return _with_found(known, piece, msgspec.json.decode(content, type=dict[str, list[BodyPair]]))
         if piece.subject is Subject.PERSON_REACH:
             reach = msgspec.json.decode(content, type=PersonReach | None)
             reaches = {**known.person_reaches, **({piece.pair: reach} if reach else {})}
@@ -249,6 +275,15 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
         return replace(known, postures={**known.postures, piece.task: found})
     highest = piece.subject is Subject.HIGHEST
     return replace(known, highest=found) if highest else replace(known, lowest=found)
+
+
+def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[BodyPair]]) -> Precomputed:
+    """Those of a scene beside those of others: of the robot there are several."""
+    meetings = dict(known.meetings)
+    own = {(ROBOT, ""): found[ROBOT], (REACH, ""): found[REACH], (HUMAN, piece.pair[0]): found[HUMAN]}
+    for key, pairs in own.items():
+        meetings[key] = tuple(dict.fromkeys([*meetings.get(key, ()), *pairs]))
+    return replace(known, meetings=meetings)
 
 
 def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue | None:
@@ -264,6 +299,8 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
+        if landscape.parted and scene.robot.collisions is not None:
+            training = replace(training, portfolio=PARTED_STARTS)
     else:
         landscape = PostureProblem(own, setting.symmetry, known).landscape(task)
         training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING

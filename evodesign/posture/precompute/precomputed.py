@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import msgspec
 
+from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
@@ -49,6 +50,7 @@ class Precomputed:
         highest, lowest: starts of the reach problem.
         postures: starts of the posture problem, by task.
         person_reaches: the people's own reach, by the names of person and load, where it was asked for.
+        meetings: pairs of bodies that come near each other, by agent name and label.
     """
 
     values: Mapping[Case, HumanValue] = field(default_factory=dict)
@@ -56,6 +58,7 @@ class Precomputed:
     lowest: StartPortfolio = NO_STARTS
     postures: Mapping[Task, StartPortfolio] = field(default_factory=dict)
     person_reaches: Mapping[tuple[str, str], PersonReach] = field(default_factory=dict)
+    meetings: Mapping[tuple[str, str], tuple[BodyPair, ...]] = field(default_factory=dict)
 
     def values_of(self, scene: Scene) -> Mapping[Task, HumanValue]:
         """The value functions of a scene's person and load, by task."""

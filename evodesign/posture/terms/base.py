@@ -20,6 +20,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.collision.scene_bodies import SceneBodies
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import BodyState
 from evodesign.mechanics.scene import Agent, Payload, Scene
@@ -37,6 +38,7 @@ __all__ = [
     "Body",
     "BodyTerm",
     "Coupled",
+    "Held",
     "MeasuredBody",
     "MeasuredSystem",
     "Residual",
@@ -83,6 +85,19 @@ class Unknown:
     posture_only: bool = False
     labels: tuple[str, ...] = ()
     drawn: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Numbers of an agent's posture that a solve holds as its start has them; zero where it says nothing.
+
+    Args:
+        part: what they are called within the agent.
+        count: how many.
+    """
+
+    part: str
+    count: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,16 +264,23 @@ class MeasuredSystem:
         payload: as the disturbance makes it.
         bodies: both agents, by name.
         disturbance: of the load case.
+        solids: their bodies; None where they may pass through anything.
     """
 
     scene: Scene
     payload: Payload
     bodies: Mapping[str, MeasuredBody]
     disturbance: Disturbance
+    solids: SceneBodies | None
 
 
 def no_unknowns(form: Form, scene: Scene) -> Iterable[Unknown]:
     """No numbers are asked for."""
+    return ()
+
+
+def nothing_held(form: Form, scene: Scene) -> Iterable[Held]:
+    """Nothing is held."""
     return ()
 
 
@@ -280,6 +302,7 @@ class BodyTerm:
         name: unique among terms.
         group: to which its cost belongs.
         unknowns: numbers that it asks for, of a form in a scene.
+        held: numbers that it holds during a solve.
         rows: in a program.
         posture_cost: a cost that depends on the posture alone, beside |tau|^2 / TORQUE_UNIT^2; or None.
         cost: one that every load case has; or None.
@@ -289,6 +312,7 @@ class BodyTerm:
     name: str
     group: LimitGroup = LimitGroup.ALWAYS
     unknowns: Callable[[Form, Scene], Iterable[Unknown]] = field(default=no_unknowns)
+    held: Callable[[Form, Scene], Iterable[Held]] = field(default=nothing_held)
     rows: Callable[[Body], Iterable[Row]] = field(default=nothing)
     posture_cost: Callable[[Body], Expression | None] = field(default=no_cost)
     cost: Callable[[Body], Expression | None] = field(default=no_cost)

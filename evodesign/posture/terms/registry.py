@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from evodesign.posture.terms.base import BodyTerm, SystemTerm
+from evodesign.posture.terms.collisions import COLLISIONS, OVERLAP
 from evodesign.posture.terms.coupled_joints import COUPLED_JOINTS
 from evodesign.posture.terms.feet import FEET, UPRIGHT
 from evodesign.posture.terms.feet_gap import FEET_GAP
@@ -24,6 +25,8 @@ TERMS: Mapping[str, BodyTerm | SystemTerm] = {
     "feet": FEET,
     "stance": STANCE,
     "feet_gap": FEET_GAP,
+    "collisions": COLLISIONS,
+    "overlap": OVERLAP,
     "torque": TORQUE,
     "posture_regularisation": POSTURE_REGULARISATION,
     "wrench_regularisation": WRENCH_REGULARISATION,

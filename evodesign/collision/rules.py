@@ -1,0 +1,41 @@
+"""What an agent's bodies must keep clear of, as a problem asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from evodesign.body.placement import Vector
+
+__all__ = ["FLOOR", "LOAD", "PARTNER", "PLANES", "BodyPair", "CollisionRules"]
+
+BodyPair = tuple[str, str]
+"""Names of two links; the second may be the load, the floor or the partner."""
+
+LOAD, FLOOR, PARTNER = "load", "floor", "partner"
+"""What a link may meet beside other links: the partner's side begins half-way between robot and person."""
+
+PLANES: Mapping[str, Vector] = {FLOOR: (0.0, 0.0, -1.0), PARTNER: (1.0, 0.0, 0.0)}
+"""Planes through the origin, by the direction towards their other side."""
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionRules:
+    """Pairs of an agent's links, and of links with load, floor and partner.
+
+    Args:
+        margin: least distance that programs ask for [m].
+        checked: pairs that must not overlap.
+        parted: those of them that have rows in programs: the ones that come near each other in postures.
+        parted_at_reach: those that have rows in their place where the load is as high or low as it can be.
+    """
+
+    margin: float
+    checked: tuple[BodyPair, ...]
+    parted: tuple[BodyPair, ...] = ()
+    parted_at_reach: tuple[BodyPair, ...] = ()
+
+    @property
+    def at_reach(self) -> CollisionRules:
+        """With the rows of extreme heights in place of the others."""
+        return replace(self, parted=self.parted_at_reach)

@@ -1,0 +1,292 @@
+"""Bodies that keep clear of each other: no link passes through another, the load, the floor or the partner.
+
+Two convex bodies with centres c_1, c_2 and supports s_1, s_2 (`collision.shapes`) are a margin m apart if and
+only if some unit vector n parts them:
+
+    n . (c_2 - c_1) - s_1(n) - s_2(-n) >= m
+
+Any direction makes a row that is safe; the best one makes it exact. It is held in the axes of one of the two
+links during a solve, n = A_1 a + A_2 b with one of a and b zero: that which parts the bodies best where the
+solve begins (`posture.parting`). If another one does where it ends, the solve goes on from there with that
+one, which can only better it. So rows are signed and smooth, cannot be tunnelled, and need no more unknowns.
+Where a plane does, nothing is chosen: the floor; the plane half-way between robot and person, on whose own
+side everyone stays; and in symmetric postures the middle plane, between a link and its mirror image.
+
+From a poor start such rows lead to poor optima: a head stays on the wrong side of the load. So those with a
+direction are off at first, by 10 m added to them; where a solution overlaps, its rows are switched on, and
+the solve goes on from there.
+
+Corners of the supports are rounded off outwards, |x| <= sqrt(x^2 + e^2), so a posture that fulfils the rows
+is one in which the bodies are apart.
+
+Source: separating hyperplanes: Boyd and Vandenberghe, Convex Optimization, section 2.5.1; which directions
+part boxes: Gottschalk, Lin and Manocha, OBBTree (1996). The residual is coal's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import casadi as ca
+import numpy as np
+
+from evodesign.body.placement import Placement
+from evodesign.collision.rules import LOAD, PLANES, BodyPair
+from evodesign.collision.supports import ConvexShape, shapes_of
+from evodesign.mechanics.scene import Scene
+from evodesign.posture.limit_groups import LimitGroup
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import (
+    UNDISTURBED,
+    Body,
+    BodyTerm,
+    Held,
+    MeasuredSystem,
+    Residual,
+    Row,
+    SystemTerm,
+)
+from evodesign.tree.kinematics import Expression, Pose, vector
+
+__all__ = [
+    "COLLISIONS",
+    "NUMBERS",
+    "OVERLAP",
+    "PARTING",
+    "Meeting",
+    "PlacedShape",
+    "directed",
+    "meetings",
+    "parted_by",
+    "placed_pairs",
+]
+
+PARTING, NUMBERS = "parting", 7
+"""What an agent holds of the directions that part its bodies: on, a and b of each."""
+
+OFF = 10.0
+"""What a row that is switched off has added to it [m]."""
+
+ROUNDING = 0.02
+"""By how much a corner is rounded off, as a share of the half side."""
+
+
+class Kind(Enum):
+    """How two bodies are kept apart."""
+
+    DIRECTION = auto()
+    MIDDLE = auto()
+    PLANE = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """Two bodies of a form that keep clear of each other.
+
+    Args:
+        kind: how.
+        first: a link of the form.
+        second: another one, the load or a plane; for `MIDDLE` the first again.
+        mirrored: whether the mirror image of the second is meant.
+    """
+
+    kind: Kind
+    first: str
+    second: str
+    mirrored: bool = False
+
+    @property
+    def label(self) -> str:
+        """Both names."""
+        return f"{self.first} and {'the other ' if self.mirrored else ''}{self.second}"
+
+
+def meetings(form: Form) -> tuple[Meeting, ...]:
+    """The meetings of a form, once each: of mirror images one stands for both."""
+    rules = form.agent.collisions
+    return () if rules is None else tuple(dict.fromkeys(_meeting(form, pair) for pair in rules.parted))
+
+
+def _meeting(form: Form, pair: BodyPair) -> Meeting:
+    first, second = pair
+    mirror = form.mirror
+    if mirror is None:
+        return Meeting(Kind.PLANE if second in PLANES else Kind.DIRECTION, first, second)
+    kept = form.part(form.agent.tree)[0].link_by_name
+    if second == LOAD or second in PLANES:
+        first = first if first in kept else mirror.links[first]
+        return Meeting(Kind.PLANE if second in PLANES else Kind.DIRECTION, first, second)
+    if first not in kept:
+        first, second = mirror.links[first], mirror.links[second]
+    if second in kept:
+        return Meeting(Kind.DIRECTION, first, second)
+    if mirror.links[first] == first:  # on the middle line
+        return Meeting(Kind.DIRECTION, first, mirror.links[second])
+    if mirror.links[second] == first:
+        return Meeting(Kind.MIDDLE, first, first, True)
+    one, other = sorted((first, mirror.links[second]))  # mirror images of this pair are another name of it
+    return Meeting(Kind.DIRECTION, one, other, True)
+
+
+def directed(form: Form) -> tuple[Meeting, ...]:
+    """Those that have a direction."""
+    return tuple(meeting for meeting in meetings(form) if meeting.kind is Kind.DIRECTION)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedShape:
+    """A shape somewhere: its centre, columns that span its box, disc and ball, and its link's axes."""
+
+    centre: Expression
+    box: Expression
+    disc: Expression
+    ball: Expression
+    axes: Expression
+
+    @property
+    def numbers(self) -> Expression:
+        """All of it as one column of 36."""
+        return ca.vertcat(
+            self.centre, *(ca.vec(each) for each in (self.box, self.disc, self.ball, self.axes))
+        )
+
+    def mirrored(self) -> PlacedShape:
+        """Its mirror image in the plane y = 0."""
+        mirror = ca.diag(ca.DM([1.0, -1.0, 1.0]))
+        return PlacedShape(
+            *(mirror @ each for each in (self.centre, self.box, self.disc, self.ball, self.axes))
+        )
+
+    @property
+    def sides(self) -> list[Expression]:
+        """Along a box's sides and a cylinder's axis; of no particular length."""
+        columns = [column for column in ca.horzsplit(self.box) if not column.is_zero()]
+        if not self.disc.is_zero():
+            columns.append(ca.cross(self.disc[:, 0], self.disc[:, 1]))
+        return columns
+
+    def reach(self, direction: Expression) -> Expression:
+        """How far it reaches from its centre along a unit vector [m]."""
+        box = ca.sum1(ca.fabs(self.box.T @ direction))
+        return box + ca.norm_2(self.disc.T @ direction) + ca.norm_2(self.ball.T @ direction)
+
+    def support(self, direction: Expression) -> Expression:
+        """How far it reaches from its centre along a direction, with corners rounded off [m]."""
+        reach = 0.0
+        for column in ca.horzsplit(self.box):
+            if not column.is_zero():
+                size = ca.sumsqr(column)
+                reach += ca.sqrt(ca.dot(column, direction) ** 2 + ROUNDING**2 * size)
+        for columns in (self.disc, self.ball):
+            if not columns.is_zero():
+                size = ca.sumsqr(columns[:, 0])
+                reach += ca.sqrt(ca.sumsqr(columns.T @ direction) + ROUNDING**2 * size)
+        return reach
+
+
+def placed_shape(shape: ConvexShape, pose: Pose) -> PlacedShape:
+    """A shape of a link at the link's pose."""
+    place = shape.link_from_shape
+    axes = ca.DM([list(row) for row in place.rotation])
+    turn = pose.rotation @ (_matrix(shape) @ axes)
+    return PlacedShape(
+        pose.point(vector(place.translation)),
+        turn @ ca.diag(vector(shape.half_sides)),
+        turn[:, :2] * shape.disc,
+        turn * shape.ball,
+        pose.rotation,
+    )
+
+
+def _matrix(shape: ConvexShape) -> Expression:
+    return ca.vertcat(*[ca.horzcat(*row) for row in shape.stretch])
+
+
+def placed_pairs(body: Body, meeting: Meeting) -> list[tuple[PlacedShape, PlacedShape]]:
+    """Every shape of the first with every shape of the second."""
+    first = _placed(body, meeting.first)
+    if meeting.second == LOAD:
+        second = [_load(body)]
+    else:
+        second = _placed(body, meeting.second)
+        second = [each.mirrored() for each in second] if meeting.mirrored else second
+    return [(one, other) for one in first for other in second]
+
+
+def _placed(body: Body, link: str) -> list[PlacedShape]:
+    return [placed_shape(shape, body.poses[link]) for shape in shapes_of(body.part.link_by_name[link])]
+
+
+def _load(body: Body) -> PlacedShape:
+    depth, width, height = body.scene.payload.size
+    box = ConvexShape(Placement(), (depth / 2.0, width / 2.0, height / 2.0))
+    return placed_shape(box, Pose(ca.SX.eye(3), ca.vertcat(0.0, 0.0, body.load_height)))
+
+
+def held(form: Form, scene: Scene) -> Iterator[Held]:
+    """What parts the bodies of each meeting that needs a direction."""
+    count = len(directed(form))
+    if count:
+        yield Held(PARTING, NUMBERS * count)
+
+
+def parted_by(numbers: Expression, one: PlacedShape, other: PlacedShape) -> Expression:
+    """The direction that numbers of a meeting stand for."""
+    return one.axes @ numbers[1:4] + other.axes @ numbers[4:7]
+
+
+def rows(body: Body) -> Iterator[Row]:
+    """Distances [m], and the directions' squared lengths."""
+    rules = body.agent.collisions
+    if rules is None:
+        return
+    found: dict[Kind, list[tuple[str, Expression]]] = {kind: [] for kind in Kind}
+    left = ca.DM([0.0, 1.0, 0.0])
+    parted = directed(body.form)
+    for meeting in meetings(body.form):
+        if meeting.kind is Kind.PLANE:
+            away = ca.DM(PLANES[meeting.second])
+            for shape in _placed(body, meeting.first):
+                found[Kind.PLANE].append((meeting.label, -ca.dot(away, shape.centre) - shape.support(away)))
+        elif meeting.kind is Kind.MIDDLE:
+            for shape in _placed(body, meeting.first):
+                found[Kind.MIDDLE].append((meeting.label, 2.0 * (shape.centre[1] - shape.support(left))))
+        elif PARTING in body.values:
+            place = NUMBERS * parted.index(meeting)
+            numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
+            direction = parted_by(numbers, *pairs[0])
+            for one, other in pairs:
+                apart = ca.dot(direction, other.centre - one.centre)
+                apart -= one.support(direction) + other.support(direction)
+                found[Kind.DIRECTION].append((meeting.label, apart + OFF * (1.0 - numbers[0])))
+    for kind, name, least in (
+        (Kind.MIDDLE, "clear_of_mirror_image", rules.margin),
+        (Kind.PLANE, "clear_of_plane", rules.margin / 2.0),
+        (Kind.DIRECTION, "clear", rules.margin),
+    ):
+        yield from _column(name, found[kind], least)
+
+
+def _column(name: str, found: Sequence[tuple[str, Expression]], least: float) -> Iterator[Row]:
+    if found:
+        labels = tuple(label for label, _ in found)
+        column = ca.vertcat(*[expression for _, expression in found])
+        group = LimitGroup.COLLISIONS
+        yield Row(name, column, least, np.inf, ("overlap",), group=group, posture_only=True, labels=labels)
+
+
+def residuals(system: MeasuredSystem) -> Iterator[Residual]:
+    """How deep the deepest overlap is [m], by coal on the true shapes, of all that must not overlap."""
+    if system.solids is None or system.disturbance is not UNDISTURBED:
+        return
+    poses = {name: (body.agent.sign, body.state.pose) for name, body in system.bodies.items()}
+    overlaps = system.solids.near(poses, next(iter(system.bodies.values())).load_height)
+    worst = min(overlaps, key=lambda gap: gap.distance, default=None)
+    deep, who = (0.0, "bodies") if worst is None else (-worst.distance, f"{worst.first} and {worst.second}")
+    yield Residual("overlap", deep, "m", f"{who} apart", LimitGroup.COLLISIONS, posture_only=True)
+
+
+COLLISIONS = BodyTerm("collisions", LimitGroup.COLLISIONS, held=held, rows=rows)
+OVERLAP = SystemTerm("overlap", LimitGroup.COLLISIONS, residuals=residuals)

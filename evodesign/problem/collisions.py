@@ -1,0 +1,94 @@
+"""The `[collisions]` table: which bodies of robot and people keep clear of each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from evodesign.collision.pairs import checked_pairs
+from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
+from evodesign.design.space import DesignSpace
+from evodesign.errors import InputError, nearest_name
+from evodesign.mechanics.scene import ROBOT, Agent, Scene
+from evodesign.nlp.start_portfolio import spread_designs
+from evodesign.problem.file import CollisionsTable, ProblemFile
+from evodesign.records import ProblemSource
+
+DESIGNS = 16
+"""In which pairs may always overlap."""
+
+__all__ = ["with_collisions"]
+
+
+def with_collisions(
+    tables: ProblemFile, source: ProblemSource, scenes: tuple[Scene, ...], space: DesignSpace
+) -> tuple[Scene, ...]:
+    """The scenes with what their agents' bodies keep clear of; as they are where nothing is asked for.
+
+    Raises:
+        InputError: a pair of unknown names, or one that is ignored and parted.
+    """
+    table = tables.collisions
+    if table is None:
+        return scenes
+    known: dict[int, Agent] = {}
+    for scene in scenes:
+        for agent in (scene.robot, scene.human):
+            if id(agent) not in known:
+                known[id(agent)] = replace(agent, collisions=_rules(table, agent, space))
+    _refuse_unknown(table, source, [*known.values()])
+    return tuple(
+        replace(scene, robot=known[id(scene.robot)], human=known[id(scene.human)]) for scene in scenes
+    )
+
+
+def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> CollisionRules:
+    resized = [space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT]
+    ignored = {frozenset(pair) for pair in table.ignore}
+    checked = [
+        pair
+        for pair in checked_pairs(agent.tree, agent.hands, agent.soles, resized)
+        if frozenset(pair) not in ignored
+    ]
+    own = {frozenset(pair): pair for pair in checked}
+    names = {*agent.tree.link_by_name}
+    for pair in table.part:
+        if pair[0] in names and (pair[1] in names or pair[1] == LOAD or pair[1] in PLANES):
+            own.setdefault(frozenset(pair), pair)
+    parted = tuple(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own)
+    return CollisionRules(table.margin_m, tuple(own.values()), parted)
+
+
+def _designs(space: DesignSpace) -> Iterator[tuple[float, ...]]:
+    """Some designs, with the least and the largest one of all."""
+    count = len(space.parameters)
+    yield space.values((0.0,) * count)
+    yield space.values((1.0,) * count)
+    yield from spread_designs(count, space.values, lambda _: True, DESIGNS)
+
+
+def _refuse_unknown(table: CollisionsTable, source: ProblemSource, agents: list[Agent]) -> None:
+    """Refuse a pair that no agent has."""
+    links = {link.name for agent in agents for link in agent.tree.links}
+    for key, pairs in (("ignore", table.ignore), ("part", table.part)):
+        for number, pair in enumerate(pairs):
+            where = f"collisions.{key}[{number}]"
+            for place, name in enumerate(pair):
+                others = {LOAD, *PLANES} if place else set()
+                if name not in links | others:
+                    wanted = "a link of the robot or of a person" + (
+                        ", load, floor or partner" if place else ""
+                    )
+                    hint = nearest_name(name, [*links, *others])
+                    raise InputError(source.path, where, wanted, f"'{name}'{hint}")
+            if not any(_has(agent, pair) for agent in agents):
+                wanted = "two links of one agent"
+                raise InputError(source.path, where, wanted, f"'{pair[0]}' and '{pair[1]}'")
+            if key == "part" and frozenset(pair) in {frozenset(each) for each in table.ignore}:
+                found = f"'{pair[0]}' and '{pair[1]}' among those ignored"
+                raise InputError(source.path, where, "a pair that is not ignored", found)
+
+
+def _has(agent: Agent, pair: BodyPair) -> bool:
+    names = agent.tree.link_by_name
+    return pair[0] in names and (pair[1] in names or pair[1] == LOAD or pair[1] in PLANES)

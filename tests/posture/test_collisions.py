@@ -1,0 +1,224 @@
+"""Rows that keep bodies apart, against coal, finite differences and points of shapes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from evodesign.body.inertia import Inertia
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.collision.pairs import checked_pairs
+from evodesign.collision.rules import FLOOR, LOAD, PARTNER, CollisionRules
+from evodesign.collision.supports import ConvexShape, shapes_of
+from evodesign.nlp.method import MethodName
+from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.decoupled import robot_program
+from evodesign.posture.formulations.reach import LOWEST, ReachProblem
+from evodesign.posture.parting import SHAPE, parted_along
+from evodesign.posture.precompute.meetings import found_meetings, with_meetings
+from evodesign.posture.symmetry import symmetric_forms
+from evodesign.posture.terms.collisions import PlacedShape, placed_shape
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.evaluate import Evaluator
+from evodesign.tree.kinematics import Pose
+from evodesign.tree.model import Link, Look, Tree
+
+MARGIN = 0.005
+SHAPES: tuple[Shape, ...] = (Sphere(0.06), Cylinder(0.05, 0.3), Box(0.1, 0.24, 0.16), Cylinder(0.08, 0.05))
+
+
+def link(shape: Shape) -> Link:
+    return Link("one", own_inertia=Inertia(1.0), looks=(Look(shape, Placement()),))
+
+
+def turned(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """A rotation from a quaternion, and a place up to 0.3 m away."""
+    w, x, y, z = (lambda q: q / np.linalg.norm(q))(rng.standard_normal(4))
+    rotation = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.array(rotation), rng.uniform(-0.3, 0.3, 3)
+
+
+def numbers(shape: Shape, rotation: np.ndarray, position: np.ndarray) -> np.ndarray:
+    (support,) = shapes_of(link(shape))
+    pose = Pose(ca.SX(ca.DM(rotation)), ca.SX(ca.DM(position)))
+    return np.array(ca.evalf(placed_shape(support, pose).numbers)).ravel()
+
+
+def by_coal(one: Shape, other: Shape, rotation: np.ndarray, position: np.ndarray) -> float:
+    bodies = SolidBodies(
+        ("one", "other"),
+        tuple(SolidBodies.of_tree(tree_of(shape)).solids[0] for shape in (one, other)),
+    )
+    at = Placement(tuple(map(tuple, rotation.tolist())), tuple(position.tolist()))
+    placed = bodies.placed({"one": Placement(), "other": at})
+    return placed.nearest(places_of(bodies.names, [("one", "other")])).distance
+
+
+def tree_of(shape: Shape) -> Tree:
+    return Tree("one", (link(shape),), ())
+
+
+@pytest.mark.parametrize("one", SHAPES)
+@pytest.mark.parametrize("other", SHAPES)
+def test_the_best_direction_parts_bodies_as_far_as_they_are_apart(one: Shape, other: Shape) -> None:
+    """Never farther than coal says; where coal finds 10 mm, they are told to be clear."""
+    rng = np.random.default_rng(1)
+    here = numbers(one, np.eye(3), np.zeros(3))
+    for _ in range(60):
+        rotation, position = turned(rng)
+        apart = by_coal(one, other, rotation, position)
+        pair = np.stack([here, numbers(other, rotation, position)])[None]
+        found = parted_along(pair, np.inf)[0].distance
+        assert found <= apart + 1e-6
+        assert found > 0.0 or apart < 0.01
+
+
+def test_supports_reach_as_far_as_the_points_of_a_shape() -> None:
+    rng = np.random.default_rng(2)
+    circle = np.linspace(0.0, 2.0 * np.pi, 721)
+    ring = np.stack([np.cos(circle), np.sin(circle), 0.0 * circle], axis=1)
+    ends = np.concatenate([0.05 * ring + [0.0, 0.0, side] for side in (-0.15, 0.15)])
+    corners = np.array([[x, y, z] for x in (-0.05, 0.05) for y in (-0.12, 0.12) for z in (-0.08, 0.08)])
+    for shape, points in ((Cylinder(0.05, 0.3), ends), (Box(0.1, 0.24, 0.16), corners)):
+        (support,) = shapes_of(link(shape))
+        rotation, position = turned(rng)
+        pose = Pose(ca.SX(ca.DM(rotation)), ca.SX(ca.DM(position)))
+        placed: PlacedShape = placed_shape(support, pose)
+        for direction in rng.standard_normal((20, 3)):
+            unit = direction / np.linalg.norm(direction)
+            farthest = float(np.max(points @ rotation.T @ unit))
+            assert float(ca.evalf(placed.reach(ca.DM(unit)))) == pytest.approx(farthest, abs=2e-6)
+            rounded = float(ca.evalf(placed.support(ca.DM(unit))))
+            assert farthest <= rounded + 2e-6 <= farthest + 0.02 * np.abs(points).max() * 3.0
+
+
+def test_what_fits_a_mesh_holds_all_of_its_points() -> None:
+    from evodesign.collision.supports import _least
+
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        points = rng.standard_normal((40, 3)) * [0.2, 0.05, 0.06]
+        fit: ConvexShape = _least(points)
+        pose = Pose(ca.SX.eye(3), ca.SX.zeros(3))
+        placed = placed_shape(fit, pose)
+        centre = np.array(ca.evalf(placed.centre)).ravel()
+        for direction in rng.standard_normal((20, 3)):
+            unit = direction / np.linalg.norm(direction)
+            reach = float(ca.evalf(placed.reach(ca.DM(unit))))
+            assert np.max((points - centre) @ unit) <= reach + 1e-9
+
+
+def kept_apart(problem: DesignProblem) -> DesignProblem:
+    """The problem with pairs of all agents kept apart."""
+    people = {
+        id(agent): replace(
+            agent, collisions=CollisionRules(MARGIN, checked_pairs(agent.tree, agent.hands, agent.soles))
+        )
+        for scene in problem.scenes
+        for agent in (scene.robot, scene.human)
+    }
+    scenes = tuple(
+        replace(scene, robot=people[id(scene.robot)], human=people[id(scene.human)])
+        for scene in problem.scenes
+    )
+    return replace(problem, scenes=scenes)
+
+
+@pytest.fixture(scope="module")
+def apart(problem: DesignProblem) -> DesignProblem:
+    return kept_apart(problem)
+
+
+def setting_of(problem: DesignProblem) -> Setting:
+    options = replace(problem.options, compiled=False, method=MethodName.IPOPT)
+    return Setting(problem.scene, problem.space, EffortWeights(1.0, 1.0), options)
+
+
+@pytest.fixture(scope="module")
+def met(apart: DesignProblem) -> dict:
+    found = found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)
+    return {(name, ""): tuple(pairs) for name, pairs in found.items()}
+
+
+def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: DesignProblem) -> None:
+    checked = {agent.name: agent.collisions.checked for agent in (apart.scene.robot, apart.scene.human)}
+    assert ("l_foot_front", "r_foot_front") in met["robot", ""]
+    assert set(met["robot", ""]) <= set(checked["robot"])
+    assert set(met["human", ""]) <= set(checked["human"])
+    assert 0 < len(met["reach", ""]) < len(checked["robot"]) / 4
+    for other in (LOAD, FLOOR, PARTNER):
+        assert ("head", other) in checked["robot"]
+        assert ("l_hand", LOAD) not in checked["robot"]
+    assert ("l_foot_front", FLOOR) not in checked["robot"]
+
+
+def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignProblem) -> None:
+    scene = with_meetings(apart.scene, met)
+    program = robot_program(symmetric_forms(scene)[0], replace(setting_of(apart), scene=scene))
+    assert program.switches is not None
+    full = program.switches.program
+    names = {"robot.clear", "robot.clear_of_mirror_image"}
+    rows = ca.vertcat(*[block.expression for block in full.constraints if block.name in names])
+    assert rows.numel() > 4
+    value = ca.Function("rows", [full.symbols, full.given], [rows])
+    slope = ca.Function("slope", [full.symbols, full.given], [ca.jacobian(rows, full.symbols)])
+    rng = np.random.default_rng(4)
+    design = np.array(apart.space.unscaled(apart.scene.robot.tree))
+    given = {
+        name: design if name == "design" else rng.uniform(0.5, 1.0, symbol.numel())
+        for name, symbol in full.parameters.items()
+        if name not in program.switches.names
+    }
+    start = full.unpacked(full.packed({}) + rng.uniform(-0.2, 0.2, full.symbols.numel()))
+    on = program.switches.begun(start, given)
+    point, parameters = full.packed({**start, **on}), full.packed_parameters(given, {**start, **on})
+    exact = np.array(slope(point, parameters))
+    step = 1e-6
+    for column in range(len(point)):
+        ahead, behind = point.copy(), point.copy()
+        ahead[column] += step
+        behind[column] -= step
+        difference = np.array(value(ahead, parameters) - value(behind, parameters)).ravel() / (2 * step)
+        assert np.allclose(exact[:, column], difference, atol=1e-6)
+
+
+def test_no_bodies_of_a_solved_posture_overlap(
+    problem: DesignProblem, apart: DesignProblem, met: dict
+) -> None:
+    known = replace(Evaluator(apart).known, meetings=met)
+    free, kept = Evaluator(problem), Evaluator(apart, known)
+    rng = np.random.default_rng(5)
+    changed = 0
+    for design in [
+        problem.space.values(tuple(point))
+        for point in rng.uniform(0.2, 0.8, (3, len(problem.space.parameters)))
+    ]:
+        before, after = free.solve(design), kept.solve(design)
+        for one, other in zip(before.cases, after.cases, strict=True):
+            if other.solved:
+                assert other.residuals["overlap"] == 0.0
+                changed += other.attempt.cost > one.attempt.cost + 1e-6
+    assert changed > 0
+
+
+def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
+    problem: DesignProblem, apart: DesignProblem, met: dict
+) -> None:
+    design = problem.space.unscaled(problem.scene.robot.tree)
+    free = ReachProblem(setting_of(problem), symmetric=True)
+    kept = ReachProblem(replace(setting_of(apart), scene=with_meetings(apart.scene, met)), symmetric=True)
+    through, around = free.extreme(design, LOWEST)[0], kept.extreme(design, LOWEST)[0]
+    assert through is not None
+    assert around is not None
+    assert through < around < 0.8
+    assert SHAPE == 36
