@@ -23,6 +23,7 @@ from evodesign.cli.evaluate import evaluate
 from evodesign.cli.export import export
 from evodesign.cli.front import front
 from evodesign.cli.init import init
+from evodesign.cli.matters import matters
 from evodesign.cli.merge import merge
 from evodesign.cli.options import BAD_INPUT
 from evodesign.cli.polish import polish
@@ -53,6 +54,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "export": export,
     "watch": watch,
     "compare": compare,
+    "matters": matters,
     "evaluate": evaluate,
     "polish": polish,
     "check": check,

@@ -30,6 +30,7 @@ SCRIPTS = (
     "parallel.js",
     "progress.js",
     "failures.js",
+    "importance.js",
     "table.js",
     "matrices.js",
     "kinematics.js",

@@ -6,6 +6,7 @@ startChips();
 startParallel();
 startProgress();
 startFailures();
+startImportance();
 startTable();
 startCard();
 applyTheme(root.dataset.theme);
