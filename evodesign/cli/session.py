@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from evodesign.analysis.growth import growth
 from evodesign.cli.front import print_front
 from evodesign.cli.output import console, print_commands, print_lines, printable, show_notes
 from evodesign.cli.progress import precompute_progress, search_progress
@@ -18,6 +19,7 @@ DISPLAY = Display(lambda note: show_notes([note]), precompute_progress, search_p
 def show_result(run: RunLog, *, json: bool) -> None:
     """A few designs of the front, why the search ended if not for its budget, and what to do next."""
     show_notes(run.faults)
+    known = growth(run.generations)
     if len(run.evaluations) < run.header.budget:
         show_notes(
             [
@@ -26,6 +28,8 @@ def show_result(run: RunLog, *, json: bool) -> None:
                 f"evodesign resume {run.directory} --stagnation-generations 0"
             ]
         )
+    if known is not None:
+        show_notes([known.sentence])
     if json:
         print_front(run, json=True)
         return

@@ -223,7 +223,7 @@ class DesignContent(Part, frozen=True):
 class Content(Part, frozen=True):
     """The whole page; people and loads have an empty name where there is one of them.
 
-    `importance` is as in `analysis.importance_json`.
+    `importance` is as in `analysis.importance_json`, `growth` a sentence or empty.
     """
 
     facts: Facts
@@ -236,6 +236,7 @@ class Content(Part, frozen=True):
     points: Points
     marks: tuple[Mark, ...]
     generations: tuple[Generation, ...]
+    growth: str
     failures: tuple[CauseContent, ...]
     importance: dict[str, Any]
     bodies: Bodies | None

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.front import front
+from evodesign.analysis.growth import growth
 from evodesign.analysis.importance import Importance, importance, slices
 from evodesign.analysis.importance_json import importance_json, slices_json
 from evodesign.errors import EvodesignError, RunError
@@ -56,6 +57,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     shown = chosen_points(run.evaluations, on_front, {mark.number for mark in marked}, MOST_POINTS)
     opened, more_notes = _opened(run, marked, shown, on_front)
     found = importance(run.header, run.evaluations)
+    known = growth(run.generations)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     return Content(
         facts=_facts(run, len(best)),
@@ -68,6 +70,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         points=points(run.header, shown, on_front),
         marks=marked,
         generations=run.generations,
+        growth="" if known is None else known.sentence,
         failures=tuple(
             CauseContent(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
             for each in causes_of_infeasibility(run.evaluations, run.header.constrained)
