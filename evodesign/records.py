@@ -18,6 +18,7 @@ from evodesign.tasks import Hold, Record, Task
 __all__ = [
     "FORMAT_VERSION",
     "NO_SECONDS",
+    "SUM",
     "AgentDetail",
     "Assessed",
     "Assessment",
@@ -25,6 +26,7 @@ __all__ = [
     "CaseDetail",
     "CaseOutcome",
     "Constraint",
+    "Descriptor",
     "Detail",
     "Evaluation",
     "Front",
@@ -404,6 +406,26 @@ class SearchStage(Record, frozen=True):
     generations: int
 
 
+SUM = " + "
+"""Between the names of quantities that a descriptor adds up."""
+
+
+class Descriptor(Record, frozen=True):
+    """What tells kinds of designs apart: the sum of some quantities, within bounds in so many parts.
+
+    Attributes:
+        name: of a quantity, as conditions name it; several are joined by ` + `.
+        lower: of the bounds; None where designs tell.
+        upper: likewise.
+        cells: parts between them.
+    """
+
+    name: str
+    lower: float | None
+    upper: float | None
+    cells: int
+
+
 class SearchSettings(Record, frozen=True):
     """Everything that determines a search beside the evaluations it is told.
 
@@ -411,7 +433,7 @@ class SearchSettings(Record, frozen=True):
     `choices` is left out where no coordinate is discrete; else it says of each coordinate how many choices
     there are, 0 for a continuous one. `gradients` is left out where evaluations have none, `reference`
     where none is given: of each objective, as it is minimised, the value beyond which a design counts for
-    nothing.
+    nothing. `descriptors` is left out where none are named.
     """
 
     algorithm: str
@@ -425,6 +447,12 @@ class SearchSettings(Record, frozen=True):
     choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
     gradients: bool | msgspec.UnsetType = msgspec.UNSET
     reference: tuple[float | None, ...] | msgspec.UnsetType = msgspec.UNSET
+    descriptors: tuple[Descriptor, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def described(self) -> tuple[Descriptor, ...]:
+        """The descriptors that are named."""
+        return () if self.descriptors is msgspec.UNSET else self.descriptors
 
     @property
     def reference_values(self) -> tuple[float | None, ...]:

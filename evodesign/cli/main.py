@@ -21,6 +21,7 @@ from evodesign.cli.check import check
 from evodesign.cli.compare import compare
 from evodesign.cli.evaluate import evaluate
 from evodesign.cli.export import export
+from evodesign.cli.families import families
 from evodesign.cli.front import front
 from evodesign.cli.init import init
 from evodesign.cli.matters import matters
@@ -55,6 +56,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "watch": watch,
     "compare": compare,
     "matters": matters,
+    "families": families,
     "evaluate": evaluate,
     "polish": polish,
     "check": check,

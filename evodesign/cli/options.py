@@ -75,7 +75,11 @@ Stagnation = Annotated[
 ]
 Algorithm = Annotated[
     str | None,
-    typer.Option(metavar="NAME", help="nsga2, cma-es or random.", show_default="as in the problem"),
+    typer.Option(
+        metavar="NAME",
+        help="nsga2, cma-es, surrogate, map-elites or random.",
+        show_default="as in the problem",
+    ),
 ]
 PopulationSize = Annotated[
     int | None,

@@ -24,6 +24,7 @@ from evodesign.problem.agents import (
     robot_agent,
 )
 from evodesign.problem.constraints import constraints_of, refuse_constraints
+from evodesign.problem.descriptors import search_descriptors
 from evodesign.problem.design_space import (
     check_allocations,
     density_parameters,
@@ -154,6 +155,13 @@ class DesignProblem:
             asynchronous=table.asynchronous if asynchronous is None else asynchronous,
             choices=self.space.counts if any(self.space.counts) else msgspec.UNSET,
             reference=self._reference(),
+            descriptors=search_descriptors(
+                table.descriptor,
+                self.space.parameters,
+                (*self.objectives, *self.constraints),
+                (task.height_m for task in self.tasks),
+                self.source.path,
+            ),
             gradients=True if gradients and algorithm != JOINT_STARTS else msgspec.UNSET,
         )
 

@@ -130,6 +130,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "watch": (("watch", "run", "--once"), ("watch", "toy", "--once")),
     "compare": (("compare", "run", "other"), ("compare", "toy", "toy-again", "run")),
     "matters": (("matters", "run"), ("matters", "many", "--design", 3)),
+    "families": (("families", "run"), ("families", "many", "--by", "arm.0 + arm.1", "--cells", 5)),
     "evaluate": (("evaluate", "small.toml"),),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (

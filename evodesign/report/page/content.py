@@ -223,7 +223,8 @@ class DesignContent(Part, frozen=True):
 class Content(Part, frozen=True):
     """The whole page; people and loads have an empty name where there is one of them.
 
-    `importance` is as in `analysis.importance_json`, `growth` a sentence or empty.
+    `importance` is as in `analysis.importance_json`, `families` as `analysis.families` tells
+    them, `growth` a sentence or empty.
     """
 
     facts: Facts
@@ -239,6 +240,7 @@ class Content(Part, frozen=True):
     growth: str
     failures: tuple[CauseContent, ...]
     importance: dict[str, Any]
+    families: dict[str, Any]
     bodies: Bodies | None
     designs: dict[int, DesignContent]
     notes: tuple[str, ...]

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Sequence
 from msgspec.structs import replace
 
 from evodesign.analysis.failures import causes_of_infeasibility
+from evodesign.analysis.families import families, families_json
 from evodesign.analysis.front import front
 from evodesign.analysis.growth import growth
 from evodesign.analysis.importance import Importance, importance, slices
@@ -54,7 +55,12 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     best = front(run.header.objectives, run.evaluations)
     on_front = {evaluation.number for evaluation in best}
     marked = _marks(run, problem, best, asked)
-    shown = chosen_points(run.evaluations, on_front, {mark.number for mark in marked}, MOST_POINTS)
+    kinds = families(run.header, run.evaluations)
+    needed = {mark.number for mark in marked}
+    elites = {kind.elite.number for kind in kinds.kinds}
+    if len(needed | elites) < MOST_POINTS:
+        needed |= elites
+    shown = chosen_points(run.evaluations, on_front, needed, MOST_POINTS)
     opened, more_notes = _opened(run, marked, shown, on_front)
     found = importance(run.header, run.evaluations)
     known = growth(run.generations)
@@ -76,6 +82,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
             for each in causes_of_infeasibility(run.evaluations, run.header.constrained)
         ),
         importance=importance_json(found),
+        families=families_json(kinds),
         bodies=None if problem is None else bodies(problem),
         designs=_with_slices(
             _designs(run, problem, shown, opened, marked, on_front),

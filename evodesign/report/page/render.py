@@ -31,6 +31,7 @@ SCRIPTS = (
     "progress.js",
     "failures.js",
     "importance.js",
+    "families.js",
     "table.js",
     "matrices.js",
     "kinematics.js",

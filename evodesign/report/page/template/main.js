@@ -7,6 +7,7 @@ startParallel();
 startProgress();
 startFailures();
 startImportance();
+startFamilies();
 startTable();
 startCard();
 applyTheme(root.dataset.theme);
