@@ -497,7 +497,8 @@ class RunHeader(Record, frozen=True):
     """First message of every segment of a run's log.
 
     `budget` counts evaluations of the run, `hours` wall time of each session, and `stagnation_generations`
-    generations in which the hypervolume may stand still. `constraints` is left out where there are none.
+    generations in which the hypervolume may stand still. `constraints` is left out where there are none, as
+    is `least_growth_percent`, the growth that a doubling of the evaluations must promise.
     """
 
     format_version: int
@@ -513,6 +514,12 @@ class RunHeader(Record, frozen=True):
     hours: float | None = None
     stagnation_generations: int | None = None
     constraints: tuple[Constraint, ...] | msgspec.UnsetType = msgspec.UNSET
+    least_growth_percent: float | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def least_growth(self) -> float | None:
+        """Growth [%] that a doubling of the evaluations must promise; None for any."""
+        return None if self.least_growth_percent is msgspec.UNSET else self.least_growth_percent
 
     @property
     def constrained(self) -> tuple[Constraint, ...]:

@@ -22,7 +22,7 @@ import numpy as np
 
 from evodesign.records import Generation
 
-__all__ = ["HIGH", "LOW", "USUAL", "HypervolumeGrowth", "growth"]
+__all__ = ["HIGH", "LOW", "USUAL", "HypervolumeGrowth", "growth", "growth_of"]
 
 USUAL, LOW, HIGH = 0.85, 0.3, 3.3
 """Growth of a doubling divided by that of the one before: median, and the quantiles 10 % and 90 %."""
@@ -72,7 +72,12 @@ def growth(generations: Sequence[Generation]) -> HypervolumeGrowth | None:
     Args:
         generations: of a run, in order; those of a later session alone may do.
     """
-    known = [(each.evaluations, each.hypervolume) for each in generations if each.hypervolume is not None]
+    return growth_of([(each.evaluations, each.hypervolume) for each in generations])
+
+
+def growth_of(history: Sequence[tuple[int, float | None]]) -> HypervolumeGrowth | None:
+    """The same from numbers of evaluations, each with the hypervolume after it."""
+    known = [(count, volume) for count, volume in history if volume is not None]
     if not known or known[-1][0] < 2 * known[0][0]:
         return None
     counts, volumes = np.array(known, dtype=float).T

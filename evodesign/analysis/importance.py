@@ -267,7 +267,7 @@ def _nothing(objectives: Sequence[ObjectiveImportance]) -> list[str]:
     lists = [{each.name: each.total.high for each in found.nothing if each.total} for found in objectives]
     everywhere = [name for name in lists[0] if all(name in names for names in lists)] if lists else []
     sentences = [
-        f"{name} changes nothing: it accounts for at most {max(names[name] for names in lists):.2%} of the "
+        f"{name} changes nothing: it accounts for {_at_most(max(names[name] for names in lists))} of the "
         "variance of any objective"
         for name in everywhere
     ]
@@ -278,7 +278,11 @@ def _nothing(objectives: Sequence[ObjectiveImportance]) -> list[str]:
             each = "it accounts" if len(alone) == 1 else "they account"
             most = max(names[name] for name in alone)
             sentences.append(
-                f"{', '.join(alone)} {verb} nothing of {found.response.objective.name}: {each} for at most "
-                f"{most:.2%} of its variance{'' if len(alone) == 1 else ' each'}"
+                f"{', '.join(alone)} {verb} nothing of {found.response.objective.name}: {each} for "
+                f"{_at_most(most)} of its variance{'' if len(alone) == 1 else ' each'}"
             )
     return sentences
+
+
+def _at_most(share: float) -> str:
+    return f"at most {share:.2%}" if share > 1e-4 else "less than 0.01%"

@@ -73,6 +73,15 @@ Stagnation = Annotated[
         show_default="never",
     ),
 ]
+LeastGrowth = Annotated[
+    float | None,
+    typer.Option(
+        min=0,
+        metavar="PERCENT",
+        help="End when hardly any search would still grow by so much with as many evaluations; 0 for never.",
+        show_default="never",
+    ),
+]
 Algorithm = Annotated[
     str | None,
     typer.Option(

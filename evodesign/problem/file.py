@@ -262,6 +262,7 @@ class SearchTable(Table, frozen=True):
     seed: Annotated[int, Meta(ge=0)] = 1
     hours: Positive | None = None
     stagnation_generations: Annotated[int, Meta(ge=0)] | None = None
+    least_growth_percent: Positive | None = None
     start: Name | None = None
     asynchronous: bool = False
     gradients: bool | None = None

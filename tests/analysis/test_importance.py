@@ -128,8 +128,8 @@ def test_a_parameter_that_changes_nothing_is_told() -> None:
     values = {"torque": points[:, 0] ** 2 + 2.0 * points[:, 2], "reach": points[:, 0]}
     found = importance(made, logged(made, points, values))
     told = [sentence for sentence in found.sentences if "nothing" in sentence]
-    assert told[0].startswith("p1 changes nothing: it accounts for at most 0.")
-    assert told[1].startswith("p2 changes nothing of reach: it accounts for at most 0.")
+    assert told[0].startswith("p1 changes nothing: it accounts for ")
+    assert told[1].startswith("p2 changes nothing of reach: it accounts for ")
     assert len(told) == 2
 
 
