@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import StrEnum
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
+from msgspec import Meta
 
 from evodesign.tasks import Hold, Record, Task
 
@@ -423,7 +424,7 @@ class Descriptor(Record, frozen=True):
     name: str
     lower: float | None
     upper: float | None
-    cells: int
+    cells: Annotated[int, Meta(ge=1, le=1000)]
 
 
 class SearchSettings(Record, frozen=True):

@@ -154,7 +154,11 @@ def _bounded(axis: Descriptor, values: np.ndarray[Any, np.dtype[np.float64]]) ->
 
 def _cell(axis: Descriptor, value: float) -> int:
     lower, upper = axis.lower or 0.0, axis.upper or 0.0
-    return min(max(int((value - lower) / (upper - lower) * axis.cells), 0), axis.cells - 1)
+    share = (
+        value / 2.0 - lower / 2.0,
+        upper / 2.0 - lower / 2.0,
+    )  # halves are finite
+    return min(int(min(max(share[0] / share[1], 0.0), 1.0) * axis.cells), axis.cells - 1)
 
 
 def families_json(found: Families) -> dict[str, Any]:

@@ -47,6 +47,9 @@ FEWEST, FEWEST_PER_PARAMETER = 20, 2
 MOST = 10_000
 """Designs that a model is made of, at most; of more, the log is thinned evenly."""
 
+LARGEST = 1e100
+"""Size beyond which a value or a derivative counts as none: its square would be no number."""
+
 CONSTANT = 1e-9
 """Of the size of a value: a smaller standard deviation is none."""
 
@@ -141,7 +144,7 @@ def _known(objective: Objective, parameters: Sequence[Parameter], evaluations: S
     told = [
         each
         for each in evaluations
-        if math.isfinite(each.assessment.objectives.get(objective.name, math.nan))
+        if abs(each.assessment.objectives.get(objective.name, math.inf)) < LARGEST
     ]
     if len(told) > MOST:
         told = [told[place] for place in np.linspace(0, len(told) - 1, MOST).round().astype(int)]
@@ -150,6 +153,7 @@ def _known(objective: Objective, parameters: Sequence[Parameter], evaluations: S
         if isinstance(each.assessment.gradients, Gradients):
             row = each.assessment.gradients.values.get(objective.name, {})
             gradients[place, 0] = [row.get(parameter.name, math.nan) for parameter in parameters]
+    gradients[np.abs(gradients) > LARGEST] = np.nan
     values = [[each.assessment.objectives[objective.name]] for each in told]
     return Known(
         np.array([each.genome for each in told]).reshape(-1, len(parameters)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from evodesign.analysis.growth import growth
-from evodesign.analysis.run_state import stagnant
+from evodesign.analysis.run_state import exhausted
 from evodesign.cli.front import print_front
 from evodesign.cli.output import console, print_commands, print_lines, printable, show_notes
 from evodesign.cli.progress import precompute_progress, search_progress
@@ -37,12 +37,11 @@ def show_result(run: RunLog, *, json: bool) -> None:
 
 def _why(run: RunLog) -> str:
     """Why a search ended before its budget was used up, and how to go on."""
-    header = run.header
-    more = f"to go on all the same: evodesign resume {run.directory}"
-    if stagnant([each.hypervolume for each in run.generations], header.stagnation_generations):
-        generations = header.stagnation_generations
-        return f"the hypervolume stood still for {generations} generations; {more} --stagnation-generations 0"
-    return (
-        f"hardly any search would still grow by {header.least_growth:g} % with as many evaluations; "
-        f"{more} --least-growth-percent 0"
-    )
+    least, more = run.header.least_growth, f"to go on all the same: evodesign resume {run.directory}"
+    if exhausted([(each.evaluations, each.hypervolume) for each in run.generations], least):
+        return (
+            f"hardly any search would still grow by {least:g} % with as many evaluations; {more} "
+            "--least-growth-percent 0"
+        )
+    generations = run.header.stagnation_generations
+    return f"the hypervolume stood still for {generations} generations; {more} --stagnation-generations 0"

@@ -81,6 +81,17 @@ def test_unknown_names_are_refused_with_the_nearest() -> None:
         families(HEADER, RUN, objective="reach")
 
 
+def test_values_of_any_size_have_a_cell() -> None:
+    huge = [
+        msgspec.structs.replace(
+            each, assessment=msgspec.structs.replace(each.assessment, design={"arm.0": size, "arm.1": 0.0})
+        )
+        for each, size in zip([one for one in RUN if one.feasible], (-1.7e308, 1.7e308, 0.0), strict=False)
+    ]
+    found = families(HEADER, huge, by=("arm.0",), cells=5)
+    assert sorted(kind.cell for kind in found.kinds) == [(0,), (2,), (4,)]
+
+
 def test_a_sum_of_something_that_does_not_exist_is_none() -> None:
     lost = next(each for each in RUN if not each.feasible)
     known = quantities(HEADER, lost)

@@ -159,6 +159,18 @@ def test_why_nothing_can_be_told(values: Array, reason: str) -> None:
     assert found.sentences == (f"what matters to torque cannot be told from this log: {reason}",)
 
 
+def test_numbers_that_no_robot_has_are_left_out() -> None:
+    made = header(("torque",), 2)
+    points = quasi_random(64, 2)
+    values = points[:, 0].copy()
+    values[:3] = 1e308, -1e308, 1e200
+    slopes = np.tile([1.0, 0.0], (64, 1))
+    slopes[5] = 1e300
+    found = importance(made, logged(made, points, {"torque": values}, {"torque": slopes})).objectives[0]
+    assert (found.response.designs, found.response.with_gradients) == (61, 60)
+    assert found.parameters[0].name == "p0"
+
+
 def test_gradients_give_slopes_and_better_models() -> None:
     made = header(("torque",), 3)
     points = quasi_random(64, 3)
