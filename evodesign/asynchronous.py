@@ -11,7 +11,7 @@ import time
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import closing
 
-from evodesign.analysis.run_state import RunState, stagnant
+from evodesign.analysis.run_state import RunState
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.records import Evaluation, Genome, Turn
 from evodesign.searches.base import AsynchronousSearch
@@ -33,7 +33,7 @@ def evolve_asynchronously(session: Session, search: AsynchronousSearch) -> None:
             born.append(evaluation)
             if len(born) == session.header.search.population:
                 conclude(session, evaluation.generation, run_state, born, begun)
-                if stagnant(run_state.hypervolumes, session.header.stagnation_generations):
+                if run_state.over(session.header):
                     return
                 begun, born = time.perf_counter(), []
 

@@ -24,7 +24,7 @@ from typing import NoReturn
 import msgspec
 
 from evodesign.analysis.front import RunningFront
-from evodesign.analysis.run_state import RunState, stagnant
+from evodesign.analysis.run_state import RunState
 from evodesign.asynchronous import evolve_asynchronously
 from evodesign.errors import Interrupted, RunError
 from evodesign.pool.base import Pool
@@ -140,7 +140,9 @@ def replay(run: RunLog, *, make_search: MakeSearch = registry.make_search) -> No
         raise _EndOfLog
 
     last = max((evaluation.number for evaluation in run.evaluations), default=-1)
-    header = msgspec.structs.replace(run.header, budget=1 + last, stagnation_generations=None)
+    header = msgspec.structs.replace(
+        run.header, budget=1 + last, stagnation_generations=None, least_growth_percent=msgspec.UNSET
+    )
     running = RunningFront(header.objectives)
     with SessionLog(run, end) as memory, SerialPool() as pool, suppress(_EndOfLog):
         evolve = _loop(header.search, make_search)
@@ -185,7 +187,7 @@ def _evolve(session: Session, search: Search) -> None:
         if len(born) < len(genomes):
             return
         conclude(session, generation, run_state, born, begun)
-        if stagnant(run_state.hypervolumes, session.header.stagnation_generations):
+        if run_state.over(session.header):
             return
         search.tell([search_outcome(session.header, evaluation) for evaluation in born])
         generation += 1

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import StrEnum
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
+from msgspec import Meta
 
 from evodesign.tasks import Hold, Record, Task
 
 __all__ = [
     "FORMAT_VERSION",
     "NO_SECONDS",
+    "SUM",
     "AgentDetail",
     "Assessed",
     "Assessment",
@@ -25,6 +27,7 @@ __all__ = [
     "CaseDetail",
     "CaseOutcome",
     "Constraint",
+    "Descriptor",
     "Detail",
     "Evaluation",
     "Front",
@@ -404,6 +407,26 @@ class SearchStage(Record, frozen=True):
     generations: int
 
 
+SUM = " + "
+"""Between the names of quantities that a descriptor adds up."""
+
+
+class Descriptor(Record, frozen=True):
+    """What tells kinds of designs apart: the sum of some quantities, within bounds in so many parts.
+
+    Attributes:
+        name: of a quantity, as conditions name it; several are joined by ` + `.
+        lower: of the bounds; None where designs tell.
+        upper: likewise.
+        cells: parts between them.
+    """
+
+    name: str
+    lower: float | None
+    upper: float | None
+    cells: Annotated[int, Meta(ge=1, le=1000)]
+
+
 class SearchSettings(Record, frozen=True):
     """Everything that determines a search beside the evaluations it is told.
 
@@ -411,7 +434,7 @@ class SearchSettings(Record, frozen=True):
     `choices` is left out where no coordinate is discrete; else it says of each coordinate how many choices
     there are, 0 for a continuous one. `gradients` is left out where evaluations have none, `reference`
     where none is given: of each objective, as it is minimised, the value beyond which a design counts for
-    nothing.
+    nothing. `descriptors` is left out where none are named.
     """
 
     algorithm: str
@@ -425,6 +448,12 @@ class SearchSettings(Record, frozen=True):
     choices: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
     gradients: bool | msgspec.UnsetType = msgspec.UNSET
     reference: tuple[float | None, ...] | msgspec.UnsetType = msgspec.UNSET
+    descriptors: tuple[Descriptor, ...] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def described(self) -> tuple[Descriptor, ...]:
+        """The descriptors that are named."""
+        return () if self.descriptors is msgspec.UNSET else self.descriptors
 
     @property
     def reference_values(self) -> tuple[float | None, ...]:
@@ -469,7 +498,8 @@ class RunHeader(Record, frozen=True):
     """First message of every segment of a run's log.
 
     `budget` counts evaluations of the run, `hours` wall time of each session, and `stagnation_generations`
-    generations in which the hypervolume may stand still. `constraints` is left out where there are none.
+    generations in which the hypervolume may stand still. `constraints` is left out where there are none, as
+    is `least_growth_percent`, the growth that a doubling of the evaluations must promise.
     """
 
     format_version: int
@@ -485,6 +515,12 @@ class RunHeader(Record, frozen=True):
     hours: float | None = None
     stagnation_generations: int | None = None
     constraints: tuple[Constraint, ...] | msgspec.UnsetType = msgspec.UNSET
+    least_growth_percent: float | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def least_growth(self) -> float | None:
+        """Growth [%] that a doubling of the evaluations must promise; None for any."""
+        return None if self.least_growth_percent is msgspec.UNSET else self.least_growth_percent
 
     @property
     def constrained(self) -> tuple[Constraint, ...]:

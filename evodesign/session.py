@@ -16,6 +16,7 @@ from pathlib import Path
 
 import msgspec
 
+from evodesign.analysis.conditions import described
 from evodesign.analysis.front import RunningFront, minimised
 from evodesign.analysis.run_state import RunState
 from evodesign.pool.base import Factory, Finished, Pool
@@ -177,6 +178,7 @@ def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
         gradients=tuple(gradient(*sign) for sign in signs),
         margins=tuple(margin for _, margin, _ in margins),
         margin_gradients=tuple(gradient(name, factor) for name, _, factor in margins),
+        descriptors=described(header, evaluation),
     )
 
 

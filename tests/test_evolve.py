@@ -17,6 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evodesign.analysis.hypervolume import hypervolume
+from evodesign.analysis.run_state import exhausted
 from evodesign.errors import Interrupted, ResumeMismatch, RunError
 from evodesign.evolve import Silent, resume, start
 from evodesign.pool.base import Finished
@@ -484,6 +485,23 @@ def test_a_search_whose_hypervolume_stands_still_ends_and_can_be_told_to_go_on(t
         tmp_path / "run", ToyTask, OrderedPool(), Silent(), None, make_search=Stubborn, renew=patient
     )
     assert len(further.evaluations) == 28
+
+
+def test_a_search_that_promises_too_little_growth_ends_and_can_be_told_to_go_on(tmp_path: Path) -> None:
+    header = msgspec.structs.replace(toy_header(population=4, budget=400), least_growth_percent=30.0)
+
+    def greedy(header: RunHeader) -> RunHeader:
+        return msgspec.structs.replace(header, least_growth_percent=msgspec.UNSET)
+
+    run = start(tmp_path / "run", header, ToyTask(header), OrderedPool(), Silent(), make_search=ToySearch)
+    history = [(each.evaluations, each.hypervolume) for each in run.generations]
+    assert 8 <= len(run.evaluations) < 400
+    assert exhausted(history, 30.0)
+    assert not exhausted(history[:-1], 30.0)
+    further = resume(
+        tmp_path / "run", ToyTask, OrderedPool(), Silent(), None, make_search=ToySearch, renew=greedy
+    )
+    assert len(further.evaluations) == 400
 
 
 def test_a_session_lets_go_of_what_it_has_told(tmp_path: Path) -> None:

@@ -25,9 +25,9 @@ from functools import partial
 from operator import attrgetter
 
 from evodesign.errors import InputError, nearest_name
-from evodesign.records import Case, CaseOutcome, Evaluation, RunHeader, Task
+from evodesign.records import SUM, Case, CaseOutcome, Evaluation, RunHeader, Task
 
-__all__ = ["Condition", "Quantity", "conditions", "meeting", "quantities", "quantity"]
+__all__ = ["Condition", "Quantity", "conditions", "described", "meeting", "quantities", "quantity", "total"]
 
 Quantity = Callable[[Evaluation], float | None]
 """A number of an evaluation; None where it does not exist."""
@@ -74,6 +74,20 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
     for objective in header.objectives:
         found[objective.name] = partial(_objective, objective.name)
     return found
+
+
+def described(header: RunHeader, evaluation: Evaluation) -> tuple[float | None, ...]:
+    """Values of the search's descriptors; None for one that does not exist."""
+    wanted = header.search.described
+    known = quantities(header, evaluation) if wanted else {}
+    return tuple(total(known, each.name, evaluation) for each in wanted)
+
+
+def total(known: Mapping[str, Quantity], name: str, evaluation: Evaluation) -> float | None:
+    """A quantity, or the sum of several; None where one does not exist."""
+    values = [known[part](evaluation) if part in known else None for part in name.split(SUM)]
+    present = [value for value in values if value is not None]
+    return math.fsum(present) if len(present) == len(values) else None
 
 
 def quantity(known: Mapping[str, Quantity], name: str, source: str) -> Quantity:

@@ -11,10 +11,11 @@ from collections.abc import Iterable, Sequence
 import msgspec
 
 from evodesign.analysis.front import front
+from evodesign.analysis.growth import growth_of
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
-from evodesign.records import Evaluation, Front, Generation, Objective
+from evodesign.records import Evaluation, Front, Generation, Objective, RunHeader
 
-__all__ = ["LEAST_GROWTH", "RunState", "stagnant"]
+__all__ = ["LEAST_GROWTH", "RunState", "exhausted", "stagnant"]
 
 LEAST_GROWTH = 1e-3
 """Share of its value by which a hypervolume must grow to count as growing."""
@@ -34,6 +35,17 @@ def stagnant(hypervolumes: Sequence[float | None], generations: int | None) -> b
     return before is not None and now is not None and now < before * (1.0 + LEAST_GROWTH)
 
 
+def exhausted(history: Sequence[tuple[int, float | None]], least_percent: float | None) -> bool:
+    """Whether, by experience, not one in ten searches would still grow by so much with as many evaluations.
+
+    Args:
+        history: numbers of evaluations, each with the hypervolume after it.
+        least_percent: growth of the hypervolume [%]; None or zero for any.
+    """
+    known = growth_of(history) if least_percent else None
+    return known is not None and least_percent is not None and 100.0 * known.high < least_percent
+
+
 class RunState:
     """The state of a run after the generations shown to it.
 
@@ -47,6 +59,13 @@ class RunState:
         self._reference: dict[str, float] | None = None
         self._shown = 0
         self._hypervolumes: list[float | None] = []
+        self._counts: list[int] = []
+
+    def over(self, header: RunHeader) -> bool:
+        """Whether a search is to end that gains, or promises, less than its header wants."""
+        return stagnant(self._hypervolumes, header.stagnation_generations) or exhausted(
+            [*zip(self._counts, self._hypervolumes, strict=True)], header.least_growth
+        )
 
     @property
     def hypervolumes(self) -> Sequence[float | None]:
@@ -59,6 +78,7 @@ class RunState:
         self._reference = self._reference or reference_point(self._objectives, born)
         self._members = front(self._objectives, (*self._members, *map(_bare, born)))
         self._hypervolumes.append(self._hypervolume())
+        self._counts.append(self._shown)
 
     def generation(self, number: int, born: Iterable[Evaluation], seconds: float) -> Generation:
         """The record of a generation that was added last, and took so long [s]."""

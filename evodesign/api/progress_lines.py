@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TextIO
 
 from evodesign.analysis.failures import causes, failures
+from evodesign.analysis.growth import growth
 from evodesign.errors import on_one_line
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece, TimeLeft, in_words
@@ -25,6 +26,7 @@ class SearchLines(Observer):
         self._began = time.monotonic()
         self._known = self._done = self._budget = 0
         self._failures: Counter[Status] = Counter()
+        self._generations: list[Generation] = []
 
     def started(self, header: RunHeader, evaluations_done: int) -> None:
         """Say what begins."""
@@ -45,8 +47,12 @@ class SearchLines(Observer):
 
     def generation_done(self, generation: Generation) -> None:
         """Say where the search stands."""
+        self._generations.append(generation)
+        known = growth(self._generations)
+        gain = "" if known is None else f"; {known.in_short}"
         failed = f"; failed in this session: {causes(self._failures)}" if self._failures else ""
-        _write(self._stream, f"{generation_line(generation, self._budget)}, {self._left()} left{failed}")
+        line = generation_line(generation, self._budget)
+        _write(self._stream, f"{line}, {self._left()} left{gain}{failed}")
 
     def _left(self) -> str:
         """The time left, from the pace of this session."""

@@ -9,7 +9,7 @@ import os
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, conditions, quantities
@@ -114,11 +114,20 @@ class Run:
             >>> run.design(4).parameters["length.shank"]
             1.489...
         """
-        for evaluation in self.log.evaluations:
-            if evaluation.number == number:
-                return self._design(evaluation)
-        wanted = f"a design of {self.log.directory}, which has {len(self)}"
-        raise InputError("number", "", wanted, f"{number}")
+        return self._design(self.log.evaluation(number))
+
+    def matters(self, through: int | None = None) -> dict[str, Any]:
+        """What matters: each parameter's share of every objective's variance, as `evodesign matters --json`.
+
+        Args:
+            through: number of a design of the run, to add slices through it along every parameter.
+        Example:
+            >>> [each["reason"] for each in run.matters()["objectives"]][0]
+            '5 evaluated designs have it, and at least 20 are wanted'
+        """
+        from evodesign.analysis.importance_json import matters_json  # SciPy's statistics take time to load
+
+        return matters_json(self.log, through)
 
     def choose(
         self,
@@ -269,11 +278,9 @@ class Run:
         if designs is None:
             return self.log.evaluations
         by_number = {evaluation.number: evaluation for evaluation in self.log.evaluations}
-        for design in designs:
-            if design.number not in by_number:
-                found = (
-                    "one that was evaluated outside of it" if design.number is None else f"{design.number}"
-                )
+        for number in (design.number for design in designs):
+            if number not in by_number:
+                found = "one that was evaluated outside of it" if number is None else f"{number}"
                 raise InputError("designs", "", f"designs of {self.log.directory}", found)
         return [by_number[design.number] for design in designs if design.number is not None]
 

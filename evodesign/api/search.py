@@ -41,6 +41,7 @@ def search(
     asynchronous: bool | None = None,
     hours: float | None = None,
     stagnation_generations: int | None = None,
+    least_growth_percent: float | None = None,
     jobs: int = 1,
     pool: str = "joblib",
     scheduler: str | None = None,
@@ -63,6 +64,7 @@ def search(
         asynchronous: whether no worker waits for the slowest evaluation of a generation.
         hours: wall time [h]; at its end the run is returned as it is, and can be resumed.
         stagnation_generations: end when the hypervolume has not grown for so many.
+        least_growth_percent: end when not one in ten searches would grow by so much with as many evaluations.
         jobs: evaluations at the same time, each in a process of its own.
         pool: joblib, dask, or serial for this process.
         scheduler: address of a Dask scheduler.
@@ -85,10 +87,16 @@ def search(
     _at_least(1, evaluations=evaluations, jobs=jobs)
     _at_least(2, population=population)
     _at_least(0, seed=seed, hours=hours, stagnation_generations=stagnation_generations)
+    _at_least(0, least_growth_percent=least_growth_percent)
     directory = new_directory(opened.name) if run is None else Path(run)
     built = opened.built
     settings = built.settings(algorithm, population, seed, asynchronous)
-    budgets = Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations)
+    budgets = Budgets(
+        evaluations=evaluations,
+        hours=hours,
+        stagnation_generations=stagnation_generations,
+        least_growth_percent=least_growth_percent,
+    )
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
     display = _display(callback, progress)
     with _ended_by_time() as deadline:
@@ -102,6 +110,7 @@ def resume(
     evaluations: int | None = None,
     hours: float | None = None,
     stagnation_generations: int | None = None,
+    least_growth_percent: float | None = None,
     jobs: int = 1,
     pool: str = "joblib",
     scheduler: str | None = None,
@@ -117,6 +126,7 @@ def resume(
         evaluations: of the run in total; left out, as many as it was to have.
         hours: as in `search`, as the other arguments are.
         stagnation_generations: 0 for never.
+        least_growth_percent: likewise.
         jobs: may differ from those before.
         pool: likewise.
         scheduler: likewise.
@@ -135,8 +145,14 @@ def resume(
     """
     _at_least(1, evaluations=evaluations, jobs=jobs)
     _at_least(0, hours=hours, stagnation_generations=stagnation_generations)
+    _at_least(0, least_growth_percent=least_growth_percent)
     directory = run.log.directory if isinstance(run, Run) else Path(run)
-    budgets = Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations)
+    budgets = Budgets(
+        evaluations=evaluations,
+        hours=hours,
+        stagnation_generations=stagnation_generations,
+        least_growth_percent=least_growth_percent,
+    )
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
     display = _display(callback, progress)
     with _ended_by_time() as deadline:

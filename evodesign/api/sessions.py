@@ -46,21 +46,24 @@ class Budgets:
         evaluations: of the run in total.
         hours: wall time of this session; 0 for no limit.
         stagnation_generations: in which the hypervolume may stand still; 0 for any number.
+        least_growth_percent: that a doubling of the evaluations must promise; 0 for any.
     """
 
     evaluations: int | None = None
     hours: float | None = None
     stagnation_generations: int | None = None
+    least_growth_percent: float | None = None
 
     def of(self, header: RunHeader) -> RunHeader:
         """A header with these budgets."""
         hours = header.hours if self.hours is None else self.hours
-        stagnation = self.stagnation_generations
+        stagnation, least = self.stagnation_generations, self.least_growth_percent
         return msgspec.structs.replace(
             header,
             budget=header.budget if self.evaluations is None else self.evaluations,
             hours=hours or None,
             stagnation_generations=header.stagnation_generations if stagnation is None else stagnation,
+            least_growth_percent=header.least_growth_percent if least is None else least or msgspec.UNSET,
         )
 
 
@@ -157,6 +160,7 @@ def begin(
         header_of(problem, settings, table.evaluations),
         hours=table.hours,
         stagnation_generations=table.stagnation_generations,
+        least_growth_percent=table.least_growth_percent or msgspec.UNSET,
     )
     header = budgets.of(header)
     refuse_run(directory)  # before anything takes time; the search's settings too

@@ -21,8 +21,10 @@ from evodesign.cli.check import check
 from evodesign.cli.compare import compare
 from evodesign.cli.evaluate import evaluate
 from evodesign.cli.export import export
+from evodesign.cli.families import families
 from evodesign.cli.front import front
 from evodesign.cli.init import init
+from evodesign.cli.matters import matters
 from evodesign.cli.merge import merge
 from evodesign.cli.options import BAD_INPUT
 from evodesign.cli.polish import polish
@@ -53,6 +55,8 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "export": export,
     "watch": watch,
     "compare": compare,
+    "matters": matters,
+    "families": families,
     "evaluate": evaluate,
     "polish": polish,
     "check": check,

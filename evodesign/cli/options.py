@@ -73,9 +73,22 @@ Stagnation = Annotated[
         show_default="never",
     ),
 ]
+LeastGrowth = Annotated[
+    float | None,
+    typer.Option(
+        min=0,
+        metavar="PERCENT",
+        help="End when hardly any search would still grow by so much with as many evaluations; 0 for never.",
+        show_default="never",
+    ),
+]
 Algorithm = Annotated[
     str | None,
-    typer.Option(metavar="NAME", help="nsga2, cma-es or random.", show_default="as in the problem"),
+    typer.Option(
+        metavar="NAME",
+        help="nsga2, cma-es, surrogate, map-elites or random.",
+        show_default="as in the problem",
+    ),
 ]
 PopulationSize = Annotated[
     int | None,

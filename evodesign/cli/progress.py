@@ -28,6 +28,7 @@ from rich.table import Table
 from rich.text import Text
 
 from evodesign.analysis.failures import causes, failures
+from evodesign.analysis.growth import growth
 from evodesign.api.progress_lines import PrecomputeLines, SearchLines
 from evodesign.cli.output import console, heading, rounded, show_notes
 from evodesign.problem.progress import PrecomputeProgress
@@ -82,7 +83,7 @@ class SearchPanel(Observer):
         self._live = Live(console=self._console, refresh_per_second=4, transient=False)
         self._task = self._progress.add_task("search", total=None)
         self._tally = _Tally(())
-        self._generation: Generation | None = None
+        self._generations: list[Generation] = []
 
     def started(self, header: RunHeader, evaluations_done: int) -> None:
         """Draw the panel."""
@@ -102,7 +103,7 @@ class SearchPanel(Observer):
 
     def generation_done(self, generation: Generation) -> None:
         """Show the new hypervolume and best values."""
-        self._generation = generation
+        self._generations.append(generation)
         self._tally.learn(generation.best)
         self._draw()
 
@@ -114,12 +115,15 @@ class SearchPanel(Observer):
         self._live.update(Group(self._progress, self._state()))
 
     def _state(self) -> Table:
-        tally, generation = self._tally, self._generation
+        tally, generation = self._tally, self._generations[-1] if self._generations else None
+        known = growth(self._generations)
         table = Table(box=None, show_header=False, padding=(0, 2))
         table.add_row("feasible", tally.feasible_share, "failed", causes(tally.failures))
         number = "-" if generation is None else str(generation.number)
         volume = rounded(None if generation is None else generation.hypervolume)
         table.add_row("generation", number, "hypervolume", volume)
+        if known is not None:
+            table.add_row("grew", f"{known.last:.1%}", "a doubling may add", f"{known.expected:.1%}")
         for objective in tally.objectives:
             table.add_row("best", rounded(tally.best.get(objective.name)), escape(heading(objective)), "")
         return table

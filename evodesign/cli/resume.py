@@ -17,6 +17,7 @@ def resume(
     evaluations: options.Evaluations = None,
     hours: options.Hours = None,
     stagnation_generations: options.Stagnation = None,
+    least_growth_percent: options.LeastGrowth = None,
     jobs: options.Jobs = options.CORES,
     pool: options.PoolName = "joblib",
     scheduler: options.Scheduler = None,
@@ -33,7 +34,12 @@ def resume(
 
     done = proceed(
         run,
-        Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations),
+        Budgets(
+            evaluations=evaluations,
+            hours=hours,
+            stagnation_generations=stagnation_generations,
+            least_growth_percent=least_growth_percent,
+        ),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
         partial(SignalledStop, run=run),

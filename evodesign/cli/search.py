@@ -19,6 +19,7 @@ def search(
     evaluations: options.Evaluations = None,
     hours: options.Hours = None,
     stagnation_generations: options.Stagnation = None,
+    least_growth_percent: options.LeastGrowth = None,
     population: options.PopulationSize = None,
     seed: options.Seed = None,
     asynchronous: Annotated[
@@ -49,7 +50,12 @@ def search(
         built,
         directory,
         built.settings(algorithm, population, seed, asynchronous),
-        Budgets(evaluations=evaluations, hours=hours, stagnation_generations=stagnation_generations),
+        Budgets(
+            evaluations=evaluations,
+            hours=hours,
+            stagnation_generations=stagnation_generations,
+            least_growth_percent=least_growth_percent,
+        ),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
         partial(SignalledStop, run=directory),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from evodesign.analysis.growth import growth
+from evodesign.analysis.run_state import exhausted
 from evodesign.cli.front import print_front
 from evodesign.cli.output import console, print_commands, print_lines, printable, show_notes
 from evodesign.cli.progress import precompute_progress, search_progress
@@ -18,14 +20,11 @@ DISPLAY = Display(lambda note: show_notes([note]), precompute_progress, search_p
 def show_result(run: RunLog, *, json: bool) -> None:
     """A few designs of the front, why the search ended if not for its budget, and what to do next."""
     show_notes(run.faults)
+    known = growth(run.generations)
     if len(run.evaluations) < run.header.budget:
-        show_notes(
-            [
-                f"ended after {len(run.evaluations)} of {run.header.budget} evaluations: the hypervolume "
-                f"stood still for {run.header.stagnation_generations} generations; to go on all the same: "
-                f"evodesign resume {run.directory} --stagnation-generations 0"
-            ]
-        )
+        show_notes([f"ended after {len(run.evaluations)} of {run.header.budget} evaluations: {_why(run)}"])
+    if known is not None:
+        show_notes([known.sentence])
     if json:
         print_front(run, json=True)
         return
@@ -34,3 +33,15 @@ def show_result(run: RunLog, *, json: bool) -> None:
         console().print(result_table(run, chosen))
     print_lines(*map(printable, result_lines(run, chosen)), "go on with:")
     print_commands(*next_commands(run, chosen))
+
+
+def _why(run: RunLog) -> str:
+    """Why a search ended before its budget was used up, and how to go on."""
+    least, more = run.header.least_growth, f"to go on all the same: evodesign resume {run.directory}"
+    if exhausted([(each.evaluations, each.hypervolume) for each in run.generations], least):
+        return (
+            f"hardly any search would still grow by {least:g} % with as many evaluations; {more} "
+            "--least-growth-percent 0"
+        )
+    generations = run.header.stagnation_generations
+    return f"the hypervolume stood still for {generations} generations; {more} --stagnation-generations 0"

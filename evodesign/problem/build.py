@@ -25,6 +25,7 @@ from evodesign.problem.agents import (
 )
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints
+from evodesign.problem.descriptors import search_descriptors
 from evodesign.problem.design_space import (
     check_allocations,
     density_parameters,
@@ -155,6 +156,13 @@ class DesignProblem:
             asynchronous=table.asynchronous if asynchronous is None else asynchronous,
             choices=self.space.counts if any(self.space.counts) else msgspec.UNSET,
             reference=self._reference(),
+            descriptors=search_descriptors(
+                table.descriptor,
+                self.space.parameters,
+                (*self.objectives, *self.constraints),
+                (task.height_m for task in self.tasks),
+                self.source.path,
+            ),
             gradients=True if gradients and algorithm != JOINT_STARTS else msgspec.UNSET,
         )
 

@@ -26,6 +26,7 @@ from evodesign.tree.urdf_read import InertiaRule
 
 __all__ = [
     "CollisionsTable",
+    "DescriptorTable",
     "DisturbanceTable",
     "Facing",
     "HumanTable",
@@ -251,12 +252,21 @@ class BoundsTable(Table, frozen=True):
     upper: float | None = None
 
 
+class DescriptorTable(Table, frozen=True):
+    """`[[search.descriptor]]`: what tells kinds of designs apart, as in `records.Descriptor`."""
+
+    name: Name
+    lower: float | None = None
+    upper: float | None = None
+    cells: Annotated[int, Meta(ge=1, le=1000)] = 20
+
+
 class SearchTable(Table, frozen=True):
     """`[search]`: how the design space is searched; `start` names a file of designs to begin with.
 
     `gradients` says whether every evaluation comes with its gradients; left out, as the algorithm wants it.
     `reference` names values of objectives beyond which a design counts for nothing to a search that measures
-    hypervolumes against a point (`surrogate`).
+    hypervolumes against a point (`surrogate`). Descriptors tell kinds of designs apart for `map-elites`.
     """
 
     algorithm: Name = "nsga2"
@@ -265,10 +275,12 @@ class SearchTable(Table, frozen=True):
     seed: Annotated[int, Meta(ge=0)] = 1
     hours: Positive | None = None
     stagnation_generations: Annotated[int, Meta(ge=0)] | None = None
+    least_growth_percent: Positive | None = None
     start: Name | None = None
     asynchronous: bool = False
     gradients: bool | None = None
     reference: dict[str, float] = msgspec.field(default_factory=dict)
+    descriptor: Annotated[tuple[DescriptorTable, ...], Meta(max_length=4)] = ()
 
 
 class SolverTable(Table, frozen=True):

@@ -16,7 +16,7 @@ from typing import TypeVar
 
 import msgspec
 
-from evodesign.errors import RunError
+from evodesign.errors import InputError, RunError
 from evodesign.records import NO_SECONDS, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.directory import run_segments, segments
 from evodesign.runlog.gaps import record_gaps, segment_gaps
@@ -59,6 +59,18 @@ class RunLog:
     def damaged(self) -> bool:
         """Whether records that were written are lost or changed, so that the front may be another one."""
         return bool(self.faults)
+
+    def evaluation(self, number: int) -> Evaluation:
+        """The evaluation of a number.
+
+        Raises:
+            InputError: the run has none.
+        """
+        for evaluation in self.evaluations:
+            if evaluation.number == number:
+                return evaluation
+        wanted = f"a design of {self.directory}, which has {len(self.evaluations)}"
+        raise InputError("number", "", wanted, f"{number}")
 
 
 @contextmanager

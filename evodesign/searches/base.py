@@ -42,6 +42,7 @@ class Outcome:
         margins: how far the design lies beyond each constraint's bounds, negative within them; None where it
             is unknown. None at all where only the violation is told.
         margin_gradients: of each margin, as of objectives.
+        descriptors: in the settings' order, None for one that does not exist; none where none are named.
     """
 
     objectives: tuple[float, ...] | None
@@ -49,6 +50,7 @@ class Outcome:
     gradients: tuple[Gradient | None, ...] = ()
     margins: tuple[float | None, ...] = ()
     margin_gradients: tuple[Gradient | None, ...] = ()
+    descriptors: tuple[float | None, ...] = ()
 
     @property
     def feasible(self) -> bool:

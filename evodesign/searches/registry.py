@@ -22,6 +22,7 @@ __all__ = ["ASYNCHRONOUS_SEARCHES", "SEARCHES", "make_asynchronous_search", "mak
 SEARCHES: Final[Mapping[str, str]] = {
     "cma-es": "evodesign.searches.cma_es:CmaEs",
     JOINT_STARTS: "evodesign.searches.quasi_random:QuasiRandom",
+    "map-elites": "evodesign.searches.map_elites:MapElites",
     "nsga2": "evodesign.searches.nsga2:Nsga2",
     "random": "evodesign.searches.quasi_random:QuasiRandom",
     "surrogate": "evodesign.searches.surrogate.search:Surrogate",
@@ -29,6 +30,7 @@ SEARCHES: Final[Mapping[str, str]] = {
 
 ASYNCHRONOUS_SEARCHES: Final[Mapping[str, str]] = {
     "cma-es": "evodesign.searches.cma_es:AsynchronousCmaEs",
+    "map-elites": "evodesign.searches.map_elites:AsynchronousMapElites",
     "nsga2": "evodesign.searches.nsga2:AsynchronousNsga2",
     "random": "evodesign.searches.quasi_random:AsynchronousRandom",
     "surrogate": "evodesign.searches.surrogate.search:AsynchronousSurrogate",

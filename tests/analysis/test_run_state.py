@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from evodesign.analysis.front import front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
-from evodesign.analysis.run_state import RunState, stagnant
+from evodesign.analysis.run_state import RunState, exhausted, stagnant
 from tests.runlog.toys import toy_evaluations, toy_header
 
 
@@ -36,6 +36,24 @@ def test_standing_carried_on_equals_standing_looked_up_anew(
             assert record.hypervolume == pytest.approx(hypervolume(header.objectives, known, reference))
         members = tuple(each.number for each in front(header.objectives, known))
         assert run_state.front(number).evaluations == members
+
+
+@pytest.mark.parametrize(
+    ("volumes", "least", "expected"),
+    [
+        ([8.0, 10.0, 10.05, 10.1], 4.0, True),
+        ([8.0, 10.0, 10.05, 10.1], 3.0, False),
+        ([8.0, 10.0, 10.0, 10.0], 0.1, True),
+        ([8.0, 10.0, 10.0, 10.0], 0.0, False),
+        ([8.0, 10.0, 10.0, 10.0], None, False),
+        ([None, None, 10.0, 10.0], 50.0, False),
+    ],
+)
+def test_a_search_is_exhausted_when_nine_in_ten_would_grow_by_less(
+    volumes: list[float | None], least: float | None, expected: bool
+) -> None:
+    """The last doubling grew by 1 %, so that nine in ten would grow by less than 3.3 %."""
+    assert exhausted([(10 * (place + 1), volume) for place, volume in enumerate(volumes)], least) is expected
 
 
 @pytest.mark.parametrize(

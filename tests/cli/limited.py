@@ -32,6 +32,8 @@ def commands(run: Path, work: Path) -> dict[str, list[str]]:
         "front": [str(run)],
         "verify": [str(run)],
         "report": [str(run), "--output", str(work / "page.html")],
+        "matters": [str(run), "--design", "0"],
+        "families": [str(run)],
         "show": [str(run), "0", "--json"],
         "export": [str(run), "0", "--to", str(work / "exported")],
         "compare": [str(run), str(work / "sound")],

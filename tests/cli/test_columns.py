@@ -33,8 +33,10 @@ from evodesign.records import Status
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
 from evodesign.runlog.run import read_run
+from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail
 from tests.report.several import problem_of_several, write_several
+from tests.runlog.toys import toy_evaluations, toy_header
 
 pytestmark = pytest.mark.slow
 
@@ -98,6 +100,10 @@ def place(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         shutil.copytree(GOLDEN / "lifting" / "format-2", name)
     for name in ("toy", "toy-again"):
         shutil.copytree(GOLDEN / "format-2", name)
+    header = toy_header(budget=60)
+    with RunWriter(tmp_path / "many", header) as log:
+        for evaluation in toy_evaluations(header, 60):
+            log.evaluation(evaluation)
     for folder in ("populations", "problems"):
         Path(folder).symlink_to(repository / folder)
     text = (GOLDEN / "lifting" / "problem.toml").read_text(encoding="utf-8")
@@ -123,6 +129,8 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "export": (("export", "run", 1, "--to", "exported"),),
     "watch": (("watch", "run", "--once"), ("watch", "toy", "--once")),
     "compare": (("compare", "run", "other"), ("compare", "toy", "toy-again", "run")),
+    "matters": (("matters", "run"), ("matters", "many", "--design", 3)),
+    "families": (("families", "run"), ("families", "many", "--by", "arm.0 + arm.1", "--cells", 5)),
     "evaluate": (("evaluate", "small.toml"),),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (

@@ -23,7 +23,8 @@ def test_an_unknown_algorithm_is_refused_with_the_nearest_name():
     with pytest.raises(InputError) as caught:
         make_search(settings(algorithm="nsga-ii"))
     assert str(caught.value) == (
-        "search: algorithm: wanted one of cma-es, joint-starts, nsga2, random, surrogate, found 'nsga-ii'; "
+        "search: algorithm: wanted one of cma-es, joint-starts, map-elites, nsga2, random, surrogate, "
+        "found 'nsga-ii'; "
         "did you mean 'nsga2'?"
     )
 

@@ -207,6 +207,21 @@ def test_a_model_of_many_designs_is_made_of_a_thousand():
     assert len(values) == len(front)
 
 
+def test_what_was_told_is_not_copied_for_every_proposal():
+    """So that a proposal does not take longer the more designs there are."""
+    knowledge, generator = Knowledge(settings()), np.random.default_rng(6)
+    told = generator.random((300, 6)).tolist()
+    for count, genome in enumerate(told, 1):
+        knowledge.add(tuple(genome), sloped(genome))
+        assert len(knowledge.points) == len(knowledge) == count
+    assert np.shares_memory(knowledge.points, knowledge.points)
+    assert knowledge.points.tolist() == told
+    best = moocore.is_nondominated(np.array([sloped(genome).objectives for genome in told]))
+    assert knowledge.front()[0].tolist() == np.array(told)[best].tolist()
+    knowledge.add((0.0,) * 6, Outcome((-1.0, -1.0), 0.0))
+    assert knowledge.front()[0].tolist() == [[0.0] * 6]
+
+
 def test_proposals_do_not_depend_on_the_number_of_threads():
     """In processes whose BLAS has one thread and two, which add up in another order."""
     digests = set()

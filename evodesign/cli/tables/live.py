@@ -106,6 +106,8 @@ def _numbers(live_state: LiveState) -> Table:
     table.add_row("generations", str(len(generations)), "")
     table.add_row("feasible", share, sparkline([each.feasible_share for each in generations], (0.0, 1.0)))
     table.add_row("hypervolume", rounded(volumes[-1] if volumes else None), sparkline(volumes))
+    if live_state.growth is not None:
+        table.add_row("a doubling may add", f"{live_state.growth.expected:.1%}", "")
     table.add_row("on the front", str(len(live_state.front)), "")
     for status, count in live_state.causes.items():
         table.add_row(escape(str(status)), str(count), "")

@@ -20,6 +20,7 @@ import msgspec
 
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front
+from evodesign.analysis.growth import HypervolumeGrowth, growth
 from evodesign.analysis.hypervolume import best
 from evodesign.errors import RunError
 from evodesign.records import Evaluation, Generation, RunHeader, Status
@@ -77,6 +78,11 @@ class LiveState:
     def seconds_left(self) -> float | None:
         """Until the budget is used up, at this pace; None while the pace is unknown."""
         return None if not self.pace else max(0, self.header.budget - self.done) / self.pace
+
+    @property
+    def growth(self) -> HypervolumeGrowth | None:
+        """What the last doubling of evaluations gained; None before there is one."""
+        return growth(self.generations)
 
 
 class LiveRun:
@@ -197,6 +203,7 @@ def state_of(live_state: LiveState, *, ended: bool, now: float, notes: Sequence[
         **({"exceeded": live_state.exceeded} if header.constrained else {}),
         "per_second": live_state.pace,
         "seconds_left": live_state.seconds_left,
+        "growth": None if live_state.growth is None else live_state.growth.json,
         "silent_seconds": None if live_state.latest is None else max(0.0, now - live_state.latest),
         "objectives": [
             {"name": each.name, "unit": each.unit, "sense": each.sense, "best": found.get(each.name)}

@@ -5,6 +5,8 @@ Numbers are the log's, unrounded. A number that does not exist is None.
 
 from __future__ import annotations
 
+from typing import Any
+
 from msgspec import Struct
 
 from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter
@@ -206,6 +208,7 @@ class DesignContent(Part, frozen=True):
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
+        slices: through a marked design, as in `analysis.importance_json`.
     """
 
     cases: tuple[CaseOutcome, ...]
@@ -214,10 +217,15 @@ class DesignContent(Part, frozen=True):
     links: dict[int, LinkBody] = {}
     joints: dict[int, JointBody] = {}
     gradients: dict[str, dict[str, float]] = {}
+    slices: list[dict[str, Any]] = []
 
 
 class Content(Part, frozen=True):
-    """The whole page; people and loads have an empty name where there is one of them."""
+    """The whole page; people and loads have an empty name where there is one of them.
+
+    `importance` is as in `analysis.importance_json`, `families` as `analysis.families` tells
+    them, `growth` a sentence or empty.
+    """
 
     facts: Facts
     objectives: tuple[Objective, ...]
@@ -229,7 +237,10 @@ class Content(Part, frozen=True):
     points: Points
     marks: tuple[Mark, ...]
     generations: tuple[Generation, ...]
+    growth: str
     failures: tuple[CauseContent, ...]
+    importance: dict[str, Any]
+    families: dict[str, Any]
     bodies: Bodies | None
     designs: dict[int, DesignContent]
     notes: tuple[str, ...]

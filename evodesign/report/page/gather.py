@@ -7,7 +7,11 @@ from collections.abc import Collection, Iterable, Sequence
 from msgspec.structs import replace
 
 from evodesign.analysis.failures import causes_of_infeasibility
+from evodesign.analysis.families import families, families_json
 from evodesign.analysis.front import front
+from evodesign.analysis.growth import growth
+from evodesign.analysis.importance import Importance, importance, slices
+from evodesign.analysis.importance_json import importance_json, slices_json
 from evodesign.errors import EvodesignError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import Clearances
@@ -51,8 +55,15 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     best = front(run.header.objectives, run.evaluations)
     on_front = {evaluation.number for evaluation in best}
     marked = _marks(run, problem, best, asked)
-    shown = chosen_points(run.evaluations, on_front, {mark.number for mark in marked}, MOST_POINTS)
+    kinds = families(run.header, run.evaluations)
+    needed = {mark.number for mark in marked}
+    elites = {kind.elite.number for kind in kinds.kinds}
+    if len(needed | elites) < MOST_POINTS:
+        needed |= elites
+    shown = chosen_points(run.evaluations, on_front, needed, MOST_POINTS)
     opened, more_notes = _opened(run, marked, shown, on_front)
+    found = importance(run.header, run.evaluations)
+    known = growth(run.generations)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     return Content(
         facts=_facts(run, len(best)),
@@ -65,12 +76,20 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         points=points(run.header, shown, on_front),
         marks=marked,
         generations=run.generations,
+        growth="" if known is None else known.sentence,
         failures=tuple(
             CauseContent(cause=each.cause, count=each.count, example=each.example, reason=each.reason)
             for each in causes_of_infeasibility(run.evaluations, run.header.constrained)
         ),
+        importance=importance_json(found),
+        families=families_json(kinds),
         bodies=None if problem is None else bodies(problem),
-        designs=_designs(run, problem, shown, opened, marked, on_front),
+        designs=_with_slices(
+            _designs(run, problem, shown, opened, marked, on_front),
+            run,
+            found,
+            {mark.number for mark in marked},
+        ),
         notes=(*run.notes, *notes, *_thinned_note(run, shown), *more_notes),
     )
 
@@ -164,6 +183,19 @@ def _designs(
         evaluation.number: _design(problem, clearances, evaluation, opened.get(evaluation.number))
         for evaluation in shown
         if evaluation.number in wanted
+    }
+
+
+def _with_slices(
+    designs: dict[int, DesignContent], run: RunLog, found: Importance, marked: Collection[int]
+) -> dict[int, DesignContent]:
+    """The designs, those that are marked with slices through them."""
+    through = {each.number: each for each in run.evaluations if each.number in marked}
+    return {
+        number: replace(each, slices=slices_json(slices(found, run.header.parameters, through[number])))
+        if number in through
+        else each
+        for number, each in designs.items()
     }
 
 

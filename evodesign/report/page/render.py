@@ -30,6 +30,8 @@ SCRIPTS = (
     "parallel.js",
     "progress.js",
     "failures.js",
+    "importance.js",
+    "families.js",
     "table.js",
     "matrices.js",
     "kinematics.js",

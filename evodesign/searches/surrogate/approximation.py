@@ -71,9 +71,18 @@ class Approximation:
         known: the designs, two at least.
         discrete: which coordinates have no gradients.
         generator: draws its features.
+        scale: by which the lengths are multiplied.
+        features: of each model; None for as many as suit the dimension.
     """
 
-    def __init__(self, known: Known, discrete: NDArray[np.bool_], generator: np.random.Generator) -> None:
+    def __init__(
+        self,
+        known: Known,
+        discrete: NDArray[np.bool_],
+        generator: np.random.Generator,
+        scale: float = 1.0,
+        features: int | None = None,
+    ) -> None:
         first = known.targets[: max(FEWEST_FIRST, int(FIRST_PER_DIMENSION * known.points.shape[1]))]
         low, middle, high = (np.quantile(first, share, axis=0) for share in (0.0, 0.5, 1.0))
         tailed = (high > SPAN * low) & (high - middle > TAIL * (middle - low))
@@ -88,9 +97,11 @@ class Approximation:
                 self._cut[output] = OUTLIER * np.quantile(found, QUANTILE)
         gradients = self._clipped(gradients)
         self._groups = _groups(gradients[:, :, ~discrete])
-        self.lengths = self._lengths(known.points, targets, gradients, discrete, generator)
+        self.lengths = scale * self._lengths(known.points, targets, gradients, discrete, generator)
         self._known = Known(known.points, targets, gradients)
-        self._models = [GlobalModel(self.lengths, ~discrete, len(group), generator) for group in self._groups]
+        self._models = [
+            GlobalModel(self.lengths, ~discrete, len(group), generator, features) for group in self._groups
+        ]
         self._take(self._known)
         mean, deviation = self._moments()
         for group, model in zip(self._groups, self._models, strict=True):
@@ -124,6 +135,23 @@ class Approximation:
         fitted = self._fitted()
         weights = [model.drawn(generator) for model in fitted]
         return lambda places: self._natural(self._together(fitted, weights, places))
+
+    def smooth(self) -> Function:
+        """The mean of the global model alone."""
+        fitted = self._fitted()
+        weights = [model.weights for model in fitted]
+        return lambda places: self._natural(self._together(fitted, weights, places))
+
+    def several(self, generator: np.random.Generator, count: int) -> Function:
+        """So many Thompson samples of one output at once: from points to [points x samples]."""
+        (model,) = self._fitted()
+        weights = np.hstack([model.drawn(generator) for _ in range(count)])
+
+        def at(places: Array) -> Array:
+            found = model.at(places, weights)
+            return self._natural(found.reshape(-1, 1)).reshape(found.shape)
+
+        return at
 
     def _fitted(self) -> list[FittedModel]:
         mean, deviation = self._moments()

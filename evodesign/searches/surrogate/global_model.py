@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-__all__ = ["FittedModel", "GlobalModel"]
+__all__ = ["MOST_FEATURES", "FittedModel", "GlobalModel"]
 
 Array = NDArray[np.float64]
 
@@ -56,13 +56,19 @@ class GlobalModel:
         smooth: which coordinates gradients are known for.
         outputs: their number.
         generator: draws the features.
+        count: of cosines; None for one that suits the dimension.
     """
 
     def __init__(
-        self, lengths: Array, smooth: NDArray[np.bool_], outputs: int, generator: np.random.Generator
+        self,
+        lengths: Array,
+        smooth: NDArray[np.bool_],
+        outputs: int,
+        generator: np.random.Generator,
+        count: int | None = None,
     ) -> None:
         dimension = len(lengths)
-        count = min(MOST_FEATURES, FEWEST_FEATURES + FEATURES_PER_PAIR * dimension**2)
+        count = count or min(MOST_FEATURES, FEWEST_FEATURES + FEATURES_PER_PAIR * dimension**2)
         spread = np.sqrt(2.0 * SMOOTHNESS / generator.chisquare(2.0 * SMOOTHNESS, (count, 1)))
         self._frequencies = generator.standard_normal((count, dimension)) * spread / lengths
         self._phases = generator.uniform(0.0, 2.0 * np.pi, count)

@@ -53,23 +53,27 @@ class Knowledge:
     def __init__(self, settings: SearchSettings) -> None:
         self._settings = settings
         self._discrete = np.array(settings.counts) > 0
-        self._genomes: list[Genome] = []
+        self._genomes = _Rows(settings.dimension)
         self._outcomes: list[Outcome] = []
         self._feasible: list[int] = []
-        self._objectives: list[tuple[float, ...]] = []
+        self._objectives = _Rows(settings.objectives)
         self._known: list[int] = []
+        self._violated = False
+        self._front: tuple[int, Array, Array] | None = None
         self._model, self._margins, self._failures = (_Maintained(self._discrete) for _ in range(3))
 
     def __len__(self) -> int:
-        return len(self._genomes)
+        return len(self._outcomes)
 
     def add(self, genome: Genome, outcome: Outcome) -> None:
         """Take note of an outcome."""
         values = usable(outcome)
-        if _violation(outcome) is not None:
-            self._known.append(len(self._genomes))
+        violation = _violation(outcome)
+        if violation is not None:
+            self._known.append(len(self))
+            self._violated |= violation > 0.0
         if values is not None:
-            self._feasible.append(len(self._genomes))
+            self._feasible.append(len(self))
             self._objectives.append(values)
         self._genomes.append(genome)
         self._outcomes.append(outcome)
@@ -77,24 +81,26 @@ class Knowledge:
     @property
     def points(self) -> Array:
         """Every genome told [designs x dimension]."""
-        return np.array(self._genomes).reshape(-1, self._settings.dimension)
+        return self._genomes.array
 
     def front(self) -> tuple[Array, Array]:
         """Points and objectives of the feasible designs that no other dominates."""
-        values = self._values()
+        values = self._objectives.array
         if not len(values):
             return np.empty((0, self._settings.dimension)), values
-        best = np.asarray(moocore.is_nondominated(values))
-        return self.points[self._feasible][best], values[best]
-
-    def _values(self) -> Array:
-        return np.array(self._objectives).reshape(-1, self._settings.objectives)
+        if self._front is None or self._front[0] != len(values):
+            best = np.flatnonzero(moocore.is_nondominated(values))
+            places = [self._feasible[place] for place in best]
+            self._front = len(values), self.points[places], values[best]
+        return self._front[1:]
 
     def reference(self) -> Array:
         """Values of the objectives beyond which a design counts for nothing; ones while none is feasible."""
         if not self._feasible:
             return np.ones(self._settings.objectives)
-        first = self._values()[: max(FEWEST_FIRST, int(FIRST_PER_DIMENSION * self._settings.dimension))]
+        first = self._objectives.array[
+            : max(FEWEST_FIRST, int(FIRST_PER_DIMENSION * self._settings.dimension))
+        ]
         _, front = self.front()
         usual = np.minimum(front.max(axis=0), np.quantile(first, USUAL, axis=0))
         extent = np.ptp(first, axis=0)
@@ -110,15 +116,12 @@ class Knowledge:
         """
         return self._model.of(len(self._feasible), self._reported, self._kept, generator)
 
-    def _reported(self, first: int) -> Known:
-        """Feasible designs from one on."""
-        places = self._feasible[first:]
+    def _reported(self, which: NDArray[np.intp]) -> Known:
+        """Some of the feasible designs."""
+        places = [self._feasible[place] for place in which]
         rows = [self._outcomes[place].gradients for place in places]
-        return Known(
-            np.array([self._genomes[place] for place in places]),
-            np.array(self._objectives[first:]),
-            self._gradients(rows, self._settings.objectives),
-        )
+        gradients = self._gradients(rows, self._settings.objectives)
+        return Known(self.points[places], self._objectives.array[which], gradients)
 
     def _gradients(self, rows: Sequence[tuple[Gradient | None, ...]], outputs: int) -> Array:
         """[designs x outputs x dimension], nan where unknown."""
@@ -131,7 +134,7 @@ class Knowledge:
 
     def _kept(self) -> NDArray[np.intp]:
         """Which feasible designs a new model is made of, of more than may be."""
-        values = self._values()
+        values = self._objectives.array
         ranks = np.asarray(moocore.pareto_rank(values)).astype(float)
         ranks[-NEWEST:] = -1.0
         return np.sort(np.argsort(ranks, kind="stable")[:KEPT])
@@ -144,7 +147,7 @@ class Knowledge:
         """
         latest = list(map(_violation, self._outcomes[-LATEST:]))
         margins = failures = None
-        if any(_violation(self._outcomes[place]) for place in self._known):
+        if self._violated:
             margins = self._margins.of(
                 len(self._known), self._margins_reported, _newest(len(self._known)), generator
             )
@@ -157,14 +160,15 @@ class Knowledge:
             share,
         )
 
-    def _failures_reported(self, first: int) -> Known:
+    def _failures_reported(self, which: NDArray[np.intp]) -> Known:
         """+1 for designs that failed, -1 for others."""
-        signs = np.array([[1.0 if _violation(each) is None else -1.0] for each in self._outcomes[first:]])
-        return Known(self.points[first:], signs, self._gradients([()] * len(signs), 1))
+        told = [self._outcomes[place] for place in which]
+        signs = np.array([[1.0 if _violation(each) is None else -1.0] for each in told])
+        return Known(self.points[which], signs, self._gradients([()] * len(signs), 1))
 
-    def _margins_reported(self, first: int) -> Known:
-        """Of the designs whose violation is known."""
-        places = self._known[first:]
+    def _margins_reported(self, which: NDArray[np.intp]) -> Known:
+        """Of some of the designs whose violation is known."""
+        places = [self._known[place] for place in which]
         violations = np.array([_violation(self._outcomes[place]) for place in places], dtype=float)
         return self._margins_of(places, violations)
 
@@ -192,6 +196,29 @@ def _newest(count: int) -> Callable[[], NDArray[np.intp]]:
     return lambda: np.arange(max(0, count - KEPT), count)
 
 
+class _Rows:
+    """Rows of numbers that grow in number; the array of them is made without copying each.
+
+    Args:
+        width: of a row.
+    """
+
+    def __init__(self, width: int) -> None:
+        self._room, self._count = np.empty((64, width)), 0
+
+    def append(self, row: Sequence[float]) -> None:
+        """Add a row."""
+        if self._count == len(self._room):
+            self._room = np.concatenate([self._room, np.empty_like(self._room)])
+        self._room[self._count] = row
+        self._count += 1
+
+    @property
+    def array(self) -> Array:
+        """All rows [rows x width]; not to be written to."""
+        return self._room[: self._count]
+
+
 class _Maintained:
     """A model to which designs are added, made anew now and then.
 
@@ -207,7 +234,7 @@ class _Maintained:
     def of(
         self,
         count: int,
-        reported: Callable[[int], Known],
+        reported: Callable[[NDArray[np.intp]], Known],
         kept: Callable[[], NDArray[np.intp]],
         generator: np.random.Generator,
     ) -> Approximation | None:
@@ -215,7 +242,7 @@ class _Maintained:
 
         Args:
             count: of the designs.
-            reported: gives those from one on.
+            reported: gives some of them.
             kept: gives the places of those that stay where there are more than may be.
             generator: draws features when they are drawn anew.
         """
@@ -223,10 +250,10 @@ class _Maintained:
             return None
         model = self._model
         if model is None or count >= self._made_at + min(REDRAWN, self._made_at):
-            known = reported(0)
-            model = Approximation(known.part(kept()) if count > KEPT else known, self._discrete, generator)
+            known = reported(kept() if count > KEPT else np.arange(count))
+            model = Approximation(known, self._discrete, generator)
             self._made_at = count
         elif count > self._count:
-            model.add(reported(self._count))
+            model.add(reported(np.arange(self._count, count)))
         self._model, self._count = model, count
         return model

@@ -22,7 +22,7 @@ __all__ = ["FRONT", "chosen"]
 
 Array = NDArray[np.float64]
 
-FRONT = {4: 200, 5: 80}
+FRONT = {3: 500, 4: 200, 5: 80}
 """Points of the front that are reckoned with, at most, with so many objectives: hypervolumes grow dear."""
 
 APART = 1e-6

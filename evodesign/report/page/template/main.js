@@ -6,6 +6,8 @@ startChips();
 startParallel();
 startProgress();
 startFailures();
+startImportance();
+startFamilies();
 startTable();
 startCard();
 applyTheme(root.dataset.theme);

@@ -79,7 +79,7 @@ const startProgress = () => {
       .append(
         element("p", {
           class: "hint",
-          text: `Hypervolume against the reference ${corner.join(", ")}; it only grows, and only runs against the same reference compare.`,
+          text: `Hypervolume against the reference ${corner.join(", ")}; it only grows, and only runs against the same reference compare.${content.growth ? ` ${capital(content.growth)}.` : ""}`,
         }),
       );
   }
