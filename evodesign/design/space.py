@@ -1,4 +1,4 @@
-"""What may change: length multipliers and densities of groups of links, and allocation parameters.
+"""What may change: lengths, densities and walls of groups of links, actuators of joints, and allocations.
 
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
@@ -9,19 +9,26 @@ span from "the robot carries" to "the person carries".
     robot_share     part of the load's weight that the robot carries, 0 to 1
     effort_ratio    log10(w_r / w_h), where w_r + w_h = 2 weigh the agents' squared torques
 
+An actuator parameter is the rated torque of all actuators of a group of joints: any within bounds, by the law
+of the catalogue, or that of a model.
+
 Source: Sartore et al. 2022, Section III-A: pi = (l_m1, ..., rho_1, ...).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
+from evodesign.design.walls import Wall, check_walls, walls_of_links
 from evodesign.errors import ModelError
+from evodesign.hardware.actuators import Actuator, actuator_among, actuator_law
 from evodesign.records import Genome, Parameter, design_of, middle_of
+from evodesign.tree.equip import with_actuators, with_walls
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import Growth, growth_of, resize
 from evodesign.tree.symmetry import mirror_of
@@ -74,24 +81,34 @@ class ParameterKind(StrEnum):
 
     LENGTH = "length"
     DENSITY = "density"
+    WALL = "wall"
+    ACTUATOR = "actuator"
     ALLOCATION = "allocation"
 
 
-UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.ALLOCATION: "1"}
+UNITS = {
+    ParameterKind.LENGTH: "1",
+    ParameterKind.DENSITY: "kg/m^3",
+    ParameterKind.WALL: "m",
+    ParameterKind.ACTUATOR: "N m",
+    ParameterKind.ALLOCATION: "1",
+}
 
 
 @dataclass(frozen=True, slots=True)
 class DesignParameter:
-    """One number that a design chooses, for a group of links or, on the allocation of the load, for none.
+    """One number that a design chooses, for a group of links or joints, or on the allocation of the load.
 
     Args:
-        kind: length multiplier [-], density [kg/m^3] or allocation parameter [-].
+        kind: length multiplier [-], density [kg/m^3], wall [m], actuator [N m] or allocation parameter [-].
         group: name of the group, unique among the parameters of its kind; of an allocation parameter, its
             own.
-        links: names of the links that share the value; none for an allocation parameter.
+        links: names of the links that share the value; none for an actuator or allocation parameter.
         lower, upper: bounds.
         materials: of which a density must be one's, the lightest first; none if every value within the
             bounds will do.
+        joints: names of the joints that share an actuator.
+        models: of which an actuator must be one, the weakest first; none if the law makes one of any size.
     """
 
     kind: ParameterKind
@@ -100,21 +117,40 @@ class DesignParameter:
     lower: float
     upper: float
     materials: tuple[Material, ...] = ()
+    joints: tuple[str, ...] = ()
+    models: tuple[Actuator, ...] = ()
 
     @property
     def choices(self) -> tuple[float, ...]:
         """The only values that there are, rising; none if every value within the bounds is one."""
-        return tuple(material.density for material in self.materials)
+        return tuple(value for _, value in self._named_choices)
 
-    def nearest(self, value: float) -> Material:
-        """The material whose density is nearest to a value."""
-        return min(self.materials, key=lambda material: abs(material.density - value))
+    @property
+    def choice_names(self) -> tuple[str, ...]:
+        """What the choices are called."""
+        return tuple(name for name, _ in self._named_choices)
+
+    @property
+    def _named_choices(self) -> tuple[tuple[str, float], ...]:
+        made_of = ((material.name, material.density) for material in self.materials)
+        return (*made_of, *((model.model, model.rated) for model in self.models))
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether equal steps of the genome are equal ratios of the value."""
+        return self.kind is ParameterKind.ACTUATOR
+
+    def nearest(self, value: float) -> tuple[str, float]:
+        """Name and value of the choice that is nearest to a value."""
+        return min(self._named_choices, key=lambda choice: abs(choice[1] - value))
 
     def coordinate(self, value: float) -> float:
         """The genome's coordinate of a value; that of the nearest choice where there are choices."""
         if self.choices:
             nearest = min(self.choices, key=lambda choice: abs(choice - value))
             return middle_of(self.choices.index(nearest), len(self.choices))
+        if self.logarithmic:
+            return math.log(value / self.lower) / math.log(self.upper / self.lower)
         return (value - self.lower) / (self.upper - self.lower)
 
     @property
@@ -131,15 +167,21 @@ class DesignParameter:
             upper=self.upper,
             unit=UNITS[self.kind],
             choices=self.choices,
-            materials=tuple(material.name for material in self.materials),
+            materials=self.choice_names,
+            logarithmic=self.logarithmic,
         )
+
+    def actuator(self, rated: Scalar) -> Actuator:
+        """The actuator of a rated torque [N m], a number or an expression."""
+        return actuator_among(self.models, rated) if self.models else actuator_law().at(rated)
 
 
 @dataclass(frozen=True, slots=True)
 class DesignSpace:
-    """All parameters of a problem, in the order of the genome's coordinates."""
+    """All parameters of a problem, in the order of the genome's coordinates, and the walls of links."""
 
     parameters: tuple[DesignParameter, ...]
+    walls: tuple[Wall, ...] = ()
 
     @property
     def records(self) -> tuple[Parameter, ...]:
@@ -153,6 +195,10 @@ class DesignSpace:
             ModelError: naming the link.
         """
         self.resized(tree, self.unscaled(tree))
+        shortest = self.resized(tree, [p.lower for p in self.parameters])
+        thickest = {link: p.upper for p in self._of(ParameterKind.WALL) for link in p.links}
+        fixed = {link: wall.thickness for wall in self.walls if wall.thickness for link in wall.links}
+        check_walls(shortest, self.walls, {**thickest, **fixed})
         for parameter in self.parameters:
             if parameter.kind is ParameterKind.LENGTH:
                 for link in parameter.links:
@@ -165,12 +211,18 @@ class DesignSpace:
             ModelError: naming a link whose mirror image is not in its group, or what in the tree differs,
                 before or after resizing.
         """
-        partners = mirror_of(tree).links
+        mirror = mirror_of(tree)
         for parameter in self.parameters:
-            for link in parameter.links:
-                if partners[link] not in parameter.links:
-                    found = f"'{link}' without '{partners[link]}'"
-                    raise ModelError(tree.name, f"{parameter.name}.links", "both links of a pair", found)
+            for what, names, partners in (
+                ("links", parameter.links, mirror.links),
+                ("joints", parameter.joints, mirror.joints),
+            ):
+                for name in names:
+                    if partners[name] not in names:
+                        found = f"'{name}' without '{partners[name]}'"
+                        raise ModelError(
+                            tree.name, f"{parameter.name}.{what}", f"both {what} of a pair", found
+                        )
         values = self.unscaled(tree)
         changed = [value * (1.1 + 0.01 * number) for number, value in enumerate(values)]
         try:
@@ -181,8 +233,11 @@ class DesignSpace:
 
     def growths(self, tree: Tree) -> Mapping[str, Growth]:
         """How each link of a length parameter grows."""
-        lengths = [parameter for parameter in self.parameters if parameter.kind is ParameterKind.LENGTH]
+        lengths = self._of(ParameterKind.LENGTH)
         return {link: growth_of(tree, link) for parameter in lengths for link in parameter.links}
+
+    def _of(self, kind: ParameterKind) -> list[DesignParameter]:
+        return [parameter for parameter in self.parameters if parameter.kind is kind]
 
     def resized(
         self, tree: Tree, values: Sequence[Scalar], growths: Mapping[str, Growth] | None = None
@@ -195,9 +250,14 @@ class DesignSpace:
             growths: of the tree's links, if they are known already.
         """
         by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
+        actuators: dict[str, Actuator] = {}
         for parameter, value in zip(self.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
-        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
+            if parameter.kind is ParameterKind.ACTUATOR:
+                actuators |= dict.fromkeys(parameter.joints, parameter.actuator(value))
+        tree = with_walls(tree, walls_of_links(self.walls, by_kind[ParameterKind.WALL]))
+        tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
+        return with_actuators(tree, actuators)
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The allocation parameters among a design's values, by their own names."""
@@ -212,10 +272,13 @@ class DesignSpace:
     @property
     def counts(self) -> tuple[int, ...]:
         """How many choices each coordinate of a genome has, 0 for a continuous one."""
-        return tuple(len(parameter.materials) for parameter in self.parameters)
+        return tuple(len(parameter.choices) for parameter in self.parameters)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
-        """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation."""
+        """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation.
+
+        Of walls and actuators the file says nothing: theirs are in the middle of their bounds or choices.
+        """
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
@@ -223,6 +286,8 @@ class DesignSpace:
             return 1.0
         if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
+        if parameter.kind in (ParameterKind.WALL, ParameterKind.ACTUATOR):
+            return parameter.record.value_at(0.5)
         links = [tree.link(name, f"{parameter.name}.links") for name in parameter.links]
         volume = sum(float(link.volume) for link in links)
         return sum(float(link.inertia.mass) for link in links) / volume if volume else 0.0

@@ -29,7 +29,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from typing import Annotated
+from itertools import pairwise
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
@@ -44,6 +45,7 @@ __all__ = [
     "ActuatorLaw",
     "CatalogueRow",
     "PowerLaw",
+    "actuator_among",
     "actuator_law",
     "actuator_of_row",
     "catalogue",
@@ -76,6 +78,7 @@ class Actuator:
         stiffness: of the gear against windup [N m/rad].
         speed: without load [rad/s].
         model: its name in the catalogue; empty for one of the law.
+        holds: whether a posture in which more than the rated torque is asked for is none.
     """
 
     rated: Scalar
@@ -86,6 +89,7 @@ class Actuator:
     stiffness: Scalar
     speed: Scalar
     model: str = ""
+    holds: bool = True
 
     def loss(self, torque: Scalar) -> Scalar:
         """Copper loss [W] that holding a torque [N m] takes."""
@@ -276,8 +280,28 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
         "inertia": row.reflected_inertia,
         "speed": row.speed,
     }
-    known = {name: value for name, value in given.items() if value is not None}
+    known: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     return replace(law.at(rated), model=row.model, **known)
+
+
+def actuator_among(models: Sequence[Actuator], rated: Scalar) -> Actuator:
+    """The model of a rated torque.
+
+    Args:
+        models: of rising rated torques.
+        rated: that of a model [N m], or an expression that takes no other values.
+    """
+    if isinstance(rated, int | float):
+        return min(models, key=lambda model: abs(model.rated - rated))
+    above = [rated > (one.rated + other.rated) / 2.0 for one, other in pairwise(models)]
+
+    def figure(name: str) -> Scalar:
+        values = [getattr(model, name) for model in models]
+        steps = (other - one for one, other in pairwise(values))
+        return values[0] + sum(is_above * step for is_above, step in zip(above, steps, strict=True))
+
+    names = ("peak", "mass", "motor_constant", "inertia", "stiffness", "speed")
+    return replace(models[0], rated=rated, model="", **{name: figure(name) for name in names})
 
 
 def mounted_solid(actuator: Actuator, link_from_joint: Placement) -> Solid:

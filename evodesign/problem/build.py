@@ -24,6 +24,7 @@ from evodesign.problem.agents import (
     robot_agent,
 )
 from evodesign.problem.constraints import constraints_of, refuse_constraints
+from evodesign.problem.design_hardware import actuator_parameters, wall_parameters, walls_of
 from evodesign.problem.design_space import (
     check_allocations,
     density_parameters,
@@ -33,6 +34,7 @@ from evodesign.problem.design_space import (
 )
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
+from evodesign.problem.hardware_objectives import refuse_without_actuators
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
@@ -267,19 +269,21 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
     parameters += density_parameters(tables, source)
+    parameters += wall_parameters(tables, source)
+    parameters += actuator_parameters(tables, source, tree)
     parameters += [
         DesignParameter(ParameterKind.ALLOCATION, t.name, (), t.lower, t.upper)
         for t in tables.design.allocation
     ]
     if not parameters:
-        raise InputError(source.path, "design", "a length, density or allocation parameter", "none")
+        raise InputError(source.path, "design", "a parameter, such as a length", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
     for parameter in parameters:
         key = f"design.{parameter.kind}[{positions[parameter.kind]}]"
         positions[parameter.kind] += 1
         _check_parameter(parameter, key, source, tree, seen)
-    space = DesignSpace(tuple(parameters))
+    space = DesignSpace(tuple(parameters), walls_of(tables, source, tree))
     try:
         space.check(tree)
     except InputError as error:
@@ -327,6 +331,7 @@ def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Sce
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
+        refuse_without_actuators(key, name, tables, source)
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(key, name, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))

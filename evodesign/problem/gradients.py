@@ -5,14 +5,15 @@ torques follows by the chain rule, since torques are variables of the posture pr
 
     d |tau| / d pi = tau . (d tau / d pi) / |tau|
 
-and the mean, the largest value or a quantile over cases is that of the same cases. Reach has its own
+and the mean, the largest value or a quantile over cases is that of the same cases. What an actuator changes
+of the formula itself (its motor constant, its limit) is differenced at the same torques. Reach has its own
 tangent. What depends on the robot's bodies alone is differenced along the resized robot. Everything else
 goes along the whole tangent, as in `sensitivities`, which takes many times as long.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -20,6 +21,7 @@ import numpy as np
 
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
+from evodesign.posture.results import AgentPosture
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.objectives import (
@@ -34,12 +36,12 @@ from evodesign.problem.objectives import (
     split_name,
 )
 from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
-from evodesign.records import Gradients
+from evodesign.records import Case, Gradients
 from evodesign.violations import HEIGHT
 
 __all__ = ["assessed_gradients"]
 
-OF_THE_ROBOT = frozenset({"mass", "com_height"})
+OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass"})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable
@@ -59,8 +61,9 @@ def assessed_gradients(
     design = _Design(problem, sensitivities, tuple(values), result)
     names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
     found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
-    spans = [(p.name, p.upper - p.lower) for p in problem.space.records if not p.choices]
-    places = [place for place, p in enumerate(problem.space.records) if not p.choices]
+    records = problem.space.records
+    spans = [(p.name, p.slope_at(value)) for p, value in zip(records, values, strict=True) if not p.choices]
+    places = [place for place, p in enumerate(records) if not p.choices]
     return Gradients(
         values={
             name: {
@@ -141,8 +144,33 @@ class _Design:
                 for load_case, postures in enumerate((instant.postures, *instant.disturbed.values())):
                     values.append(quantity.value(scene, postures))
                     weights = by_torque(scene, postures)
-                    gradients.append(derivative.along_torques(number, load_case, weights))
+                    own = self._by_actuators(quantity, solution.case, postures)
+                    gradients.append(derivative.along_torques(number, load_case, weights) + own)
         return np.asarray(_weights(values, way) @ np.array(gradients))
+
+    def _by_actuators(
+        self, quantity: CaseQuantity, case: Case, postures: Mapping[str, AgentPosture]
+    ) -> Array:
+        """What the parameters of actuators change of a quantity at the same torques."""
+        found = np.zeros(len(self._values))
+        for position, (step, results) in self._with_other_actuators.items():
+            values = [quantity.value(result.scene_of(case), postures) for result in results]
+            found[position] = five_point(values, step)
+        return found
+
+    @cached_property
+    def _with_other_actuators(self) -> dict[int, tuple[float, tuple[DesignResult, ...]]]:
+        """The same postures with other actuators: step and results at -2 to 2 steps, by parameter."""
+        space, tree = self._problem.space, self._result.robot.tree
+        found = {}
+        for position, parameter in enumerate(space.parameters):
+            if parameter.joints and not parameter.choices:
+                step = STEP * parameter.record.slope_at(self._values[position])
+                unit = np.eye(len(self._values))[position] * step
+                designs = [(np.array(self._values) + count * unit).tolist() for count in range(-2, 3)]
+                results = [replace(self._result, tree=space.resized(tree, values)) for values in designs]
+                found[position] = (step, tuple(results))
+        return found
 
     def _of_shared_reach(self) -> Found:
         people, robot = self._result.people_highest, self._result.reach.highest
@@ -159,13 +187,9 @@ class _Design:
             found = objective_value(name, replace(self._result, tree=space.resized(tree, moved)))
             return 0.0 if found is None else found  # it exists: it does for the design itself
 
+        steps = [STEP * p.slope_at(x) for p, x in zip(space.records, self._values, strict=True)]
         return np.array(
-            [
-                0.0
-                if parameter.choices
-                else _difference(value, position, STEP * (parameter.upper - parameter.lower))
-                for position, parameter in enumerate(space.records)
-            ]
+            [_difference(value, position, step) if step else 0.0 for position, step in enumerate(steps)]
         )
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import msgspec
 import numpy as np
@@ -32,7 +32,14 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
+from evodesign.problem.hardware_objectives import (
+    actuator_mass,
+    holding_power,
+    power_by_torque,
+    torque_share,
+)
 from evodesign.records import Case, Constraint, Objective
+from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
 __all__ = [
@@ -86,8 +93,14 @@ class DesignResult:
         return self.scenes[0].robot
 
     def scene_of(self, case: Case) -> Scene:
-        """The scene of a case."""
-        return scene_of(self.scenes, case.pair)
+        """The scene of a case; its robot has the design's tree and limits where it has actuators."""
+        scene = scene_of(self.scenes, case.pair)
+        rated = {joint: each.rated for joint, each in actuators_of(self.tree).items()}
+        if not rated:
+            return scene
+        robot = scene.robot
+        robot = replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
+        return replace(scene, robot=robot)
 
     def every_case(self) -> Iterator[tuple[Case, Mapping[str, AgentPosture]]]:
         """Every solved case with its postures, each undisturbed one followed by its disturbed ones."""
@@ -225,6 +238,17 @@ def mass(result: DesignResult) -> float:
     return float(sum(link.inertia.mass for link in result.tree.links))
 
 
+def mass_of_actuators(result: DesignResult) -> float:
+    """Mass of the robot's actuators [kg]."""
+    return actuator_mass(result.tree)
+
+
+def torque_margin(result: DesignResult) -> float | None:
+    """The least rated torque over |tau|, over actuators and cases; None also where nothing is held."""
+    shares = values_over_cases(torque_share, result)
+    return 1.0 / max(shares) if shares and max(shares) > 0.0 else None
+
+
 def com_height(result: DesignResult) -> float:
     """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
     return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
@@ -253,6 +277,7 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     "human_torque": CaseQuantity("N m", human_torque, _by_norm(HUMAN)),
     "peak_torque": CaseQuantity("1", peak_torque, _by_peak),
     HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
+    "holding_power": CaseQuantity("W", holding_power, power_by_torque),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
@@ -262,6 +287,8 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     REACH: ObjectiveKind("m", reach_height),
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     "mass": ObjectiveKind("kg", mass),
+    "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
+    "torque_margin": ObjectiveKind("1", torque_margin),
     "com_height": ObjectiveKind("m", com_height),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
 }

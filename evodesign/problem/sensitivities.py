@@ -22,6 +22,7 @@ from functools import partial
 
 import numpy as np
 
+from evodesign.design.space import DesignParameter
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
@@ -101,8 +102,7 @@ class DesignDerivative:
 
     def _around(self, position: int) -> tuple[float, tuple[DesignResult, ...]]:
         """Step and results at -2, -1, 0, 1 and 2 steps along one parameter."""
-        parameter = self.problem.space.parameters[position]
-        step = STEP * (parameter.upper - parameter.lower)
+        step = STEP * _scale(self.problem.space.parameters[position], self.values[position])
         unit = np.eye(len(self.values))[position]
         return step, tuple(self.moved(count * step * unit) for count in range(-2, 3))
 
@@ -204,6 +204,11 @@ def _without(solution: CaseSolution) -> CaseSolution:
     return replace(solution, status=Status.NUMERICAL_FAILURE, instants=(), residuals={})
 
 
+def _scale(parameter: DesignParameter, value: float) -> float:
+    """What the value changes by over the genome's range, or between the choices' ends."""
+    return parameter.record.slope_at(value) or parameter.upper - parameter.lower
+
+
 def five_point(values: Sequence[float], step: float) -> float:
     """Five-point difference."""
     return (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step)
@@ -272,7 +277,7 @@ def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferent
 def _near(problem: DesignProblem, place: str, limits: Sequence[Limit]) -> Iterator[str]:
     """The change of limits that the least change of one parameter brings about, if it is near."""
     parameters = problem.space.parameters
-    ranges = np.array([parameter.upper - parameter.lower for parameter in parameters])
+    ranges = np.array([p.upper - p.lower for p in parameters])
     nearest, which, where = np.inf, None, 0
     for limit in limits:
         with np.errstate(divide="ignore"):

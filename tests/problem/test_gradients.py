@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError
 from evodesign.evolve import Silent, replay, resume, start
 from evodesign.pool.joblib_pool import JoblibPool
@@ -102,13 +103,15 @@ def test_the_quick_gradients_are_the_exact_ones(problem: DesignProblem, known: P
     every = tuple(
         Objective(name=name, sense=Sense.MINIMISE, unit="") for name in [*names, "q90_robot_torque"]
     )
-    evaluator = Evaluator(replace(problem, scenes=scenes, objectives=every), known)
-    (genome,) = drawn(1, len(problem.space.parameters), 3)
-    values = problem.space.values(genome)
+    elbow = DesignParameter(ParameterKind.ACTUATOR, "elbow", (), 5.0, 50.0, joints=("l_elbow", "r_elbow"))
+    space = DesignSpace((*problem.space.parameters, elbow))
+    evaluator = Evaluator(replace(problem, scenes=scenes, objectives=every, space=space), known)
+    (genome,) = drawn(1, len(space.parameters), 3)
+    values = space.values(genome)
     exact = evaluator._sensitivities.at(values, evaluator.solve(values)).sensitivities()
     quick = evaluator.assess_with_gradients(genome).assessment.gradients
     assert quick.absent == {}
-    spans = {each.name: each.upper - each.lower for each in problem.space.records}
+    spans = {each.name: each.slope_at(value) for each, value in zip(space.records, values, strict=True)}
     for objective in every:
         expected = {name: slope * spans[name] for name, slope in exact[objective.name].gradient.items()}
         size = max(map(abs, expected.values()))

@@ -128,6 +128,6 @@ def _materials(made_of: Mapping[str, str]) -> FittedTable:
 
 
 def _bar(parameter: Parameter, value: float) -> str:
-    share = (value - parameter.lower) / (parameter.upper - parameter.lower)
+    share = parameter.share_of(value)
     place = round(min(max(share, 0.0), 1.0) * (BAR - 1))
     return "─" * place + "●" + "─" * (BAR - 1 - place)
