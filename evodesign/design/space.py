@@ -10,7 +10,8 @@ span from "the robot carries" to "the person carries".
     effort_ratio    log10(w_r / w_h), where w_r + w_h = 2 weigh the agents' squared torques
 
 An actuator parameter is the rated torque of all actuators of a group of joints: any within bounds, by the law
-of the catalogue, or that of a model.
+of the catalogue, or that of a model. A margin says how many times what is asked of it an actuator's rated
+torque is; programs are given the rated torque in its place (`problem.sizing`).
 
 Source: Sartore et al. 2022, Section III-A: pi = (l_m1, ..., rho_1, ...).
 """
@@ -19,7 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from evodesign.body.material import Material
@@ -83,6 +84,7 @@ class ParameterKind(StrEnum):
     DENSITY = "density"
     WALL = "wall"
     ACTUATOR = "actuator"
+    MARGIN = "margin"
     ALLOCATION = "allocation"
 
 
@@ -91,6 +93,7 @@ UNITS = {
     ParameterKind.DENSITY: "kg/m^3",
     ParameterKind.WALL: "m",
     ParameterKind.ACTUATOR: "N m",
+    ParameterKind.MARGIN: "1",
     ParameterKind.ALLOCATION: "1",
 }
 
@@ -138,7 +141,7 @@ class DesignParameter:
     @property
     def logarithmic(self) -> bool:
         """Whether equal steps of the genome are equal ratios of the value."""
-        return self.kind is ParameterKind.ACTUATOR
+        return self.kind in (ParameterKind.ACTUATOR, ParameterKind.MARGIN)
 
     def nearest(self, value: float) -> tuple[str, float]:
         """Name and value of the choice that is nearest to a value."""
@@ -172,7 +175,12 @@ class DesignParameter:
         )
 
     def actuator(self, rated: Scalar) -> Actuator:
-        """The actuator of a rated torque [N m], a number or an expression."""
+        """The actuator of a rated torque [N m], a number or an expression.
+
+        One that is sized holds whatever is asked of it, so that its size can be told.
+        """
+        if self.kind is ParameterKind.MARGIN:
+            return replace(actuator_law().at(rated), holds=False)
         return actuator_among(self.models, rated) if self.models else actuator_law().at(rated)
 
 
@@ -194,7 +202,7 @@ class DesignSpace:
         Raises:
             ModelError: naming the link.
         """
-        self.resized(tree, self.unscaled(tree))
+        self.resized(tree, self.with_rated(self.unscaled(tree), 1.0))
         shortest = self.resized(tree, [p.lower for p in self.parameters])
         thickest = {link: p.upper for p in self._of(ParameterKind.WALL) for link in p.links}
         fixed = {link: wall.thickness for wall in self.walls if wall.thickness for link in wall.links}
@@ -236,6 +244,15 @@ class DesignSpace:
         lengths = self._of(ParameterKind.LENGTH)
         return {link: growth_of(tree, link) for parameter in lengths for link in parameter.links}
 
+    @property
+    def margins(self) -> tuple[int, ...]:
+        """Places of the margins among the parameters."""
+        return tuple(i for i, each in enumerate(self.parameters) if each.kind is ParameterKind.MARGIN)
+
+    def with_rated(self, values: Sequence[float], rated: float) -> tuple[float, ...]:
+        """The values with a rated torque [N m] in place of each margin."""
+        return tuple(rated if i in self.margins else value for i, value in enumerate(values))
+
     def _of(self, kind: ParameterKind) -> list[DesignParameter]:
         return [parameter for parameter in self.parameters if parameter.kind is kind]
 
@@ -246,14 +263,14 @@ class DesignSpace:
 
         Args:
             tree: unscaled.
-            values: one number or expression per parameter.
+            values: one number or expression per parameter; of a margin, the rated torque [N m].
             growths: of the tree's links, if they are known already.
         """
         by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
         actuators: dict[str, Actuator] = {}
         for parameter, value in zip(self.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
-            if parameter.kind is ParameterKind.ACTUATOR:
+            if parameter.joints:
                 actuators |= dict.fromkeys(parameter.joints, parameter.actuator(value))
         tree = with_walls(tree, walls_of_links(self.walls, by_kind[ParameterKind.WALL]))
         tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
@@ -286,7 +303,7 @@ class DesignSpace:
             return 1.0
         if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
-        if parameter.kind in (ParameterKind.WALL, ParameterKind.ACTUATOR):
+        if parameter.joints or parameter.kind is ParameterKind.WALL:
             return parameter.record.value_at(0.5)
         links = [tree.link(name, f"{parameter.name}.links") for name in parameter.links]
         volume = sum(float(link.volume) for link in links)

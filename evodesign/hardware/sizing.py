@@ -8,6 +8,8 @@ found by solving again with the last sizes until none of them changes by more th
 third round on each size follows the secant through its last two demands, which are nearly linear in it:
 
     s' = s + (w - s) / (1 - r),    r = (w - w_before) / (s - s_before),    w = margin x demand(s)
+
+unless somebody can predict the demand at other sizes.
 """
 
 from __future__ import annotations
@@ -24,6 +26,9 @@ TOLERANCE = 1e-4
 
 ROUNDS = 4
 """How often the demand is asked for."""
+
+PREDICTIONS, SETTLED = 200, 1e-9
+"""How often a prediction is asked for, and the change of a size that ends that."""
 
 LARGEST_SLOPE = 0.5
 """Largest slope of the secant at which it is followed; beyond, the next size is the one wanted."""
@@ -60,6 +65,7 @@ def sized(
     start: Sizes,
     margins: Sizes,
     bounds: Mapping[str, tuple[float, float]],
+    predict: Callable[[Sizes], Sizes] | None = None,
     rounds: int = ROUNDS,
     tolerance: float = TOLERANCE,
 ) -> Sizing:
@@ -70,11 +76,14 @@ def sized(
         start: sizes of the first round.
         margins: how many times the demand each size is.
         bounds: smallest and largest size that there is; a demand beyond them is met by neither.
+        predict: what the demand would be at other sizes than those it was asked for last, cheaply; the next
+            sizes are then those that meet it. Left out, sizes follow secants.
         rounds: largest number of times that the demand is asked for.
         tolerance: largest change of a size, as a share of it, that ends the rounds.
     """
-    sizes, before = dict(start), dict[str, tuple[float, float]]()
-    wanted: Sizes = sizes
+    sizes: Sizes = dict(start)
+    before: Mapping[str, tuple[float, float]] = {}
+    wanted = sizes
     for number in range(1, rounds + 1):
         asked = demand(sizes)
         if asked is None:
@@ -85,11 +94,30 @@ def sized(
             return Sizing(Status.SOLVED, "solved", sizes, wanted, number)
         if number < rounds:
             here = {name: (sizes[name], wanted[name]) for name in sizes}
-            sizes = {name: _inside(_following(here[name], before.get(name)), bounds[name]) for name in sizes}
+            if predict is None:
+                following = {name: _following(here[name], before.get(name)) for name in sizes}
+                sizes = {name: _inside(size, bounds[name]) for name, size in following.items()}
+            else:
+                sizes = _settled(predict, wanted, margins, bounds)
             before = here
     change = _change(sizes, wanted)
     reason = f"actuators still change by {change:.1e} of their size after {rounds} rounds"
     return Sizing(Status.ITERATION_LIMIT, reason, sizes, wanted, rounds)
+
+
+def _settled(
+    predict: Callable[[Sizes], Sizes], start: Sizes, margins: Sizes, bounds: Mapping[str, tuple[float, float]]
+) -> Sizes:
+    """The sizes that are their margins times the predicted demand on them."""
+    sizes = start
+    for _ in range(PREDICTIONS):
+        asked = predict(sizes)
+        following = {name: _inside(margins[name] * asked[name], bounds[name]) for name in sizes}
+        done = _change(sizes, following) < SETTLED
+        sizes = following
+        if done:
+            break
+    return sizes
 
 
 def _following(here: tuple[float, float], before: tuple[float, float] | None) -> float:

@@ -11,6 +11,7 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene, StanceLimits, scene_of
+from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.solver import available
 from evodesign.pool.base import Limits
@@ -24,7 +25,12 @@ from evodesign.problem.agents import (
     robot_agent,
 )
 from evodesign.problem.constraints import constraints_of, refuse_constraints
-from evodesign.problem.design_hardware import actuator_parameters, wall_parameters, walls_of
+from evodesign.problem.design_hardware import (
+    actuator_parameters,
+    stance_cases,
+    wall_parameters,
+    walls_of,
+)
 from evodesign.problem.design_space import (
     check_allocations,
     density_parameters,
@@ -82,6 +88,7 @@ class DesignProblem:
         start: genomes that a search begins with.
         joint: the paper's joint problem.
         joint_start: genomes that its starts begin with.
+        standing: postures in which the robot stands alone, for what they ask of actuators.
     """
 
     name: str
@@ -101,6 +108,7 @@ class DesignProblem:
     start: tuple[Genome, ...]
     joint: JointSettings
     joint_start: tuple[Genome, ...]
+    standing: tuple[StanceCase, ...] = ()
 
     @property
     def scene(self) -> Scene:
@@ -225,6 +233,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         start=tuple(start.values()),
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
+        standing=stance_cases(tables, source, robot),
     )
 
 

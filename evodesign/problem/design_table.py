@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
+import msgspec
 from msgspec import Meta
 
 from evodesign.problem.table import Name, Positive, Share, Table
@@ -13,10 +15,14 @@ __all__ = [
     "AllocationTable",
     "DensityTable",
     "DesignTable",
+    "Feet",
     "HardwareTable",
+    "LoadCaseTable",
     "MaterialTable",
     "WallTable",
 ]
+
+Margin = Annotated[float, Meta(ge=1.0)]
 
 
 class LengthTable(Table, frozen=True):
@@ -61,12 +67,39 @@ class WallTable(Table, frozen=True):
 
 
 class ActuatorTable(Table, frozen=True):
-    """`[[design.actuator]]`: what drives a group of joints: any rated torque within bounds, or a model."""
+    """`[[design.actuator]]`: what drives a group of joints.
+
+    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds.
+    """
 
     name: Name
     joints: Annotated[tuple[Name, ...], Meta(min_length=1)]
     rated_torque_n_m: tuple[Positive, Positive] | None = None
     models: tuple[Name, ...] | None = None
+    margin: tuple[Margin, Margin] | None = None
+
+
+class Feet(StrEnum):
+    """On which feet a robot stands."""
+
+    BOTH = "both"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class LoadCaseTable(Table, frozen=True):
+    """`[[load_case]]`: a posture in which the robot stands alone, for what it asks of actuators.
+
+    `joints_deg` gives the joints that are not at zero. `balance` names groups of joints that each move by one
+    offset until the robot is balanced: one group on both feet, two on one. The actuators' peak torque is
+    `factor` times the torques of the case.
+    """
+
+    name: Name
+    balance: Annotated[tuple[tuple[Name, ...], ...], Meta(min_length=1)]
+    feet: Feet = Feet.BOTH
+    joints_deg: dict[str, float] = msgspec.field(default_factory=dict)
+    factor: Positive = 2.0
 
 
 class HardwareTable(Table, frozen=True):

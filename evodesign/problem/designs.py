@@ -33,6 +33,7 @@ class DesignEntry(Table, frozen=True):
     material: dict[str, Name] = msgspec.field(default_factory=dict)
     wall_m: dict[str, Positive] = msgspec.field(default_factory=dict)
     rated_torque_n_m: dict[str, Positive] = msgspec.field(default_factory=dict)
+    margin: dict[str, Positive] = msgspec.field(default_factory=dict)
     model: dict[str, Name] = msgspec.field(default_factory=dict)
 
 
@@ -48,6 +49,7 @@ TABLES = {
     ParameterKind.DENSITY: "density_kg_per_m3",
     ParameterKind.WALL: "wall_m",
     ParameterKind.ACTUATOR: "rated_torque_n_m",
+    ParameterKind.MARGIN: "margin",
     ParameterKind.ALLOCATION: "allocation",
 }
 """A design's table for each kind of parameter."""

@@ -21,7 +21,7 @@ from evodesign.mechanics.scene import Grasp, GraspDirection
 from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
-from evodesign.problem.design_table import DesignTable, HardwareTable, MaterialTable
+from evodesign.problem.design_table import DesignTable, HardwareTable, LoadCaseTable, MaterialTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 from evodesign.tree.urdf_read import InertiaRule
 
@@ -286,6 +286,7 @@ class ProblemFile(Table, frozen=True):
     material: tuple[MaterialTable, ...] = ()
     actuator: tuple[CatalogueRow, ...] = ()
     hardware: HardwareTable = HardwareTable()
+    load_case: tuple[LoadCaseTable, ...] = ()
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()

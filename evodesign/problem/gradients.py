@@ -36,6 +36,7 @@ from evodesign.problem.objectives import (
     split_name,
 )
 from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
+from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
 from evodesign.records import Case, Gradients
 from evodesign.violations import HEIGHT
 
@@ -91,17 +92,31 @@ class _Design:
         self._values, self._result = values, result
 
     @cached_property
+    def _as_given(self) -> list[PostureDerivative | NotDifferentiable]:
+        """Tangents by what programs are given."""
+        of_case, given = self._sensitivities.of_case, self._result.program_values
+        return [of_case(given, solution, exact=False) for solution in self._result.cases]
+
+    @cached_property
+    def _given(self) -> Array | NotDifferentiable | None:
+        """The derivatives of what programs are given; None where that is the design itself."""
+        return program_slopes(self._result, self._as_given)
+
+    @cached_property
     def _cases(self) -> list[PostureDerivative | NotDifferentiable]:
-        of_case = self._sensitivities.of_case
-        return [of_case(self._values, solution, exact=False) for solution in self._result.cases]
+        return [along_design(each, self._given) for each in self._as_given]
 
     @cached_property
     def _highest(self) -> ReachDerivative | NotDifferentiable:
-        return self._sensitivities.of_reach(self._values, HIGHEST, exact=False)
+        return self._of_reach(HIGHEST)
 
     @cached_property
     def _lowest(self) -> ReachDerivative | NotDifferentiable:
-        return self._sensitivities.of_reach(self._values, LOWEST, exact=False)
+        return self._of_reach(LOWEST)
+
+    def _of_reach(self, sense: float) -> ReachDerivative | NotDifferentiable:
+        found = self._sensitivities.of_reach(self._result.program_values, sense, exact=False)
+        return reach_along_design(found, self._given)
 
     def gradient(self, name: str) -> Found:
         """One per parameter, in the quantity's unit per unit of the parameter."""
@@ -153,10 +168,11 @@ class _Design:
     ) -> Array:
         """What the parameters of actuators change of a quantity at the same torques."""
         found = np.zeros(len(self._values))
+        given = self._given if isinstance(self._given, np.ndarray) else np.eye(len(found))
         for position, (step, results) in self._with_other_actuators.items():
             values = [quantity.value(result.scene_of(case), postures) for result in results]
             found[position] = five_point(values, step)
-        return found
+        return np.asarray(found @ given)
 
     @cached_property
     def _with_other_actuators(self) -> dict[int, tuple[float, tuple[DesignResult, ...]]]:
@@ -165,9 +181,10 @@ class _Design:
         found = {}
         for position, parameter in enumerate(space.parameters):
             if parameter.joints and not parameter.choices:
-                step = STEP * parameter.record.slope_at(self._values[position])
-                unit = np.eye(len(self._values))[position] * step
-                designs = [(np.array(self._values) + count * unit).tolist() for count in range(-2, 3)]
+                given = np.array(self._result.program_values)
+                step = STEP * given[position]
+                unit = np.eye(len(given))[position] * step
+                designs = [(given + count * unit).tolist() for count in range(-2, 3)]
                 results = [replace(self._result, tree=space.resized(tree, values)) for values in designs]
                 found[position] = (step, tuple(results))
         return found
@@ -180,10 +197,13 @@ class _Design:
 
     def _of_robot(self, name: str) -> Found:
         space, tree = self._problem.space, self._result.robot.tree
+        if isinstance(self._given, NotDifferentiable):
+            return self._given
+        slopes = np.eye(len(self._values)) if self._given is None else self._given
 
         def value(position: int, step: float) -> float:
-            moved = list(self._values)
-            moved[position] += step
+            moved = np.array(self._result.program_values) + step * slopes[:, position]
+            moved = moved.tolist()
             found = objective_value(name, replace(self._result, tree=space.resized(tree, moved)))
             return 0.0 if found is None else found  # it exists: it does for the design itself
 

@@ -10,9 +10,12 @@ A joint without an actuator takes no part. A scene's robot has the tree of the d
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import ROBOT, Scene
+from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
+from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
@@ -21,6 +24,7 @@ from evodesign.tree.model import Tree
 
 __all__ = [
     "NEED_ACTUATORS",
+    "StanceModel",
     "actuator_mass",
     "holding_power",
     "power_by_torque",
@@ -64,6 +68,49 @@ def torque_share(scene: Scene, postures: Postures) -> float:
 def actuator_mass(tree: Tree) -> float:
     """Mass of all actuators [kg]."""
     return float(sum(each.mass for each in actuators_of(tree).values()))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StanceModel:
+    """The robot in the problem's standing postures, whatever its design.
+
+    Args:
+        cases: of the problem.
+        robot: as pinocchio sees it, of any design.
+    """
+
+    cases: tuple[StanceCase, ...]
+    robot: AgentModel
+
+    def torques(self, tree: Tree) -> list[tuple[StanceCase, StanceTorques]]:
+        """What became of each case with the tree of a design."""
+        body = self.robot.resized(tree).body
+        return [(case, stance_torques(body, case)) for case in self.cases]
+
+    def needed(self, tree: Tree) -> list[Mapping[str, float]] | str:
+        """Factor x |tau| [N m] of each case by joint, which peak torques must be; or why one cannot be."""
+        found = self.torques(tree)
+        for _, each in found:
+            if each.reason:
+                return each.reason
+        return [
+            {joint: case.factor * abs(torque) for joint, torque in each.torques.items()}
+            for case, each in found
+        ]
+
+    def shares(self, tree: Tree) -> list[float] | None:
+        """The largest of these over peak torque, of each case; None where the robot cannot stand."""
+        needed, actuators = self.needed(tree), actuators_of(tree)
+        if isinstance(needed, str):
+            return None
+        return [
+            float(
+                max(
+                    (asked[joint] / actuators[joint].peak for joint in actuators if joint in asked), default=0
+                )
+            )
+            for asked in needed
+        ]
 
 
 def refuse_without_actuators(key: str, name: str, tables: ProblemFile, source: ProblemSource) -> None:

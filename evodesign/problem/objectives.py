@@ -33,6 +33,7 @@ from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
 from evodesign.problem.hardware_objectives import (
+    StanceModel,
     actuator_mass,
     holding_power,
     power_by_torque,
@@ -74,6 +75,8 @@ class DesignResult:
         tree: the robot of the design.
         reach: interval of load heights that it can hold, whatever the load.
         people_highest: highest load that all of the people can hold [m]; None where that was not asked for.
+        rated: the values with rated torques [N m] in place of margins; none where there are no margins.
+        standing: what postures in which the robot stands alone ask of a tree's actuators.
         cases: one solution per undisturbed case of the problem, in its order.
         paper: the paper's tasks and their weights.
     """
@@ -86,6 +89,13 @@ class DesignResult:
     cases: tuple[CaseSolution, ...]
     paper: JointSettings
     people_highest: float | None = None
+    rated: tuple[float, ...] = ()
+    standing: StanceModel | None = None
+
+    @property
+    def program_values(self) -> Sequence[float]:
+        """What programs and trees are given: one number per parameter."""
+        return self.rated or self.values
 
     @property
     def robot(self) -> Agent:
@@ -244,9 +254,15 @@ def mass_of_actuators(result: DesignResult) -> float:
 
 
 def torque_margin(result: DesignResult) -> float | None:
-    """The least rated torque over |tau|, over actuators and cases; None also where nothing is held."""
+    """The least rated torque over |tau|, over actuators and cases; None also where nothing is held.
+
+    Where the robot stands alone, the peak torque over the case's factor is in the place of rated torque.
+    """
     shares = values_over_cases(torque_share, result)
-    return 1.0 / max(shares) if shares and max(shares) > 0.0 else None
+    alone = [] if result.standing is None else result.standing.shares(result.tree)
+    if shares is None or alone is None or max((*shares, *alone), default=0.0) <= 0.0:
+        return None
+    return 1.0 / max(*shares, *alone, 0.0)
 
 
 def com_height(result: DesignResult) -> float:

@@ -32,6 +32,7 @@ from evodesign.posture.solution_derivative import PostureDerivative, ReachDeriva
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.inner import InnerProblems, inner_problems
 from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
 from evodesign.records import Status
 
 __all__ = [
@@ -73,6 +74,7 @@ class DesignDerivative:
         result: what was computed of it.
         cases: one derivative per case; a reason where there is none.
         highest, lowest: tangents of the reach.
+        given: the derivatives of what programs are given; None where that is the design itself.
     """
 
     problem: DesignProblem
@@ -81,10 +83,13 @@ class DesignDerivative:
     cases: tuple[PostureDerivative | NotDifferentiable, ...]
     highest: ReachDerivative | NotDifferentiable
     lowest: ReachDerivative | NotDifferentiable
+    given: Array | None = None
 
     def moved(self, step: Array) -> DesignResult:
         """To first order, the results of a design that differs by a step; what has no tangent is left out."""
-        tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
+        along = step if self.given is None else self.given @ step
+        values = np.array(self.result.program_values) + along
+        tree = self.problem.space.resized(self.result.robot.tree, values.tolist())
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
         cases = tuple(
             _moved(solution, derivative, step)
@@ -158,19 +163,24 @@ class Sensitivities:
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
+        given = result.program_values
+        cases = [self.of_case(given, solution) for solution in result.cases]
+        slopes = program_slopes(result, cases)
+        highest, lowest = (self.of_reach(given, sense) for sense in (HIGHEST, LOWEST))
         return DesignDerivative(
             problem=self._problem,
             values=tuple(values),
             result=result,
-            cases=tuple(self.of_case(values, solution) for solution in result.cases),
-            highest=self.of_reach(values, HIGHEST),
-            lowest=self.of_reach(values, LOWEST),
+            cases=tuple(along_design(each, slopes) for each in cases),
+            highest=reach_along_design(highest, slopes),
+            lowest=reach_along_design(lowest, slopes),
+            given=None if isinstance(slopes, NotDifferentiable) else slopes,
         )
 
     def of_case(
         self, values: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
-        """How the posture of a case moves; `exact` is that of `SolutionSensitivity.at`."""
+        """How the posture of a case moves with what programs are given."""
         return self._inner.postures[solution.case.pair].derivative(values, solution, exact=exact)
 
     def of_reach(

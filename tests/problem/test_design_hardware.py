@@ -35,6 +35,12 @@ peak_torque_n_m = 30.0
 rated_torque_n_m = 12.0
 source = "assumed"
 """
+SQUAT = """
+[[load_case]]
+name = "squat"
+joints_deg = { l_shoulder = 60.0 }
+balance = [["spin"]]
+"""
 WALL = '\n[[design.wall]]\nname = "arms"\nlinks = ["l_arm", "r_arm"]\n'
 THIN = "thickness_m = [0.001, 0.004]\n"
 IN_ALUMINIUM = 'material = "aluminium_6061"\n'
@@ -122,8 +128,8 @@ def test_designs_name_torques_walls_and_models() -> None:
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        (SHOULDER, ["design.actuator[0]", "either rated_torque_n_m or models", "neither"]),
-        (SHOULDER + SIZES + MODELS, ["design.actuator[0]", "both"]),
+        (SHOULDER, ["design.actuator[0]", "one of rated_torque_n_m, models, margin", "none"]),
+        (SHOULDER + SIZES + MODELS, ["design.actuator[0]", "rated_torque_n_m and models"]),
         (SHOULDER + "rated_torque_n_m = [5.0, 5.0]\n", ["a rising pair", "[5, 5]"]),
         (SHOULDER + 'models = ["X6-60", "X4-11"]\n', ["models[1]", "'X4-11'; did you mean 'X4-10'?"]),
         (SHOULDER + 'models = ["X6-60"]\n', ["at least two models"]),
@@ -135,6 +141,11 @@ def test_designs_name_torques_walls_and_models() -> None:
         (SHOULDER + MODELS + OWN.replace('"own"', '"RS04"'), ["actuator[0].model", "in the catalogue"]),
         (SHOULDER + SIZES + SPIN.replace('["spin"]', '["l_shoulder"]') + SIZES, ["a joint in one actuator"]),
         (SHOULDER.replace("l_shoulder", "l_sholder") + SIZES, ["joints[0]", "did you mean 'l_shoulder'?"]),
+        (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", ">= 1.0"]),
+        (SHOULDER + SIZES + SQUAT.replace("spin", "spine"), ["load_case[0]", "did you mean 'spin'?"]),
+        (SHOULDER + SIZES + SQUAT.replace("60.0", "600.0"), ["joints_deg.l_shoulder", "600"]),
+        (SHOULDER + SIZES + SQUAT + SQUAT, ["load_case[1].name", "'squat' twice"]),
+        (SHOULDER + SIZES + SQUAT + 'feet = "left"\n', ["load_case[0].balance", "2 groups"]),
         (WALL + "thickness_m = 0.3\n" + IN_ALUMINIUM, ["wall of link l_arm", "less than half"]),
         (WALL + "thickness_m = -0.1\n" + IN_ALUMINIUM, ["thickness_m", "a positive number"]),
         (WALL + "thickness_m = [0.2, 0.1]\n" + IN_ALUMINIUM, ["a rising pair"]),
