@@ -266,7 +266,8 @@ class Assessment(Record, frozen=True):
     None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
     required heights are missed, plus for each constraint its excess relative to its bound
     (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
-    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them.
+    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them. `rated`
+    holds the rated torques [N m] of sized actuators, by the parameter that is their margin.
     """
 
     design: dict[str, float]
@@ -279,6 +280,12 @@ class Assessment(Record, frozen=True):
     constraints: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
     judged: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
     gradients: Gradients | msgspec.UnsetType = msgspec.UNSET
+    rated: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def rated_torques(self) -> dict[str, float]:
+        """Those of sized actuators [N m], by the parameter that is their margin, if there are any."""
+        return {} if self.rated is msgspec.UNSET else self.rated
 
     @property
     def constrained(self) -> dict[str, float]:

@@ -39,11 +39,15 @@ __all__ = [
     "ALLOCATIONS",
     "EFFORT_RATIO",
     "ROBOT_SHARE",
+    "TYPICAL",
     "Allocation",
     "DesignParameter",
     "DesignSpace",
     "ParameterKind",
 ]
+
+TYPICAL = 10.0
+"""What is asked of a sized actuator [N m] as long as nothing better is known."""
 
 ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
 
@@ -202,7 +206,7 @@ class DesignSpace:
         Raises:
             ModelError: naming the link.
         """
-        self.resized(tree, self.with_rated(self.unscaled(tree), 1.0))
+        self.resized(tree, self.given(self.unscaled(tree), {}))
         shortest = self.resized(tree, [p.lower for p in self.parameters])
         thickest = {link: p.upper for p in self._of(ParameterKind.WALL) for link in p.links}
         fixed = {link: wall.thickness for wall in self.walls if wall.thickness for link in wall.links}
@@ -249,9 +253,18 @@ class DesignSpace:
         """Places of the margins among the parameters."""
         return tuple(i for i, each in enumerate(self.parameters) if each.kind is ParameterKind.MARGIN)
 
-    def with_rated(self, values: Sequence[float], rated: float) -> tuple[float, ...]:
-        """The values with a rated torque [N m] in place of each margin."""
-        return tuple(rated if i in self.margins else value for i, value in enumerate(values))
+    def given(self, values: Sequence[float], rated: Mapping[str, float]) -> tuple[float, ...]:
+        """What programs and `resized` are given: rated torques [N m] in place of margins.
+
+        Args:
+            values: of a design.
+            rated: of its sized actuators, by the parameter's name; others are as if `TYPICAL` were asked.
+        """
+        margins = self.margins
+        return tuple(
+            rated.get(parameter.name, value * TYPICAL) if place in margins else value
+            for place, (parameter, value) in enumerate(zip(self.parameters, values, strict=True))
+        )
 
     def _of(self, kind: ParameterKind) -> list[DesignParameter]:
         return [parameter for parameter in self.parameters if parameter.kind is kind]

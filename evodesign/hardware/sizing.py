@@ -4,18 +4,24 @@ A stronger actuator is heavier, and what carries it needs more torque. The size 
 
     s = margin x demand(s)
 
-found by solving again with the last sizes until none of them changes by more than a share of itself. From the
-third round on each size follows the secant through its last two demands, which are nearly linear in it:
+found by solving again with other sizes until none of them changes by more than a share of itself. With F(s)
+the sizes that would meet the demand found for s, or the demand predicted around it, the next sizes are
 
-    s' = s + (w - s) / (1 - r),    r = (w - w_before) / (s - s_before),    w = margin x demand(s)
+    log s' = log F(s) - sum_i g_i (log F(s) - log F(s_i)),    g: least squares of  f = sum_i g_i (f - f_i)
 
-unless somebody can predict the demand at other sizes.
+over the latest earlier rounds i, at most as many as there are sizes, where f = log F(s) - log s (Anderson's
+mixing; of a single size, the secant).
+
+Source: Anderson 1965; Walker and Ni 2011, Eq. 2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from evodesign.records import Status
 
@@ -30,8 +36,10 @@ ROUNDS = 4
 PREDICTIONS, SETTLED = 200, 1e-9
 """How often a prediction is asked for, and the change of a size that ends that."""
 
-LARGEST_SLOPE = 0.5
-"""Largest slope of the secant at which it is followed; beyond, the next size is the one wanted."""
+LARGEST_SHARE = 1.0
+"""Sum of |g_i| from which on earlier rounds say nothing."""
+
+Array = NDArray[np.float64]
 
 Sizes = Mapping[str, float]
 
@@ -76,13 +84,13 @@ def sized(
         start: sizes of the first round.
         margins: how many times the demand each size is.
         bounds: smallest and largest size that there is; a demand beyond them is met by neither.
-        predict: what the demand would be at other sizes than those it was asked for last, cheaply; the next
-            sizes are then those that meet it. Left out, sizes follow secants.
+        predict: what the demand would be at other sizes than those it was asked for last, cheaply; left out,
+            it would be the same.
         rounds: largest number of times that the demand is asked for.
         tolerance: largest change of a size, as a share of it, that ends the rounds.
     """
     sizes: Sizes = dict(start)
-    before: Mapping[str, tuple[float, float]] = {}
+    met_before: list[tuple[Array, Array]] = []
     wanted = sizes
     for number in range(1, rounds + 1):
         asked = demand(sizes)
@@ -93,13 +101,10 @@ def sized(
         if _change(sizes, wanted) <= tolerance:
             return Sizing(Status.SOLVED, "solved", sizes, wanted, number)
         if number < rounds:
-            here = {name: (sizes[name], wanted[name]) for name in sizes}
-            if predict is None:
-                following = {name: _following(here[name], before.get(name)) for name in sizes}
-                sizes = {name: _inside(size, bounds[name]) for name, size in following.items()}
-            else:
-                sizes = _settled(predict, wanted, margins, bounds)
-            before = here
+            met = wanted if predict is None else _settled(predict, wanted, margins, bounds)
+            met_before.append((np.log([*sizes.values()]), np.log([met[name] for name in sizes])))
+            following = zip(sizes, np.exp(_mixed(met_before)).tolist(), strict=True)
+            sizes = {name: _inside(size, bounds[name]) for name, size in following}
     change = _change(sizes, wanted)
     reason = f"actuators still change by {change:.1e} of their size after {rounds} rounds"
     return Sizing(Status.ITERATION_LIMIT, reason, sizes, wanted, rounds)
@@ -120,13 +125,16 @@ def _settled(
     return sizes
 
 
-def _following(here: tuple[float, float], before: tuple[float, float] | None) -> float:
-    """The next size from the last one and what it wanted, and the same of the round before."""
-    size, wanted = here
-    if before is None or size == before[0]:
+def _mixed(met: Sequence[tuple[Array, Array]]) -> Array:
+    """The logarithms of the next sizes, from those of each round's sizes and of those that would meet it."""
+    size, wanted = met[-1]
+    if len(met) == 1:
         return wanted
-    slope = (wanted - before[1]) / (size - before[0])
-    return wanted if abs(slope) > LARGEST_SLOPE else size + (wanted - size) / (1.0 - slope)
+    earlier = met[-1 - len(size) : -1]
+    gaps = np.column_stack([(wanted - size) - (w - s) for s, w in earlier])
+    moves = np.column_stack([wanted - w for _, w in earlier])
+    share = np.linalg.lstsq(gaps, wanted - size, rcond=None)[0]
+    return np.asarray(wanted - moves @ share) if np.abs(share).sum() < LARGEST_SHARE else wanted
 
 
 def _inside(size: float, bounds: tuple[float, float]) -> float:

@@ -88,7 +88,7 @@ class DesignProblem:
         start: genomes that a search begins with.
         joint: the paper's joint problem.
         joint_start: genomes that its starts begin with.
-        standing: postures in which the robot stands alone, for what they ask of actuators.
+        stances: postures in which the robot stands alone, for what they ask of actuators.
     """
 
     name: str
@@ -108,7 +108,7 @@ class DesignProblem:
     start: tuple[Genome, ...]
     joint: JointSettings
     joint_start: tuple[Genome, ...]
-    standing: tuple[StanceCase, ...] = ()
+    stances: tuple[StanceCase, ...] = ()
 
     @property
     def scene(self) -> Scene:
@@ -233,7 +233,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         start=tuple(start.values()),
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
-        standing=stance_cases(tables, source, robot),
+        stances=stance_cases(tables, source, robot),
     )
 
 

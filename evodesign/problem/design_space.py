@@ -114,6 +114,9 @@ def refuse_choices(space: DesignSpace, source: ProblemSource) -> None:
         InputError: naming a parameter.
     """
     for parameter in space.parameters:
+        if parameter.kind is ParameterKind.MARGIN:
+            wanted = f"rated_torque_n_m of {parameter.group} for the baseline, which sizes nothing"
+            raise InputError(source.path, "design.actuator", wanted, "margin")
         if parameter.choices:
             wanted = (
                 f"bounds of {parameter.name} instead of materials for the baseline, which moves it smoothly"

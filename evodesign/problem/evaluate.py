@@ -67,8 +67,8 @@ class Evaluator:
         self.inner = inner_problems(problem, known)
         self._growths = problem.space.growths(problem.scene.robot.tree)
         self._robot = AgentModel.of(problem.scene.robot, problem.scene.robot.tree)
-        asked = problem.standing or problem.space.margins
-        self._standing = StanceModel(problem.standing, self._robot) if asked else None
+        asked = problem.stances or problem.space.margins
+        self._standing = StanceModel(problem.stances, self._robot) if asked else None
         self._people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
     def solve(self, values: Sequence[float]) -> DesignResult:
@@ -184,6 +184,7 @@ class Evaluator:
             reach=reach,
             cases=cases,
             constraints=constrained or msgspec.UNSET,
+            rated=rated_of(result) or msgspec.UNSET,
         )
 
     def _in_case(
@@ -201,6 +202,12 @@ class Evaluator:
             reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
             return CaseSolution(case, Status.INFEASIBLE, reason)
         return self.inner.postures[case.pair].solve(values, case.task, checker, neighbour)
+
+
+def rated_of(result: DesignResult) -> dict[str, float]:
+    """The rated torques [N m] of sized actuators, by the parameter that is their margin."""
+    space = result.space
+    return {space.parameters[place].name: result.rated[place] for place in space.margins}
 
 
 def reach_of(reach: Reach) -> ReachOutcome:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.design.space import DesignSpace
+from evodesign.design.space import TYPICAL, DesignSpace
 from evodesign.hardware.actuators import actuator_law
 from evodesign.hardware.sizing import Sizing, sized
 from evodesign.mechanics.balance import GRAVITY
@@ -33,15 +33,12 @@ from evodesign.posture.results import CaseSolution
 from evodesign.problem.objectives import DesignResult
 from evodesign.records import Status
 
-__all__ = ["BOUNDS", "FIRST", "sized_result"]
+__all__ = ["BOUNDS", "sized_result"]
 
 Array = NDArray[np.float64]
 
 BOUNDS = (1.0, 300.0)
 """Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
-
-FIRST = 10.0
-"""What is assumed to be asked of every sized actuator in the first round [N m]."""
 
 Solve = Callable[[Sequence[float], DesignResult | None], DesignResult]
 
@@ -77,7 +74,7 @@ def sized_result(
 
     sizing = sized(
         demand,
-        start={name: values[place] * FIRST for name, place in groups.items()},
+        start={name: values[place] * TYPICAL for name, place in groups.items()},
         margins={name: values[place] for name, place in groups.items()},
         bounds=dict.fromkeys(groups, BOUNDS),
         predict=predict,

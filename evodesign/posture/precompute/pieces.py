@@ -253,7 +253,9 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def wanted(design: tuple[float, ...]) -> bool:
         return task is None or reach.solve(design).beyond(task.heights) == 0.0
 
+    def given(genome: tuple[float, ...]) -> tuple[float, ...]:
+        return space.given(space.values(genome), {})
+
     looked_at = LOOKED_AT * training.designs
-    return start_portfolio(
-        landscape, spread_designs(len(space.parameters), space.values, wanted, looked_at), training
-    )
+    designs = spread_designs(len(space.parameters), given, wanted, looked_at)
+    return start_portfolio(landscape, designs, training)
