@@ -40,7 +40,7 @@ from evodesign.problem.design_space import (
 )
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
-from evodesign.problem.hardware_objectives import refuse_without_actuators
+from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
@@ -340,7 +340,7 @@ def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Sce
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
-        refuse_without_actuators(key, name, tables, source)
+        refuse_without_hardware(key, name, tables, source)
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(key, name, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))

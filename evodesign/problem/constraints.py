@@ -14,7 +14,7 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.agents import refuse_unrated
 from evodesign.problem.file import BoundsTable, ProblemFile
-from evodesign.problem.hardware_objectives import refuse_without_actuators
+from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.objectives import (
     HUMAN_EFFORT,
     QUANTITIES,
@@ -59,7 +59,7 @@ def constraints_of(
         _check_bounds(table, place, source)
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(place, name, source, people)
-        refuse_without_actuators(place, name, tables, source)
+        refuse_without_hardware(place, name, tables, source)
         if name.endswith(PEAK_TORQUE):
             refuse_unlimited_peak(place, name, tables, source, robot)
         found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))

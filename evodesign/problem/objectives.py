@@ -14,6 +14,7 @@ not exist (no posture, no reach) is absent, never large.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -35,7 +36,9 @@ from evodesign.posture.terms.paper_tasks import pressure_task
 from evodesign.problem.hardware_objectives import (
     StanceModel,
     actuator_mass,
+    hand_deflection,
     holding_power,
+    least_safety_factor,
     power_by_torque,
     torque_share,
 )
@@ -103,10 +106,10 @@ class DesignResult:
         return self.scenes[0].robot
 
     def scene_of(self, case: Case) -> Scene:
-        """The scene of a case; its robot has the design's tree and limits where it has actuators."""
+        """The scene of a case; its robot has the design's tree and limits where it has hardware."""
         scene = scene_of(self.scenes, case.pair)
         rated = {joint: each.rated for joint, each in actuators_of(self.tree).items()}
-        if not rated:
+        if not rated and not self.space.walls:
             return scene
         robot = scene.robot
         robot = replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
@@ -265,6 +268,13 @@ def torque_margin(result: DesignResult) -> float | None:
     return 1.0 / max(*shares, *alone, 0.0)
 
 
+def safety_of_links(result: DesignResult) -> float | None:
+    """The least safety factor of the robot's links, over all cases; None without walls."""
+    factors = values_over_cases(least_safety_factor, result)
+    least = min(factors) if factors else math.inf
+    return least if least < math.inf else None
+
+
 def com_height(result: DesignResult) -> float:
     """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
     return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
@@ -294,6 +304,7 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     "peak_torque": CaseQuantity("1", peak_torque, _by_peak),
     HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
     "holding_power": CaseQuantity("W", holding_power, power_by_torque),
+    "hand_deflection": CaseQuantity("mm", hand_deflection),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
@@ -305,6 +316,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
     "torque_margin": ObjectiveKind("1", torque_margin),
+    "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
 }

@@ -50,6 +50,11 @@ DRIVEN = """
 name = "knee"
 joints = ["l_knee", "r_knee"]
 rated_torque_n_m = [5.0, 50.0]
+
+[[design.wall]]
+name = "shank"
+links = ["l_forearm", "r_forearm"]
+thickness_m = 0.002
 """
 
 
