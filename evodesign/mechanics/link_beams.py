@@ -1,8 +1,8 @@
 """Hollow links as beams: how near they are to yielding in a posture, and how far the hands give way.
 
-A link with walls whose main solid is a cylinder or a box along the link is a beam from end to end of the
-solid; others, and what lies beside the main solid, are rigid. What a section transmits are force and moment of
-all that acts beyond it: on the links further from the root, or in the root link on those above.
+A link with walls whose main solid is a cylinder or a box along the link is a beam from end to end of it;
+others, and what lies beside the main solid, are rigid. What a section transmits are force and moment of all
+that acts beyond it: on the links further from the root, or in the root link on those above.
 
     safety factor    of both ends of every beam, under the weights and wrenches of the posture
     deflection       of the hands, downwards on average, under the load alone: virtual work of the load's
