@@ -67,8 +67,6 @@ class Evaluator:
         self.inner = inner_problems(problem, known)
         self._growths = problem.space.growths(problem.scene.robot.tree)
         self._robot = AgentModel.of(problem.scene.robot, problem.scene.robot.tree)
-        asked = problem.stances or problem.space.margins
-        self._standing = StanceModel(problem.stances, self._robot) if asked else None
         self._people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
     def solve(self, values: Sequence[float]) -> DesignResult:
@@ -76,7 +74,7 @@ class Evaluator:
         space = self.problem.space
         if not space.margins:
             return self._solve(values)
-        result = sized_result(space, values, self._robot, self._solve)
+        result = sized_result(space, values, self._solve)
         reach = self._reach(result.values)
         return replace(result, values=tuple(values), rated=tuple(result.values), reach=reach)
 
@@ -87,7 +85,8 @@ class Evaluator:
         """Reach and postures for the values that programs are given; near those of an earlier round."""
         problem = self.problem
         tree = problem.space.resized(problem.scene.robot.tree, values, self._growths)
-        check = Checker(problem.scene, self._robot.resized(tree), self._people[problem.scene.human.label])
+        robot = self._robot.resized(tree)
+        check = Checker(problem.scene, robot, self._people[problem.scene.human.label])
         reach = self._reach(values) if before is None else before.reach
         cases: list[CaseSolution] = []
         for number, case in enumerate(problem.cases):
@@ -103,7 +102,7 @@ class Evaluator:
             space=problem.space,
             values=tuple(values),
             tree=tree,
-            standing=self._standing,
+            standing=StanceModel(problem.stances, self._robot, (tree, robot)),
             reach=reach,
             cases=tuple(cases),
             paper=problem.joint,

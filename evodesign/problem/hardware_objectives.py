@@ -118,14 +118,21 @@ class StanceModel:
     Args:
         cases: of the problem.
         robot: as pinocchio sees it, of any design.
+        latest: the tree of a design, and the robot with it.
     """
 
     cases: tuple[StanceCase, ...]
     robot: AgentModel
+    latest: tuple[Tree, AgentModel] | None = None
+
+    def with_tree(self, tree: Tree) -> AgentModel:
+        """The robot with the tree of a design."""
+        known = self.latest
+        return known[1] if known is not None and known[0] is tree else self.robot.resized(tree)
 
     def torques(self, tree: Tree) -> list[tuple[StanceCase, StanceTorques]]:
         """What became of each case with the tree of a design."""
-        body = self.robot.resized(tree).body
+        body = self.with_tree(tree).body
         return [(case, stance_torques(body, case)) for case in self.cases]
 
     def needed(self, tree: Tree) -> list[Mapping[str, float]] | str:

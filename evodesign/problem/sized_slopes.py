@@ -45,7 +45,7 @@ def program_slopes(
     if not result.rated or result.standing is None:
         return None
     as_given = replace(result, values=result.rated)
-    demand = demand_of(result.space, result.standing.robot, as_given)
+    demand = demand_of(result.space, as_given)
     if isinstance(demand, str):
         return NotDifferentiable(demand)
     missing = [each for each in cases if isinstance(each, NotDifferentiable)]

@@ -43,15 +43,12 @@ BOUNDS = (1.0, 300.0)
 Solve = Callable[[Sequence[float], DesignResult | None], DesignResult]
 
 
-def sized_result(
-    space: DesignSpace, values: Sequence[float], robot: AgentModel, solve: Solve
-) -> DesignResult:
+def sized_result(space: DesignSpace, values: Sequence[float], solve: Solve) -> DesignResult:
     """The results of a design with sized actuators.
 
     Args:
         space: of the problem.
         values: of the design.
-        robot: as pinocchio sees it, of any design.
         solve: the results of values with rated torques in place of margins, given those of the last round.
     """
     groups = {space.parameters[place].name: place for place in space.margins}
@@ -63,7 +60,7 @@ def sized_result(
         for name, place in groups.items():
             given[place] = sizes[name]
         rounds.append(solve(given, rounds[-1] if rounds else None))
-        found = demand_of(space, robot, rounds[-1])
+        found = demand_of(space, rounds[-1])
         if isinstance(found, str):
             return None
         demands.append(found)
@@ -79,14 +76,14 @@ def sized_result(
         bounds=dict.fromkeys(groups, BOUNDS),
         predict=predict,
     )
-    return _ended(space, robot, rounds[-1], sizing)
+    return _ended(space, rounds[-1], sizing)
 
 
-def _ended(space: DesignSpace, robot: AgentModel, result: DesignResult, sizing: Sizing) -> DesignResult:
+def _ended(space: DesignSpace, result: DesignResult, sizing: Sizing) -> DesignResult:
     """The last round's results, as failed ones where sizes are not met."""
     if sizing.status is Status.SOLVED or not all(each.solved for each in result.cases):
         return result
-    found = demand_of(space, robot, result)
+    found = demand_of(space, result)
     reason = found if isinstance(found, str) else sizing.reason
     failed = tuple(CaseSolution(each.case, sizing.status, reason) for each in result.cases)
     return replace(result, cases=failed)
@@ -121,18 +118,20 @@ class Demand:
         return {name: float(torques[:, list(columns)].max(initial=0.0)) for name, columns in pairs}
 
 
-def demand_of(space: DesignSpace, robot: AgentModel, result: DesignResult) -> Demand | str:
+def demand_of(space: DesignSpace, result: DesignResult) -> Demand | str:
     """What a round asks of the sized groups; a reason where that is not known."""
     if not all(solution.solved for solution in result.cases):
         return "a height is not held"
     parameters = [space.parameters[place] for place in space.margins]
-    model, names = robot.resized(result.tree), robot.agent.joints
+    if result.standing is None:
+        return "the robot is not known"
+    model, names = result.standing.with_tree(result.tree), result.robot.joints
     frames = [[result.tree.joint_by_name[joint].child for joint in each.joints] for each in parameters]
     torques, slopes = [], []
     for of_case, slope in _lifted(result, model, frames):
         torques.append(of_case)
         slopes.append(slope)
-    alone = [] if result.standing is None else result.standing.torques(result.tree)
+    alone = result.standing.torques(result.tree)
     for case, found in alone:
         if found.reason:
             return found.reason

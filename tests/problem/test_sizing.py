@@ -103,7 +103,7 @@ def test_predictions_are_first_order_in_the_masses_of_actuators(
     """Frozen postures: the torques of standing cases and arms by other actuators, solved anew."""
     assert result.standing is not None
     given = replace(result, values=result.rated)
-    demand = demand_of(sized.space, result.standing.robot, given)
+    demand = demand_of(sized.space, given)
     assert not isinstance(demand, str)
     sizes = dict(demand.sizes)
     sizes["margin.elbow"] *= 1.05
