@@ -7,6 +7,7 @@ case that was not solved) is absent or None, never a large number.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, Any
@@ -140,14 +141,16 @@ class Constraint(Record, frozen=True):
 
 
 class Parameter(Record, frozen=True, omit_defaults=True):
-    """One design parameter: a length multiplier or an allocation (unit "1"), or a density (unit "kg/m^3").
+    """One design parameter: length multiplier or allocation (unit "1"), density, wall or rated torque.
 
-    A genome's coordinate u in [0, 1] stands for (1 - u) lower + u upper. With n choices, it stands for the
-    choice in whose n-th part of [0, 1] it lies, and is the middle of that part.
+    A genome's coordinate u in [0, 1] stands for (1 - u) lower + u upper, or on a logarithmic scale for
+    lower^(1 - u) upper^u. With n choices, it stands for the choice in whose n-th part of [0, 1] it lies, and
+    is the middle of that part.
 
     Attributes:
         choices: the only values that there are, rising; none if every value within the bounds is one.
-        materials: the choices' names.
+        materials: the choices' names: materials, or models of actuators.
+        logarithmic: whether the scale is.
     """
 
     name: str
@@ -156,12 +159,28 @@ class Parameter(Record, frozen=True, omit_defaults=True):
     unit: str
     choices: tuple[float, ...] = ()
     materials: tuple[str, ...] = ()
+    logarithmic: bool = False
 
     def value_at(self, coordinate: float) -> float:
         """The value that a genome's coordinate stands for."""
         if self.choices:
             return self.choices[choice_at(coordinate, len(self.choices))]
+        if self.logarithmic:
+            value = float(self.lower * (self.upper / self.lower) ** coordinate)
+            return min(max(value, self.lower), self.upper)
         return _between(self.lower, self.upper, coordinate)
+
+    def share_of(self, value: float) -> float:
+        """How far a value lies between the bounds, on the parameter's scale."""
+        if self.logarithmic:
+            return math.log(value / self.lower) / math.log(self.upper / self.lower)
+        return (value - self.lower) / (self.upper - self.lower)
+
+    def slope_at(self, value: float) -> float:
+        """How fast the value grows with the genome's coordinate; 0 for one of choices."""
+        if self.choices:
+            return 0.0
+        return value * math.log(self.upper / self.lower) if self.logarithmic else self.upper - self.lower
 
     def material_of(self, value: float) -> str | None:
         """The material of a value; None for a parameter without materials."""
@@ -250,7 +269,8 @@ class Assessment(Record, frozen=True):
     None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
     required heights are missed, plus for each constraint its excess relative to its bound
     (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
-    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them.
+    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them. `rated`
+    holds the rated torques [N m] of sized actuators, by the parameter that is their margin.
     """
 
     design: dict[str, float]
@@ -263,6 +283,12 @@ class Assessment(Record, frozen=True):
     constraints: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
     judged: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
     gradients: Gradients | msgspec.UnsetType = msgspec.UNSET
+    rated: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def rated_torques(self) -> dict[str, float]:
+        """Those of sized actuators [N m], by the parameter that is their margin, if there are any."""
+        return {} if self.rated is msgspec.UNSET else self.rated
 
     @property
     def constrained(self) -> dict[str, float]:

@@ -99,7 +99,8 @@ def _values(objectives: Sequence[Objective], assessment: Assessment) -> list[flo
 def _distribution(parameter: Parameter) -> optuna.distributions.BaseDistribution:
     if parameter.choices:
         return optuna.distributions.CategoricalDistribution(parameter.materials or parameter.choices)
-    return optuna.distributions.FloatDistribution(parameter.lower, parameter.upper)
+    ends = (parameter.lower, parameter.upper)
+    return optuna.distributions.FloatDistribution(*ends, log=parameter.logarithmic)
 
 
 def _attributes(assessment: Assessment) -> dict[str, Any]:
@@ -163,7 +164,8 @@ class OptunaObjective:
 
 def _suggested(trial: optuna.Trial, parameter: Parameter) -> float:
     if not parameter.choices:
-        return trial.suggest_float(parameter.name, parameter.lower, parameter.upper)
+        ends = (parameter.lower, parameter.upper)
+        return trial.suggest_float(parameter.name, *ends, log=parameter.logarithmic)
     if not parameter.materials:
         return float(trial.suggest_categorical(parameter.name, parameter.choices))
     chosen = trial.suggest_categorical(parameter.name, parameter.materials)

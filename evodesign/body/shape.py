@@ -7,6 +7,10 @@ Dimensions are numbers or symbolic expressions [m].
     cylinder   m = rho pi r^2 l       I = m (3 r^2 + l^2)/12 (1, 1, 0) + m r^2/2 (0, 0, 1)
     box        m = rho x y z          I = m/12 (y^2 + z^2, x^2 + z^2, x^2 + y^2)
 
+A hollow solid is closed: its wall is as thick at the ends as at the sides, so mass and inertia are those of
+the outer shape less those of one that is smaller by the wall all around. What fills it beside the wall
+(cables, boards, covers) is a mass that is spread evenly over the outer shape.
+
 Source: Sartore et al. 2022, Eq. 3 and Table I.
 """
 
@@ -49,6 +53,15 @@ class Sphere:
         """The radius [m] (paper, Section IV)."""
         return self.radius
 
+    def inside(self, wall: Scalar) -> Sphere:
+        """The ball within a wall [m]."""
+        return Sphere(self.radius - wall)
+
+    @property
+    def least_width(self) -> Scalar:
+        """Its smallest dimension [m]."""
+        return 2.0 * self.radius
+
     def lengthened(self, factor: Scalar, axis: Vector) -> Sphere:
         """The ball with its radius multiplied."""
         return Sphere(self.radius * factor)
@@ -78,6 +91,15 @@ class Cylinder:
     def principal_dimension(self, axis: Vector) -> Scalar:
         """The length [m]."""
         return self.length
+
+    def inside(self, wall: Scalar) -> Cylinder:
+        """The cylinder within a wall [m]."""
+        return Cylinder(self.radius - wall, self.length - 2.0 * wall)
+
+    @property
+    def least_width(self) -> Scalar:
+        """Its smallest dimension [m]."""
+        return min(2.0 * self.radius, self.length)
 
     def lengthened(self, factor: Scalar, axis: Vector) -> Cylinder:
         """The cylinder with its length multiplied and its radius kept."""
@@ -112,6 +134,15 @@ class Box:
         """The side [m] along the axis."""
         return self.sides[_along(axis)]
 
+    def inside(self, wall: Scalar) -> Box:
+        """The box within a wall [m]."""
+        return Box(*(side - 2.0 * wall for side in self.sides))
+
+    @property
+    def least_width(self) -> Scalar:
+        """Its smallest side [m]."""
+        return min(self.sides)
+
     def lengthened(self, factor: Scalar, axis: Vector) -> Box:
         """The box with the side along the axis multiplied and the others kept."""
         along = _along(axis)
@@ -128,30 +159,45 @@ Shape = Sphere | Cylinder | Box
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A shape of constant density, placed in a link.
+    """A shape of constant density, full or hollow, placed in a link.
 
     Args:
         shape: its form.
         link_from_solid: its place in the link.
-        density: [kg/m^3], a number or an expression.
+        density: [kg/m^3], a number or an expression; of a hollow solid that of the wall.
+        wall: thickness [m], a number or an expression; None for a full solid.
+        filling: mass [kg] that a hollow solid holds beside its wall.
     """
 
     shape: Shape
     link_from_solid: Placement
     density: Scalar
+    wall: Scalar | None = None
+    filling: Scalar = 0.0
 
     @property
     def mass(self) -> Scalar:
         """Mass [kg]."""
-        return self.density * self.shape.volume
+        if self.wall is None:
+            return self.density * self.shape.volume
+        return self.density * (self.shape.volume - self.shape.inside(self.wall).volume) + self.filling
 
     @property
     def inertia(self) -> Inertia:
         """Inertia in the link's frame."""
-        mass = self.mass
-        a, b, c = self.shape.moments(mass)
+        a, b, c = self._moments
         about_center: Matrix = ((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c))
-        return Inertia(mass, (0.0, 0.0, 0.0), about_center).moved(self.link_from_solid)
+        return Inertia(self.mass, (0.0, 0.0, 0.0), about_center).moved(self.link_from_solid)
+
+    @property
+    def _moments(self) -> Vector:
+        """Principal moments about the centre [kg m^2]."""
+        if self.wall is None:
+            return self.shape.moments(self.mass)
+        hollow = self.shape.inside(self.wall)
+        outer = self.shape.moments(self.density * self.shape.volume + self.filling)
+        inner = hollow.moments(self.density * hollow.volume)
+        return (outer[0] - inner[0], outer[1] - inner[1], outer[2] - inner[2])
 
 
 def _along(axis: Vector) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -56,11 +56,13 @@ def show(
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in _ergonomics(opened)]
         nearest = [hold_names(case) | distance_json(each) for case, each in _distances(opened).items()]
-        print_json({"run": str(run), **told, "ergonomics": asked, "clearances": nearest})
+        bill = _bill(opened)
+        hardware = {"hardware": bill} if bill else {}
+        print_json({"run": str(run), **told, **hardware, "ergonomics": asked, "clearances": nearest})
     else:
         from evodesign.cli.tables.card import card
 
-        console().print(card(opened, _ergonomics(opened)))
+        console().print(card(opened, _ergonomics(opened), _bill(opened)))
         show_notes(overlaps(_distances(opened).items()))
     damage.end(logged, accepted=damaged)
 
@@ -74,6 +76,17 @@ def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
     except InputError as error:
         show_notes([f"what the postures ask of the person is left out ({error})"])
         return ()
+
+
+def _bill(opened: OpenedDesign) -> dict[str, Any]:
+    """What it is built of; none, and a note, if the problem cannot be built here."""
+    from evodesign.cli.output import show_notes
+
+    try:
+        return opened.bill()
+    except InputError as error:
+        show_notes([f"the bill of materials is left out ({error})"])
+        return {}
 
 
 def _distances(opened: OpenedDesign) -> dict[Case, BodyDistance]:

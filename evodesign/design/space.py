@@ -1,13 +1,7 @@
-"""What may change: length multipliers and densities of groups of links, and allocation parameters.
+"""What may change: lengths, densities and walls of groups of links, actuators of joints, and allocations.
 
 A design is a value per parameter; a genome is the same point in the unit cube. The values may be symbolic,
 so that one posture program serves every design.
-
-An allocation parameter belongs to no link: it says how robot and person share the load, so that a front can
-span from "the robot carries" to "the person carries".
-
-    robot_share     part of the load's weight that the robot carries, 0 to 1
-    effort_ratio    log10(w_r / w_h), where w_r + w_h = 2 weigh the agents' squared torques
 
 Source: Sartore et al. 2022, Section III-A: pi = (l_m1, ..., rho_1, ...).
 """
@@ -16,12 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
-from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
+from evodesign.design.parameter import (
+    ALLOCATIONS,
+    EFFORT_RATIO,
+    ROBOT_SHARE,
+    Allocation,
+    DesignParameter,
+    ParameterKind,
+)
+from evodesign.design.walls import Wall, check_walls, walls_of_links
 from evodesign.errors import ModelError
-from evodesign.records import Genome, Parameter, design_of, middle_of
+from evodesign.hardware.actuators import Actuator
+from evodesign.records import Genome, Parameter, design_of
+from evodesign.tree.equip import with_actuators, with_walls
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import Growth, growth_of, resize
 from evodesign.tree.symmetry import mirror_of
@@ -31,115 +34,23 @@ __all__ = [
     "ALLOCATIONS",
     "EFFORT_RATIO",
     "ROBOT_SHARE",
+    "TYPICAL",
     "Allocation",
     "DesignParameter",
     "DesignSpace",
     "ParameterKind",
 ]
 
-ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
-
-
-@dataclass(frozen=True, slots=True)
-class Allocation:
-    """The range of an allocation parameter.
-
-    Args:
-        usual: its value in the unscaled robot.
-        lowest, highest: between which it means something.
-    """
-
-    usual: float
-    lowest: float
-    highest: float
-
-    @property
-    def wanted(self) -> str:
-        """Its range in words."""
-        return f"a number from {self.lowest:g} to {self.highest:g}"
-
-    def means(self, value: float) -> bool:
-        """Whether a value means something."""
-        return self.lowest <= value <= self.highest
-
-
-ALLOCATIONS: Mapping[str, Allocation] = {
-    ROBOT_SHARE: Allocation(usual=0.5, lowest=0.0, highest=1.0),
-    EFFORT_RATIO: Allocation(usual=0.0, lowest=-6.0, highest=6.0),
-}
-
-
-class ParameterKind(StrEnum):
-    """What a parameter changes; the value is the word in its full name."""
-
-    LENGTH = "length"
-    DENSITY = "density"
-    ALLOCATION = "allocation"
-
-
-UNITS = {ParameterKind.LENGTH: "1", ParameterKind.DENSITY: "kg/m^3", ParameterKind.ALLOCATION: "1"}
-
-
-@dataclass(frozen=True, slots=True)
-class DesignParameter:
-    """One number that a design chooses, for a group of links or, on the allocation of the load, for none.
-
-    Args:
-        kind: length multiplier [-], density [kg/m^3] or allocation parameter [-].
-        group: name of the group, unique among the parameters of its kind; of an allocation parameter, its
-            own.
-        links: names of the links that share the value; none for an allocation parameter.
-        lower, upper: bounds.
-        materials: of which a density must be one's, the lightest first; none if every value within the
-            bounds will do.
-    """
-
-    kind: ParameterKind
-    group: str
-    links: tuple[str, ...]
-    lower: float
-    upper: float
-    materials: tuple[Material, ...] = ()
-
-    @property
-    def choices(self) -> tuple[float, ...]:
-        """The only values that there are, rising; none if every value within the bounds is one."""
-        return tuple(material.density for material in self.materials)
-
-    def nearest(self, value: float) -> Material:
-        """The material whose density is nearest to a value."""
-        return min(self.materials, key=lambda material: abs(material.density - value))
-
-    def coordinate(self, value: float) -> float:
-        """The genome's coordinate of a value; that of the nearest choice where there are choices."""
-        if self.choices:
-            nearest = min(self.choices, key=lambda choice: abs(choice - value))
-            return middle_of(self.choices.index(nearest), len(self.choices))
-        return (value - self.lower) / (self.upper - self.lower)
-
-    @property
-    def name(self) -> str:
-        """Full name, such as `length.upper_arm`."""
-        return f"{self.kind}.{self.group}"
-
-    @property
-    def record(self) -> Parameter:
-        """The parameter as it is remembered."""
-        return Parameter(
-            name=self.name,
-            lower=self.lower,
-            upper=self.upper,
-            unit=UNITS[self.kind],
-            choices=self.choices,
-            materials=tuple(material.name for material in self.materials),
-        )
+TYPICAL = 10.0
+"""What is asked of a sized actuator [N m] as long as nothing better is known."""
 
 
 @dataclass(frozen=True, slots=True)
 class DesignSpace:
-    """All parameters of a problem, in the order of the genome's coordinates."""
+    """All parameters of a problem, in the order of the genome's coordinates, and the walls of links."""
 
     parameters: tuple[DesignParameter, ...]
+    walls: tuple[Wall, ...] = ()
 
     @property
     def records(self) -> tuple[Parameter, ...]:
@@ -152,7 +63,11 @@ class DesignSpace:
         Raises:
             ModelError: naming the link.
         """
-        self.resized(tree, self.unscaled(tree))
+        self.resized(tree, self.given(self.unscaled(tree), {}))
+        shortest = self.resized(tree, [p.lower for p in self.parameters])
+        thickest = {link: p.upper for p in self._of(ParameterKind.WALL) for link in p.links}
+        fixed = {link: wall.thickness for wall in self.walls if wall.thickness for link in wall.links}
+        check_walls(shortest, self.walls, {**thickest, **fixed})
         for parameter in self.parameters:
             if parameter.kind is ParameterKind.LENGTH:
                 for link in parameter.links:
@@ -165,12 +80,18 @@ class DesignSpace:
             ModelError: naming a link whose mirror image is not in its group, or what in the tree differs,
                 before or after resizing.
         """
-        partners = mirror_of(tree).links
+        mirror = mirror_of(tree)
         for parameter in self.parameters:
-            for link in parameter.links:
-                if partners[link] not in parameter.links:
-                    found = f"'{link}' without '{partners[link]}'"
-                    raise ModelError(tree.name, f"{parameter.name}.links", "both links of a pair", found)
+            for what, names, partners in (
+                ("links", parameter.links, mirror.links),
+                ("joints", parameter.joints, mirror.joints),
+            ):
+                for name in names:
+                    if partners[name] not in names:
+                        found = f"'{name}' without '{partners[name]}'"
+                        raise ModelError(
+                            tree.name, f"{parameter.name}.{what}", f"both {what} of a pair", found
+                        )
         values = self.unscaled(tree)
         changed = [value * (1.1 + 0.01 * number) for number, value in enumerate(values)]
         try:
@@ -181,8 +102,29 @@ class DesignSpace:
 
     def growths(self, tree: Tree) -> Mapping[str, Growth]:
         """How each link of a length parameter grows."""
-        lengths = [parameter for parameter in self.parameters if parameter.kind is ParameterKind.LENGTH]
+        lengths = self._of(ParameterKind.LENGTH)
         return {link: growth_of(tree, link) for parameter in lengths for link in parameter.links}
+
+    @property
+    def margins(self) -> tuple[int, ...]:
+        """Places of the margins among the parameters."""
+        return tuple(i for i, each in enumerate(self.parameters) if each.kind is ParameterKind.MARGIN)
+
+    def given(self, values: Sequence[float], rated: Mapping[str, float]) -> tuple[float, ...]:
+        """What programs and `resized` are given: rated torques [N m] in place of margins.
+
+        Args:
+            values: of a design.
+            rated: of its sized actuators, by the parameter's name; others are as if `TYPICAL` were asked.
+        """
+        margins = self.margins
+        return tuple(
+            rated.get(parameter.name, value * TYPICAL) if place in margins else value
+            for place, (parameter, value) in enumerate(zip(self.parameters, values, strict=True))
+        )
+
+    def _of(self, kind: ParameterKind) -> list[DesignParameter]:
+        return [parameter for parameter in self.parameters if parameter.kind is kind]
 
     def resized(
         self, tree: Tree, values: Sequence[Scalar], growths: Mapping[str, Growth] | None = None
@@ -191,13 +133,18 @@ class DesignSpace:
 
         Args:
             tree: unscaled.
-            values: one number or expression per parameter.
+            values: one number or expression per parameter; of a margin, the rated torque [N m].
             growths: of the tree's links, if they are known already.
         """
         by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
+        actuators: dict[str, Actuator] = {}
         for parameter, value in zip(self.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
-        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
+            if parameter.joints:
+                actuators |= dict.fromkeys(parameter.joints, parameter.actuator(value))
+        tree = with_walls(tree, walls_of_links(self.walls, by_kind[ParameterKind.WALL]))
+        tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
+        return with_actuators(tree, actuators)
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The allocation parameters among a design's values, by their own names."""
@@ -212,10 +159,13 @@ class DesignSpace:
     @property
     def counts(self) -> tuple[int, ...]:
         """How many choices each coordinate of a genome has, 0 for a continuous one."""
-        return tuple(len(parameter.materials) for parameter in self.parameters)
+        return tuple(len(parameter.choices) for parameter in self.parameters)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
-        """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation."""
+        """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation.
+
+        Of walls and actuators the file says nothing: theirs are in the middle of their bounds or choices.
+        """
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
@@ -223,6 +173,8 @@ class DesignSpace:
             return 1.0
         if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
+        if parameter.joints or parameter.kind is ParameterKind.WALL:
+            return parameter.record.value_at(0.5)
         links = [tree.link(name, f"{parameter.name}.links") for name in parameter.links]
         volume = sum(float(link.volume) for link in links)
         return sum(float(link.inertia.mass) for link in links) / volume if volume else 0.0

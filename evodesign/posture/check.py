@@ -22,6 +22,7 @@ from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.terms.base import UNDISTURBED, BodyTerm, MeasuredBody, MeasuredSystem, Residual
 from evodesign.posture.terms.registry import TERMS
+from evodesign.tree.equip import rated_torques
 from evodesign.tree.model import Tree
 
 __all__ = ["TOLERANCE", "AgentModel", "Checker", "sizes"]
@@ -48,9 +49,13 @@ class AgentModel:
         return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)), solid)
 
     def resized(self, tree: Tree) -> AgentModel:
-        """The same agent with the tree of another design."""
-        solid = None if self.solid is None else self.solid.resized(tree)
-        return replace(self, body=self.body.resized(tree), solid=solid)
+        """The same agent with the tree of another design, and the limits of its actuators."""
+        agent, solid = self.agent, None if self.solid is None else self.solid.resized(tree)
+        rated = {joint: limit for joint, limit in rated_torques(tree).items() if joint in agent.joints}
+        if rated:
+            limits = agent.torque_limits if agent.limits_torques else {}
+            agent = replace(agent, torque_limits={**limits, **rated}, limits_torques=True)
+        return replace(self, agent=agent, body=self.body.resized(tree), solid=solid)
 
     def at(self, posture: AgentPosture) -> BodyState:
         """Kinematics, Jacobians and gravity torques of a posture."""

@@ -11,6 +11,7 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene, StanceLimits, scene_of
+from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.solver import available
 from evodesign.pool.base import Limits
@@ -26,6 +27,12 @@ from evodesign.problem.agents import (
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints
 from evodesign.problem.descriptors import search_descriptors
+from evodesign.problem.design_hardware import (
+    actuator_parameters,
+    stance_cases,
+    wall_parameters,
+    walls_of,
+)
 from evodesign.problem.design_space import (
     check_allocations,
     density_parameters,
@@ -35,6 +42,7 @@ from evodesign.problem.design_space import (
 )
 from evodesign.problem.designs import read_designs, start_genomes
 from evodesign.problem.file import ProblemFile, SearchTable
+from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
@@ -82,6 +90,7 @@ class DesignProblem:
         start: genomes that a search begins with.
         joint: the paper's joint problem.
         joint_start: genomes that its starts begin with.
+        stances: postures in which the robot stands alone, for what they ask of actuators.
     """
 
     name: str
@@ -101,6 +110,7 @@ class DesignProblem:
     start: tuple[Genome, ...]
     joint: JointSettings
     joint_start: tuple[Genome, ...]
+    stances: tuple[StanceCase, ...] = ()
 
     @property
     def scene(self) -> Scene:
@@ -233,6 +243,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         start=tuple(start.values()),
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
+        stances=stance_cases(tables, source, robot),
     )
 
 
@@ -277,19 +288,21 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
     parameters += density_parameters(tables, source)
+    parameters += wall_parameters(tables, source)
+    parameters += actuator_parameters(tables, source, tree)
     parameters += [
         DesignParameter(ParameterKind.ALLOCATION, t.name, (), t.lower, t.upper)
         for t in tables.design.allocation
     ]
     if not parameters:
-        raise InputError(source.path, "design", "a length, density or allocation parameter", "none")
+        raise InputError(source.path, "design", "a parameter, such as a length", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
     for parameter in parameters:
         key = f"design.{parameter.kind}[{positions[parameter.kind]}]"
         positions[parameter.kind] += 1
         _check_parameter(parameter, key, source, tree, seen)
-    space = DesignSpace(tuple(parameters))
+    space = DesignSpace(tuple(parameters), walls_of(tables, source, tree))
     try:
         space.check(tree)
     except InputError as error:
@@ -337,6 +350,7 @@ def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Sce
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
+        refuse_without_hardware(key, name, tables, source)
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(key, name, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))

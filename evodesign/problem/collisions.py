@@ -62,9 +62,13 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
 def _designs(space: DesignSpace) -> Iterator[tuple[float, ...]]:
     """Some designs, with the least and the largest one of all."""
     count = len(space.parameters)
-    yield space.values((0.0,) * count)
-    yield space.values((1.0,) * count)
-    yield from spread_designs(count, space.values, lambda _: True, DESIGNS)
+
+    def given(genome: tuple[float, ...]) -> tuple[float, ...]:
+        return space.given(space.values(genome), {})
+
+    yield given((0.0,) * count)
+    yield given((1.0,) * count)
+    yield from spread_designs(count, given, lambda _: True, DESIGNS)
 
 
 def _refuse_unknown(table: CollisionsTable, source: ProblemSource, agents: list[Agent]) -> None:

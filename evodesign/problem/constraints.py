@@ -14,6 +14,7 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.agents import refuse_unrated
 from evodesign.problem.file import BoundsTable, ProblemFile
+from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.objectives import (
     HUMAN_EFFORT,
     QUANTITIES,
@@ -26,7 +27,7 @@ from evodesign.records import Constraint, ProblemSource
 
 __all__ = ["constraint_key", "constraints_of", "refuse_constraints"]
 
-SUFFIXES: Mapping[str, str] = {"N m": "_n_m", "kg": "_kg", "m": "_m"}
+SUFFIXES: Mapping[str, str] = {"N m": "_n_m", "kg": "_kg", "m": "_m", "W": "_w", "mm": "_mm"}
 """How a key ends, by the unit of its quantity."""
 
 
@@ -58,8 +59,9 @@ def constraints_of(
         _check_bounds(table, place, source)
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(place, name, source, people)
+        refuse_without_hardware(place, name, tables, source)
         if name.endswith(PEAK_TORQUE):
-            refuse_unlimited_peak(place, name, source, robot)
+            refuse_unlimited_peak(place, name, tables, source, robot)
         found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))
     return tuple(found)
 

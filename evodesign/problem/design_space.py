@@ -114,6 +114,9 @@ def refuse_choices(space: DesignSpace, source: ProblemSource) -> None:
         InputError: naming a parameter.
     """
     for parameter in space.parameters:
+        if parameter.kind is ParameterKind.MARGIN:
+            wanted = f"rated_torque_n_m of {parameter.group} for the baseline, which sizes nothing"
+            raise InputError(source.path, "design.actuator", wanted, "margin")
         if parameter.choices:
             wanted = (
                 f"bounds of {parameter.name} instead of materials for the baseline, which moves it smoothly"
@@ -122,20 +125,21 @@ def refuse_choices(space: DesignSpace, source: ProblemSource) -> None:
 
 
 def refuse_no_choice(parameter: DesignParameter, value: float, source: str, key: str) -> None:
-    """Refuse a density that is none of a parameter's materials.
+    """Refuse a value that is none of a parameter's choices.
 
     Args:
-        parameter: one without materials takes any value.
-        value: [kg/m^3].
+        parameter: one without choices takes any value.
+        value: in the parameter's unit.
         source: the file, for messages.
         key: where in it.
     Raises:
-        InputError: naming the nearest material.
+        InputError: naming the nearest material or model.
     """
     if parameter.choices and value not in parameter.choices:
-        near = parameter.nearest(value)
-        wanted = f"the density of a material of {parameter.name}"
-        found = f"{value:g} kg/m^3; the nearest material is '{near.name}' with {near.density:g}"
+        name, nearest = parameter.nearest(value)
+        what = ("density", "material") if parameter.materials else ("rated torque", "model")
+        wanted = f"the {what[0]} of a {what[1]} of {parameter.name}"
+        found = f"{value:g} {parameter.record.unit}; the nearest {what[1]} is '{name}' with {nearest:g}"
         raise InputError(source, key, wanted, found)
 
 

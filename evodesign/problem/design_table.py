@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
+import msgspec
 from msgspec import Meta
 
-from evodesign.problem.table import Name, Positive, Table
+from evodesign.problem.table import Name, Positive, Share, Table
 
-__all__ = ["AllocationTable", "DensityTable", "DesignTable", "MaterialTable"]
+__all__ = [
+    "ActuatorTable",
+    "AllocationTable",
+    "DensityTable",
+    "DesignTable",
+    "Feet",
+    "HardwareTable",
+    "LoadCaseTable",
+    "MaterialTable",
+    "WallTable",
+]
+
+Margin = Annotated[float, Meta(ge=1.0)]
 
 
 class LengthTable(Table, frozen=True):
@@ -38,6 +52,62 @@ class MaterialTable(Table, frozen=True):
     source: Name
 
 
+class WallTable(Table, frozen=True):
+    """`[[design.wall]]`: links that are hollow: a fixed thickness or bounds of it, and what they are made of.
+
+    Without `material`, a `[[design.density]]` of the same links chooses it.
+    """
+
+    name: Name
+    links: Annotated[tuple[Name, ...], Meta(min_length=1)]
+    thickness_m: (
+        float | tuple[float, float]
+    )  # bounds in such a union end msgspec 0.20 with a segmentation fault
+    material: Name | None = None
+
+
+class ActuatorTable(Table, frozen=True):
+    """`[[design.actuator]]`: what drives a group of joints.
+
+    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds.
+    """
+
+    name: Name
+    joints: Annotated[tuple[Name, ...], Meta(min_length=1)]
+    rated_torque_n_m: tuple[Positive, Positive] | None = None
+    models: tuple[Name, ...] | None = None
+    margin: tuple[Margin, Margin] | None = None
+
+
+class Feet(StrEnum):
+    """On which feet a robot stands."""
+
+    BOTH = "both"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class LoadCaseTable(Table, frozen=True):
+    """`[[load_case]]`: a posture in which the robot stands alone, for what it asks of actuators.
+
+    `joints_deg` gives the joints that are not at zero. `balance` names groups of joints that each move by one
+    offset until the robot is balanced: one group on both feet, two on one. The actuators' peak torque is
+    `factor` times the torques of the case.
+    """
+
+    name: Name
+    balance: Annotated[tuple[tuple[Name, ...], ...], Meta(min_length=1)]
+    feet: Feet = Feet.BOTH
+    joints_deg: dict[str, float] = msgspec.field(default_factory=dict)
+    factor: Positive = 2.0
+
+
+class HardwareTable(Table, frozen=True):
+    """`[hardware]`: the share of a hollow link's mass in the file that stays beside its wall."""
+
+    non_structural_share: Share = 0.3
+
+
 class AllocationTable(Table, frozen=True):
     """`[[design.allocation]]`: how a design shares the load; see `design.allocation` for the names."""
 
@@ -51,4 +121,6 @@ class DesignTable(Table, frozen=True):
 
     length: tuple[LengthTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
+    wall: tuple[WallTable, ...] = ()
+    actuator: tuple[ActuatorTable, ...] = ()
     allocation: tuple[AllocationTable, ...] = ()

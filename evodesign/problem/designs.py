@@ -22,7 +22,8 @@ __all__ = ["DesignEntry", "PopulationFile", "designs_text", "read_designs", "sta
 class DesignEntry(Table, frozen=True):
     """`[[design]]` of a population file: values by group; what is left out stays unscaled.
 
-    `material` names the material of a density that has materials, in place of `density_kg_per_m3`.
+    `material` names the material of a density that has materials, in place of `density_kg_per_m3`; `model`
+    that of an actuator that has models, in place of `rated_torque_n_m`.
     """
 
     name: Name
@@ -30,6 +31,10 @@ class DesignEntry(Table, frozen=True):
     density_kg_per_m3: dict[str, Positive] = msgspec.field(default_factory=dict)
     allocation: dict[str, float] = msgspec.field(default_factory=dict)
     material: dict[str, Name] = msgspec.field(default_factory=dict)
+    wall_m: dict[str, Positive] = msgspec.field(default_factory=dict)
+    rated_torque_n_m: dict[str, Positive] = msgspec.field(default_factory=dict)
+    margin: dict[str, Positive] = msgspec.field(default_factory=dict)
+    model: dict[str, Name] = msgspec.field(default_factory=dict)
 
 
 class PopulationFile(Table, frozen=True):
@@ -42,6 +47,9 @@ class PopulationFile(Table, frozen=True):
 TABLES = {
     ParameterKind.LENGTH: "length",
     ParameterKind.DENSITY: "density_kg_per_m3",
+    ParameterKind.WALL: "wall_m",
+    ParameterKind.ACTUATOR: "rated_torque_n_m",
+    ParameterKind.MARGIN: "margin",
     ParameterKind.ALLOCATION: "allocation",
 }
 """A design's table for each kind of parameter."""
@@ -81,25 +89,32 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
                 raise InputError(source, f"{key}.{table}.{group}", ALLOCATIONS[group].wanted, f"{value:g}")
             refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
             given[name] = value
-    for group, material in entry.material.items():
-        name = f"{ParameterKind.DENSITY}.{group}"
-        given[name] = _density_of(material, known.get(name), source, f"{key}.material.{group}", given)
+    for kind, word in CHOSEN.items():
+        chosen: dict[str, str] = getattr(entry, word)
+        for group, choice in chosen.items():
+            name = f"{kind}.{group}"
+            given[name] = _value_of(choice, known.get(name), source, f"{key}.{word}.{group}", given)
     return given
 
 
-def _density_of(
-    material: str, parameter: DesignParameter | None, source: str, key: str, given: Mapping[str, float]
+CHOSEN = {ParameterKind.DENSITY: "material", ParameterKind.ACTUATOR: "model"}
+"""A design's table of choices by name, for each kind that has choices."""
+
+
+def _value_of(
+    choice: str, parameter: DesignParameter | None, source: str, key: str, given: Mapping[str, float]
 ) -> float:
-    """The density [kg/m^3] of a material that a design names for a parameter."""
+    """The value of a material or model that a design names for a parameter."""
+    word, figure = key.split(".")[1], "density" if ".material." in key else "rated torque"
     if parameter is None or not parameter.choices:
-        raise InputError(source, key, "a density parameter that has materials", f"'{material}' for another")
+        raise InputError(source, key, f"a parameter that has {word}s", f"'{choice}' for another")
     if parameter.name in given:
-        raise InputError(source, key, "either a material or a density", "both")
-    densities = {each.name: each.density for each in parameter.materials}
-    if material not in densities:
-        wanted = f"one of {', '.join(densities)}"
-        raise InputError(source, key, wanted, f"'{material}'{nearest_name(material, densities)}")
-    return densities[material]
+        raise InputError(source, key, f"either a {word} or a {figure}", "both")
+    values = dict(zip(parameter.choice_names, parameter.choices, strict=True))
+    if choice not in values:
+        wanted = f"one of {', '.join(values)}"
+        raise InputError(source, key, wanted, f"'{choice}'{nearest_name(choice, values)}")
+    return values[choice]
 
 
 def designs_text(name: str, designs: Mapping[str, Sequence[float]], space: DesignSpace, remark: str) -> str:

@@ -23,10 +23,12 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.gradients import assessed_gradients
+from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.inner import inner_problems
 from evodesign.problem.judge import is_judged
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.problem.sensitivities import Sensitivities
+from evodesign.problem.sizing import sized_result
 from evodesign.records import (
     AgentDetail,
     Assessed,
@@ -71,20 +73,38 @@ class Evaluator:
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
+        space = self.problem.space
+        if not space.margins:
+            return self._solve(values)
+        result = sized_result(space, values, self._solve)
+        reach = self._reach(result.values)
+        return replace(result, values=tuple(values), rated=tuple(result.values), reach=reach)
+
+    def _reach(self, values: Sequence[float]) -> Reach:
+        return common_reach([reach.solve(values) for reach in self.inner.reaches.values()])
+
+    def _solve(self, values: Sequence[float], before: DesignResult | None = None) -> DesignResult:
+        """Reach and postures for the values that programs are given; near those of an earlier round."""
         problem = self.problem
         tree = problem.space.resized(problem.scene.robot.tree, values, self._growths)
-        check = Checker(problem.scene, self._robot.resized(tree), self._people[problem.scene.human.label])
-        reach = common_reach([reach.solve(values) for reach in self.inner.reaches.values()])
+        robot = self._robot.resized(tree)
+        check = Checker(problem.scene, robot, self._people[problem.scene.human.label])
+        reach = self._reach(values) if before is None else before.reach
         cases: list[CaseSolution] = []
-        for case in problem.cases:
+        for number, case in enumerate(problem.cases):
             scene = shared_scene(problem.scene_of(case), problem.space, values)
             checker = check.elsewhere(scene, self._people[case.person])
-            cases.append(self._in_case(values, case, reach, checker, cases))
+            if before is None:
+                neighbour = self._neighbour(cases, case)
+            else:
+                neighbour = Neighbour(before.cases[number], same_load=True)
+            cases.append(self._in_case(values, case, reach, checker, neighbour))
         return DesignResult(
             scenes=problem.scenes,
             space=problem.space,
             values=tuple(values),
             tree=tree,
+            standing=StanceModel(problem.stances, self._robot, (tree, robot)),
             reach=reach,
             cases=tuple(cases),
             paper=problem.joint,
@@ -165,6 +185,7 @@ class Evaluator:
             reach=reach,
             cases=cases,
             constraints=constrained or msgspec.UNSET,
+            rated=rated_of(result) or msgspec.UNSET,
         )
 
     def _in_case(
@@ -173,7 +194,7 @@ class Evaluator:
         case: Case,
         reach: Reach,
         checker: Checker,
-        before: Sequence[CaseSolution],
+        neighbour: Neighbour | None,
     ) -> CaseSolution:
         distance = reach.beyond(case.task.heights)
         if distance is None:
@@ -181,8 +202,13 @@ class Evaluator:
         if distance > 0.0:
             reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
             return CaseSolution(case, Status.INFEASIBLE, reason)
-        neighbour = self._neighbour(before, case)
         return self.inner.postures[case.pair].solve(values, case.task, checker, neighbour)
+
+
+def rated_of(result: DesignResult) -> dict[str, float]:
+    """The rated torques [N m] of sized actuators, by the parameter that is their margin."""
+    space = result.space
+    return {space.parameters[place].name: result.rated[place] for place in space.margins}
 
 
 def reach_of(reach: Reach) -> ReachOutcome:

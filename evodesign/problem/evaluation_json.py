@@ -21,6 +21,7 @@ Where the problem has disturbances, a solved case's `disturbed` holds, by their 
 of the same posture under each. Residuals of such a case carry its name.
 
 `materials` names the material of each density that is one's; a problem without materials has no such key.
+Likewise `hardware`, the bill of materials (`problem.bill`), where there are actuators or walls.
 
 `constraints` has an entry for each of the problem's `[constraints]`, with its `lower` and `upper` bound, its
 `value` and by how much that violates it, all in its unit; a problem without constraints has no such key.
@@ -46,6 +47,7 @@ import msgspec
 from evodesign.collision.clearance import BodyDistance
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import distance_json, solved_distances
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
@@ -69,11 +71,14 @@ def evaluation_json(
     design = dict(problem.space.named(values))
     materials = materials_of(problem.space.records, design)
     gaps = solved_distances(result)
+    details = [detail_of(solution) for solution in result.cases if solution.solved]
+    bill = bill_of_materials(problem, result.tree, details)
     shown = [_shown(solution, result, gaps.get(solution.case)) for solution in result.cases]
     return {
         "problem": problem.name,
         "design": design,
         **({"materials": materials} if materials else {}),
+        **({"hardware": bill} if bill else {}),
         "status": str(assessment.status),
         "objectives": assessment.objectives,
         "units": {objective.name: objective.unit for objective in problem.objectives},

@@ -13,6 +13,7 @@ import msgspec
 from msgspec import Meta
 
 from evodesign.body.placement import Matrix, Vector
+from evodesign.hardware.actuators import CatalogueRow
 from evodesign.human.anthropometry import Sex, ShoulderWidth
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
@@ -20,7 +21,7 @@ from evodesign.mechanics.scene import Grasp, GraspDirection
 from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
-from evodesign.problem.design_table import DesignTable, MaterialTable
+from evodesign.problem.design_table import DesignTable, HardwareTable, LoadCaseTable, MaterialTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 from evodesign.tree.urdf_read import InertiaRule
 
@@ -308,6 +309,9 @@ class ProblemFile(Table, frozen=True):
     objectives: ObjectivesTable
     constraints: dict[str, BoundsTable] = msgspec.field(default_factory=dict)
     material: tuple[MaterialTable, ...] = ()
+    actuator: tuple[CatalogueRow, ...] = ()
+    hardware: HardwareTable = HardwareTable()
+    load_case: tuple[LoadCaseTable, ...] = ()
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()
     solver: SolverTable = SolverTable()

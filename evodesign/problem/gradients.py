@@ -5,14 +5,15 @@ torques follows by the chain rule, since torques are variables of the posture pr
 
     d |tau| / d pi = tau . (d tau / d pi) / |tau|
 
-and the mean, the largest value or a quantile over cases is that of the same cases. Reach has its own
+and the mean, the largest value or a quantile over cases is that of the same cases. What an actuator changes
+of the formula itself (its motor constant, its limit) is differenced at the same torques. Reach has its own
 tangent. What depends on the robot's bodies alone is differenced along the resized robot. Everything else
 goes along the whole tangent, as in `sensitivities`, which takes many times as long.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -20,6 +21,7 @@ import numpy as np
 
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
+from evodesign.posture.results import AgentPosture
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.objectives import (
@@ -34,12 +36,13 @@ from evodesign.problem.objectives import (
     split_name,
 )
 from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
-from evodesign.records import Gradients
+from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
+from evodesign.records import Case, Gradients
 from evodesign.violations import HEIGHT
 
 __all__ = ["assessed_gradients"]
 
-OF_THE_ROBOT = frozenset({"mass", "com_height"})
+OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass"})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable
@@ -59,8 +62,9 @@ def assessed_gradients(
     design = _Design(problem, sensitivities, tuple(values), result)
     names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
     found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
-    spans = [(p.name, p.upper - p.lower) for p in problem.space.records if not p.choices]
-    places = [place for place, p in enumerate(problem.space.records) if not p.choices]
+    records = problem.space.records
+    spans = [(p.name, p.slope_at(value)) for p, value in zip(records, values, strict=True) if not p.choices]
+    places = [place for place, p in enumerate(records) if not p.choices]
     return Gradients(
         values={
             name: {
@@ -88,17 +92,31 @@ class _Design:
         self._values, self._result = values, result
 
     @cached_property
+    def _as_given(self) -> list[PostureDerivative | NotDifferentiable]:
+        """Tangents by what programs are given."""
+        of_case, given = self._sensitivities.of_case, self._result.program_values
+        return [of_case(given, solution, exact=False) for solution in self._result.cases]
+
+    @cached_property
+    def _given(self) -> Array | NotDifferentiable | None:
+        """The derivatives of what programs are given; None where that is the design itself."""
+        return program_slopes(self._result, self._as_given)
+
+    @cached_property
     def _cases(self) -> list[PostureDerivative | NotDifferentiable]:
-        of_case = self._sensitivities.of_case
-        return [of_case(self._values, solution, exact=False) for solution in self._result.cases]
+        return [along_design(each, self._given) for each in self._as_given]
 
     @cached_property
     def _highest(self) -> ReachDerivative | NotDifferentiable:
-        return self._sensitivities.of_reach(self._values, HIGHEST, exact=False)
+        return self._of_reach(HIGHEST)
 
     @cached_property
     def _lowest(self) -> ReachDerivative | NotDifferentiable:
-        return self._sensitivities.of_reach(self._values, LOWEST, exact=False)
+        return self._of_reach(LOWEST)
+
+    def _of_reach(self, sense: float) -> ReachDerivative | NotDifferentiable:
+        found = self._sensitivities.of_reach(self._result.program_values, sense, exact=False)
+        return reach_along_design(found, self._given)
 
     def gradient(self, name: str) -> Found:
         """One per parameter, in the quantity's unit per unit of the parameter."""
@@ -141,8 +159,35 @@ class _Design:
                 for load_case, postures in enumerate((instant.postures, *instant.disturbed.values())):
                     values.append(quantity.value(scene, postures))
                     weights = by_torque(scene, postures)
-                    gradients.append(derivative.along_torques(number, load_case, weights))
+                    own = self._by_actuators(quantity, solution.case, postures)
+                    gradients.append(derivative.along_torques(number, load_case, weights) + own)
         return np.asarray(_weights(values, way) @ np.array(gradients))
+
+    def _by_actuators(
+        self, quantity: CaseQuantity, case: Case, postures: Mapping[str, AgentPosture]
+    ) -> Array:
+        """What the parameters of actuators change of a quantity at the same torques."""
+        found = np.zeros(len(self._values))
+        given = self._given if isinstance(self._given, np.ndarray) else np.eye(len(found))
+        for position, (step, results) in self._with_other_actuators.items():
+            values = [quantity.value(result.scene_of(case), postures) for result in results]
+            found[position] = five_point(values, step)
+        return np.asarray(found @ given)
+
+    @cached_property
+    def _with_other_actuators(self) -> dict[int, tuple[float, tuple[DesignResult, ...]]]:
+        """The same postures with other actuators: step and results at -2 to 2 steps, by parameter."""
+        space, tree = self._problem.space, self._result.robot.tree
+        found = {}
+        for position, parameter in enumerate(space.parameters):
+            if parameter.joints and not parameter.choices:
+                given = np.array(self._result.program_values)
+                step = STEP * given[position]
+                unit = np.eye(len(given))[position] * step
+                designs = [(given + count * unit).tolist() for count in range(-2, 3)]
+                results = [replace(self._result, tree=space.resized(tree, values)) for values in designs]
+                found[position] = (step, tuple(results))
+        return found
 
     def _of_shared_reach(self) -> Found:
         people, robot = self._result.people_highest, self._result.reach.highest
@@ -152,20 +197,19 @@ class _Design:
 
     def _of_robot(self, name: str) -> Found:
         space, tree = self._problem.space, self._result.robot.tree
+        if isinstance(self._given, NotDifferentiable):
+            return self._given
+        slopes = np.eye(len(self._values)) if self._given is None else self._given
 
         def value(position: int, step: float) -> float:
-            moved = list(self._values)
-            moved[position] += step
+            moved = np.array(self._result.program_values) + step * slopes[:, position]
+            moved = moved.tolist()
             found = objective_value(name, replace(self._result, tree=space.resized(tree, moved)))
             return 0.0 if found is None else found  # it exists: it does for the design itself
 
+        steps = [STEP * p.slope_at(x) for p, x in zip(space.records, self._values, strict=True)]
         return np.array(
-            [
-                0.0
-                if parameter.choices
-                else _difference(value, position, STEP * (parameter.upper - parameter.lower))
-                for position, parameter in enumerate(space.records)
-            ]
+            [_difference(value, position, step) if step else 0.0 for position, step in enumerate(steps)]
         )
 
 

@@ -14,9 +14,10 @@ not exist (no posture, no reach) is absent, never large.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import msgspec
 import numpy as np
@@ -32,7 +33,17 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
+from evodesign.problem.hardware_objectives import (
+    StanceModel,
+    actuator_mass,
+    hand_deflection,
+    holding_power,
+    least_safety_factor,
+    power_by_torque,
+    torque_share,
+)
 from evodesign.records import Case, Constraint, Objective
+from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
 __all__ = [
@@ -67,6 +78,8 @@ class DesignResult:
         tree: the robot of the design.
         reach: interval of load heights that it can hold, whatever the load.
         people_highest: highest load that all of the people can hold [m]; None where that was not asked for.
+        rated: the values with rated torques [N m] in place of margins; none where there are no margins.
+        standing: what postures in which the robot stands alone ask of a tree's actuators.
         cases: one solution per undisturbed case of the problem, in its order.
         paper: the paper's tasks and their weights.
     """
@@ -79,6 +92,13 @@ class DesignResult:
     cases: tuple[CaseSolution, ...]
     paper: JointSettings
     people_highest: float | None = None
+    rated: tuple[float, ...] = ()
+    standing: StanceModel | None = None
+
+    @property
+    def program_values(self) -> Sequence[float]:
+        """What programs and trees are given: one number per parameter."""
+        return self.rated or self.values
 
     @property
     def robot(self) -> Agent:
@@ -86,8 +106,14 @@ class DesignResult:
         return self.scenes[0].robot
 
     def scene_of(self, case: Case) -> Scene:
-        """The scene of a case."""
-        return scene_of(self.scenes, case.pair)
+        """The scene of a case; its robot has the design's tree and limits where it has hardware."""
+        scene = scene_of(self.scenes, case.pair)
+        rated = {joint: each.rated for joint, each in actuators_of(self.tree).items()}
+        if not rated and not self.space.walls:
+            return scene
+        robot = scene.robot
+        robot = replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
+        return replace(scene, robot=robot)
 
     def every_case(self) -> Iterator[tuple[Case, Mapping[str, AgentPosture]]]:
         """Every solved case with its postures, each undisturbed one followed by its disturbed ones."""
@@ -225,6 +251,30 @@ def mass(result: DesignResult) -> float:
     return float(sum(link.inertia.mass for link in result.tree.links))
 
 
+def mass_of_actuators(result: DesignResult) -> float:
+    """Mass of the robot's actuators [kg]."""
+    return actuator_mass(result.tree)
+
+
+def torque_margin(result: DesignResult) -> float | None:
+    """The least rated torque over |tau|, over actuators and cases; None also where nothing is held.
+
+    Where the robot stands alone, the peak torque over the case's factor is in the place of rated torque.
+    """
+    shares = values_over_cases(torque_share, result)
+    alone = [] if result.standing is None else result.standing.shares(result.tree)
+    if shares is None or alone is None or max((*shares, *alone), default=0.0) <= 0.0:
+        return None
+    return 1.0 / max(*shares, *alone, 0.0)
+
+
+def safety_of_links(result: DesignResult) -> float | None:
+    """The least safety factor of the robot's links, over all cases; None without walls."""
+    factors = values_over_cases(least_safety_factor, result)
+    least = min(factors) if factors else math.inf
+    return least if least < math.inf else None
+
+
 def com_height(result: DesignResult) -> float:
     """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
     return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
@@ -253,6 +303,8 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     "human_torque": CaseQuantity("N m", human_torque, _by_norm(HUMAN)),
     "peak_torque": CaseQuantity("1", peak_torque, _by_peak),
     HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
+    "holding_power": CaseQuantity("W", holding_power, power_by_torque),
+    "hand_deflection": CaseQuantity("mm", hand_deflection),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
@@ -262,6 +314,9 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     REACH: ObjectiveKind("m", reach_height),
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     "mass": ObjectiveKind("kg", mass),
+    "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
+    "torque_margin": ObjectiveKind("1", torque_margin),
+    "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
 }

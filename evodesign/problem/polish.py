@@ -144,7 +144,6 @@ class _Slope:
         self._evaluator, self._aim = evaluator, aim
         self._problem = problem = evaluator.problem
         self._sensitivities = Sensitivities(problem, evaluator.known)
-        self._ranges = np.array([0.0 if p.choices else p.upper - p.lower for p in problem.space.parameters])
         self._signs = {o.name: 1.0 if o.sense is Sense.MINIMISE else -1.0 for o in problem.objectives}
         self.known: dict[bytes, _Evaluated] = {}
         position = np.array(genome, float)
@@ -168,30 +167,27 @@ class _Slope:
         design = self.known[_key(point.position)]
         derivative = self._sensitivities.at(design.values, design.result)
         moves = derivative.sensitivities()
+        records = self._problem.space.records
+        ranges = np.array([p.slope_at(value) for p, value in zip(records, design.values, strict=True)])
         relative: dict[str, Array] = {}
         for name in self._aim.weights:
-            gradient = self._per_range(moves[name])
+            gradient = _per_range(moves[name], ranges)
             if gradient is None:
                 return None
             relative[name] = self._signs[name] * gradient / self._scale(name)
         value = sum(
             (weight * relative[name] for name, weight in self._aim.weights.items()),
-            start=np.zeros(len(self._ranges)),
+            start=np.zeros(len(ranges)),
         )
-        ends = [_turned(derivative.highest, self._ranges), -_turned(derivative.lowest, self._ranges)]
+        ends = [_turned(derivative.highest, ranges), -_turned(derivative.lowest, ranges)]
         bounds = [
-            sign * (np.zeros(len(self._ranges)) if gradient is None else gradient)
+            sign * (np.zeros(len(ranges)) if gradient is None else gradient)
             for constraint in self._problem.constraints
-            for gradient in (self._per_range(moves[constraint.name]),)
+            for gradient in (_per_range(moves[constraint.name], ranges),)
             for sign, _ in _bounds(constraint)
         ]
         kept = [-slope for slope in relative.values()] if self._aim.none_worse else []
         return Slopes(value, np.array([*ends, *bounds, *kept]))
-
-    def _per_range(self, sensitivity: ObjectiveSensitivity) -> Array | None:
-        """A quantity's derivative per range of each parameter; None where it does not exist."""
-        gradient = sensitivity.gradient
-        return None if gradient is None else np.array(list(gradient.values())) * self._ranges
 
     def _evaluate(self, position: Array) -> _Evaluated:
         values = self._problem.space.values(tuple(position.tolist()))
@@ -242,6 +238,12 @@ def _bounds(constraint: Constraint) -> list[tuple[float, float]]:
     """The bounds that there are, each with the sign that makes room to it positive."""
     both = ((1.0, constraint.lower), (-1.0, constraint.upper))
     return [(sign, bound) for sign, bound in both if bound is not None]
+
+
+def _per_range(sensitivity: ObjectiveSensitivity, ranges: Array) -> Array | None:
+    """A quantity's derivative per range of each parameter; None where it does not exist."""
+    gradient = sensitivity.gradient
+    return None if gradient is None else np.array(list(gradient.values())) * ranges
 
 
 def _turned(derivative: ReachDerivative | NotDifferentiable, ranges: Array) -> Array:

@@ -55,6 +55,7 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
     """Every item in turn; what solves comes only after all others have passed."""
     robot, space = problem.scene.robot, problem.space
     welded = WeldedTree(robot.tree)
+    equipped = WeldedTree(space.resized(robot.tree, space.given(space.unscaled(robot.tree), {})))
     items: dict[str, Callable[[], str]] = {
         "stands on its soles": lambda: _stands(robot, welded),
         "faces the load": lambda: _faces(problem),
@@ -62,9 +63,9 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
         "masses and limits": lambda: _masses(robot),
     }
     for index, parameter in enumerate(space.parameters):
-        if parameter.links:
+        if parameter.links or parameter.joints:
             name = f"{parameter.name} + {LONGER - 1.0:.0%}"
-            items[name] = functools.partial(_changes, problem, welded, index)
+            items[name] = functools.partial(_changes, problem, equipped, index)
     found = [_tried(name, item) for name, item in items.items()]
     if not any(finding.fault for finding in found):
         found.append(_tried("holds the load", lambda: _holds(problem)))
@@ -164,7 +165,7 @@ def _changes(problem: DesignProblem, before: WeldedTree, index: int) -> str:
     robot, space = problem.scene.robot, problem.space
     unscaled = space.unscaled(robot.tree)
     values = [value * LONGER if i == index else value for i, value in enumerate(unscaled)]
-    after = space.resized(robot.tree, values)
+    after = space.resized(robot.tree, space.given(values, {}))
     mass = _mass(after) - _mass(before.tree)
     moved = {
         name: 1000.0 * math.dist(before.places[link].translation, _place(after, link).translation)

@@ -22,6 +22,7 @@ from functools import partial
 
 import numpy as np
 
+from evodesign.design.space import DesignParameter
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
@@ -31,6 +32,7 @@ from evodesign.posture.solution_derivative import PostureDerivative, ReachDeriva
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.inner import InnerProblems, inner_problems
 from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
 from evodesign.records import Status
 
 __all__ = [
@@ -72,6 +74,7 @@ class DesignDerivative:
         result: what was computed of it.
         cases: one derivative per case; a reason where there is none.
         highest, lowest: tangents of the reach.
+        given: the derivatives of what programs are given; None where that is the design itself.
     """
 
     problem: DesignProblem
@@ -80,10 +83,13 @@ class DesignDerivative:
     cases: tuple[PostureDerivative | NotDifferentiable, ...]
     highest: ReachDerivative | NotDifferentiable
     lowest: ReachDerivative | NotDifferentiable
+    given: Array | None = None
 
     def moved(self, step: Array) -> DesignResult:
         """To first order, the results of a design that differs by a step; what has no tangent is left out."""
-        tree = self.problem.space.resized(self.result.robot.tree, [*(np.array(self.values) + step).tolist()])
+        along = step if self.given is None else self.given @ step
+        values = np.array(self.result.program_values) + along
+        tree = self.problem.space.resized(self.result.robot.tree, values.tolist())
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
         cases = tuple(
             _moved(solution, derivative, step)
@@ -101,8 +107,7 @@ class DesignDerivative:
 
     def _around(self, position: int) -> tuple[float, tuple[DesignResult, ...]]:
         """Step and results at -2, -1, 0, 1 and 2 steps along one parameter."""
-        parameter = self.problem.space.parameters[position]
-        step = STEP * (parameter.upper - parameter.lower)
+        step = STEP * _scale(self.problem.space.parameters[position], self.values[position])
         unit = np.eye(len(self.values))[position]
         return step, tuple(self.moved(count * step * unit) for count in range(-2, 3))
 
@@ -158,19 +163,24 @@ class Sensitivities:
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
+        given = result.program_values
+        cases = [self.of_case(given, solution) for solution in result.cases]
+        slopes = program_slopes(result, cases)
+        highest, lowest = (self.of_reach(given, sense) for sense in (HIGHEST, LOWEST))
         return DesignDerivative(
             problem=self._problem,
             values=tuple(values),
             result=result,
-            cases=tuple(self.of_case(values, solution) for solution in result.cases),
-            highest=self.of_reach(values, HIGHEST),
-            lowest=self.of_reach(values, LOWEST),
+            cases=tuple(along_design(each, slopes) for each in cases),
+            highest=reach_along_design(highest, slopes),
+            lowest=reach_along_design(lowest, slopes),
+            given=None if isinstance(slopes, NotDifferentiable) else slopes,
         )
 
     def of_case(
         self, values: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
-        """How the posture of a case moves; `exact` is that of `SolutionSensitivity.at`."""
+        """How the posture of a case moves with what programs are given."""
         return self._inner.postures[solution.case.pair].derivative(values, solution, exact=exact)
 
     def of_reach(
@@ -202,6 +212,11 @@ def _moved(
 def _without(solution: CaseSolution) -> CaseSolution:
     """A case without its posture."""
     return replace(solution, status=Status.NUMERICAL_FAILURE, instants=(), residuals={})
+
+
+def _scale(parameter: DesignParameter, value: float) -> float:
+    """What the value changes by over the genome's range, or between the choices' ends."""
+    return parameter.record.slope_at(value) or parameter.upper - parameter.lower
 
 
 def five_point(values: Sequence[float], step: float) -> float:
@@ -272,7 +287,7 @@ def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferent
 def _near(problem: DesignProblem, place: str, limits: Sequence[Limit]) -> Iterator[str]:
     """The change of limits that the least change of one parameter brings about, if it is near."""
     parameters = problem.space.parameters
-    ranges = np.array([parameter.upper - parameter.lower for parameter in parameters])
+    ranges = np.array([p.upper - p.lower for p in parameters])
     nearest, which, where = np.inf, None, 0
     for limit in limits:
         with np.errstate(divide="ignore"):

@@ -11,7 +11,7 @@ from evodesign.mechanics.scene import Agent
 from evodesign.problem.file import ProblemFile, TorqueLimits
 from evodesign.records import ProblemSource, Sense
 
-__all__ = ["PEAK_TORQUE", "refuse_unlimited", "refuse_unlimited_peak", "torque_limits"]
+__all__ = ["PEAK_TORQUE", "driven_joints", "refuse_unlimited", "refuse_unlimited_peak", "torque_limits"]
 
 LIMITS_KEY = "robot.torque_limits_n_m"
 
@@ -22,6 +22,8 @@ PEAK_TORQUE = "peak_torque"
 def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> Mapping[str, float]:
     """The largest torque [N m] of each of the robot's moving joints that has a positive, finite one.
 
+    Joints whose actuators a design chooses have none here: what these hold is the design's.
+
     A key of `[robot.torque_limits_n_m]` is a joint's name, or a pattern such as `*_knee` for all joints that
     it fits; a name counts more than a pattern.
 
@@ -30,7 +32,11 @@ def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> M
             hold and are not positive, or are not there.
     """
     given, hard = tables.robot.torque_limits_n_m, tables.robot.torque_limits is TorqueLimits.HARD
-    asked = {name: _asked_limit(name, given, source) for name in robot.joints}
+    driven = driven_joints(tables)
+    for joint in driven & given.keys():
+        found = f"one of '{joint}', which a [[design.actuator]] drives"
+        raise InputError(source.path, LIMITS_KEY, "limits of joints without an actuator", found)
+    asked = {name: _asked_limit(name, given, source) for name in robot.joints if name not in driven}
     _refuse_unanswered(given, source, robot)
     limits: dict[str, float] = {}
     for name, limit in asked.items():
@@ -40,7 +46,7 @@ def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> M
             raise InputError(source.path, "robot.urdf", wanted, f"{effort:g}")
         if 0.0 < effort < math.inf:
             limits[name] = effort
-    if hard and not limits:
+    if hard and not limits and not driven:
         wanted = f"'none', or a joint with an effort limit in '{tables.robot.urdf}' or in {LIMITS_KEY}"
         raise InputError(source.path, "robot.torque_limits", wanted, "'hard' and no limits")
     return limits
@@ -56,22 +62,31 @@ def refuse_unlimited(tables: ProblemFile, source: ProblemSource, robot: Agent) -
     for sense, names in ((Sense.MINIMISE, asked.minimise), (Sense.MAXIMISE, asked.maximise)):
         for position, name in enumerate(names):
             if name.endswith(PEAK_TORQUE):
-                refuse_unlimited_peak(f"objectives.{sense}[{position}]", name, source, robot)
+                refuse_unlimited_peak(f"objectives.{sense}[{position}]", name, tables, source, robot)
 
 
-def refuse_unlimited_peak(key: str, name: str, source: ProblemSource, robot: Agent) -> None:
+def driven_joints(tables: ProblemFile) -> frozenset[str]:
+    """The joints whose actuators a design chooses."""
+    return frozenset(joint for table in tables.design.actuator for joint in table.joints)
+
+
+def refuse_unlimited_peak(
+    key: str, name: str, tables: ProblemFile, source: ProblemSource, robot: Agent
+) -> None:
     """Refuse a quantity that takes torques relative to their limits where a joint of the robot has none.
 
     Args:
         key: where the problem file names it.
         name: of the quantity.
+        tables: the problem file, whose actuators are limits, too.
         source: the problem, for messages.
         robot: whose joints count.
     Raises:
         InputError: naming quantity and joint.
     """
+    driven = driven_joints(tables)
     for joint in robot.joints:
-        if joint not in robot.torque_limits:
+        if joint not in robot.torque_limits and joint not in driven:
             wanted = (
                 f"a torque limit of every joint of the robot for '{name}', in its URDF or in {LIMITS_KEY}"
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from evodesign.analysis.front import front
 from evodesign.errors import InputError, RunError, on_one_line
@@ -73,9 +73,17 @@ class OpenedDesign:
     def scene_set(self) -> SceneSet:
         """Robot of the design, people and loads, built from the problem in the run's header."""
         problem = self.rebuilt.problem
-        design = self.evaluation.assessment.design  # what a start of the joint problem led to, not its genome
-        values = [design[parameter.name] for parameter in problem.space.parameters]
+        assessment = self.evaluation.assessment
+        design = assessment.design  # what a start of the joint problem led to, not its genome
+        space = problem.space
+        values = space.given([design[each.name] for each in space.parameters], assessment.rated_torques)
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+
+    def bill(self) -> dict[str, Any]:
+        """Its bill of materials; empty where the problem has no hardware."""
+        from evodesign.problem.bill import bill_of_materials
+
+        return bill_of_materials(self.rebuilt.problem, self.scene_set().robot, self.cases)
 
     def body_distances(self) -> dict[Case, BodyDistance]:
         """The nearest two bodies in each of its postures."""

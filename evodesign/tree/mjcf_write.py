@@ -24,6 +24,7 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, quaternion_wxyz, rotate
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
+from evodesign.tree.equip import actuators_of
 from evodesign.tree.mesh_write import NO_MESHES, MeshNames, has_hull, named_meshes
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_write import numbers_text
@@ -76,6 +77,12 @@ def mjcf_text(
     ground = {"contype": "1", "conaffinity": "0", "rgba": "0.9 0.9 0.9 1"}
     etree.SubElement(world, "geom", type="plane", size="3 3 0.1", **ground)
     _add_body(world, tree, tree.root, Placement(), (), meshes)
+    driven = actuators_of(tree)
+    if driven:
+        motors = etree.SubElement(model, "actuator")
+        for joint, actuator in driven.items():
+            ends = numbers_text([-actuator.peak, actuator.peak])
+            etree.SubElement(motors, "motor", name=joint, joint=joint, ctrlrange=ends)
     if postures:
         frame = etree.SubElement(model, "keyframe")
         for name, posture in postures.items():
@@ -146,6 +153,8 @@ def _add_joint(body: etree._Element, joint: Joint, body_from_joint: Placement) -
         element.set("range", numbers_text([joint.lower, joint.upper]))
     if math.isfinite(joint.effort) and joint.effort > 0.0:
         element.set("actuatorfrcrange", numbers_text([-joint.effort, joint.effort]))
+    if joint.actuator is not None:
+        element.set("armature", numbers_text([joint.actuator.inertia]))
 
 
 def _add_inertial(body: etree._Element, inertia: Inertia) -> None:

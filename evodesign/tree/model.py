@@ -18,6 +18,7 @@ from evodesign.body.inertia import Inertia, total
 from evodesign.body.placement import Matrix, Placement, Scalar, Vector, dot
 from evodesign.body.shape import Shape, Solid
 from evodesign.errors import ModelError, nearest_name
+from evodesign.hardware.actuators import Actuator
 from evodesign.tree.surface import Surface
 
 __all__ = ["Joint", "JointKind", "Link", "Look", "Mesh", "Tree"]
@@ -85,6 +86,7 @@ class Link:
         name: unique in the tree.
         solids: shapes of constant density that make up its mass.
         own_inertia: inertia of a link without solids, in its frame.
+        mounted: solids that it carries beside, such as the actuators of the joints beyond.
         looks: shapes without mass.
         meshes: surfaces, likewise.
     """
@@ -94,18 +96,21 @@ class Link:
     own_inertia: Inertia = field(default_factory=Inertia)
     looks: tuple[Look, ...] = ()
     meshes: tuple[Mesh, ...] = ()
+    mounted: tuple[Solid, ...] = ()
 
     @property
     def inertia(self) -> Inertia:
-        """Inertia of the whole link in its frame."""
-        if not self.solids:
+        """Inertia of the whole link in its frame, with what is mounted on it."""
+        if not self.solids and not self.mounted:
             return self.own_inertia
-        return total([solid.inertia for solid in self.solids])
+        own = [solid.inertia for solid in self.solids] or [self.own_inertia]
+        return total([*own, *(solid.inertia for solid in self.mounted)])
 
     @property
     def mass(self) -> Scalar:
-        """Mass of the whole link [kg]."""
-        return sum(solid.mass for solid in self.solids) if self.solids else self.own_inertia.mass
+        """Mass of the whole link [kg], with what is mounted on it."""
+        own = sum(solid.mass for solid in self.solids) if self.solids else self.own_inertia.mass
+        return own + sum(solid.mass for solid in self.mounted) if self.mounted else own
 
     @property
     def shown(self) -> tuple[Mesh, ...]:
@@ -133,6 +138,7 @@ class Joint:
         lower, upper: limits [rad or m]; infinite for a continuous joint, zero for a fixed one.
         effort: largest torque or force [N m or N]; infinite when not given.
         velocity: largest speed [rad/s or m/s]; infinite when not given.
+        actuator: what a design drives it with; None where the design does not say.
     """
 
     name: str
@@ -145,6 +151,7 @@ class Joint:
     upper: float = 0.0
     effort: float = float("inf")
     velocity: float = float("inf")
+    actuator: Actuator | None = None
 
 
 @dataclass(frozen=True)

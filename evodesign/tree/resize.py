@@ -215,7 +215,7 @@ def _resized_link(
             lighter = densities[link.name] * link.volume / inertia.mass
             inertia = Inertia(lighter * inertia.mass, inertia.center, scaled(lighter, inertia.about_center))
         density = densities[link.name]
-        solids = tuple(Solid(solid.shape, solid.link_from_solid, density) for solid in solids)
+        solids = tuple(replace(solid, density=density) for solid in solids)
     if link.name in lengths:
         growth, factor = growths[link.name], lengths[link.name]
         solids = tuple(
@@ -236,7 +236,7 @@ def _stretched(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
     axis_in_solid = rotate(transpose(solid.link_from_solid.rotation), growth.axis)
     share = 0.0 if growth.about_centre else 0.5
     place = _moved(solid.link_from_solid, share, growth, factor)
-    return Solid(solid.shape.lengthened(factor, axis_in_solid), place, solid.density)
+    return replace(solid, shape=solid.shape.lengthened(factor, axis_in_solid), link_from_solid=place)
 
 
 def _carried(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
@@ -244,7 +244,7 @@ def _carried(solid: Solid, growth: Growth, factor: Scalar) -> Solid:
     beyond = _beyond(solid.link_from_solid.translation, growth.centre, growth.axis)
     at_centre = not growth.about_centre and abs(beyond) <= MARGIN * growth.dimension
     share = 0.5 if at_centre else _share(beyond, growth)
-    return Solid(solid.shape, _moved(solid.link_from_solid, share, growth, factor), solid.density)
+    return replace(solid, link_from_solid=_moved(solid.link_from_solid, share, growth, factor))
 
 
 def _moved_joint(joint: Joint, growths: Mapping[str, Growth], lengths: Mapping[str, Scalar]) -> Joint:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.space import TYPICAL, DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import ModelError
 from evodesign.problem.build import DesignProblem
 
@@ -50,3 +50,16 @@ def test_parameter_of_a_link_without_a_shape_is_refused(problem: DesignProblem) 
     space = DesignSpace((DesignParameter(ParameterKind.LENGTH, "sole", ("l_sole",), 0.5, 2.0),))
     with pytest.raises(ModelError, match="l_sole"):
         space.check(problem.scene.robot.tree)
+
+
+def test_programs_are_given_rated_torques_in_place_of_margins() -> None:
+    space = DesignSpace(
+        (
+            DesignParameter(ParameterKind.LENGTH, "arm", ("l_upper_arm", "r_upper_arm"), 0.6, 1.8),
+            DesignParameter(ParameterKind.MARGIN, "elbow", (), 1.0, 4.0, joints=("l_elbow", "r_elbow")),
+        )
+    )
+    assert space.margins == (1,)
+    assert space.given((1.2, 2.0), {"margin.elbow": 17.0}) == (1.2, 17.0)
+    assert space.given((1.2, 2.0), {}) == (1.2, 2.0 * TYPICAL)
+    assert space.values((0.5, 0.5))[1] == pytest.approx(2.0)

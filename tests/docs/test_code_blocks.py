@@ -43,7 +43,7 @@ PAGES = [
 
 
 def test_the_pages_with_code_are_known() -> None:
-    assert [page.name for page in PAGES] == ["README.md", "distributed.md", "python.md"]
+    assert [page.name for page in PAGES] == ["README.md", "distributed.md", "hardware.md", "python.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -45,10 +45,23 @@ def test_bounds_are_read_in_the_order_of_the_file(problem: DesignProblem) -> Non
     )
 
 
+DRIVEN = """
+[[design.actuator]]
+name = "knee"
+joints = ["l_knee", "r_knee"]
+rated_torque_n_m = [5.0, 50.0]
+
+[[design.wall]]
+name = "shank"
+links = ["l_forearm", "r_forearm"]
+thickness_m = 0.002
+"""
+
+
 def test_every_quantity_can_be_bounded(problem: DesignProblem) -> None:
     names = [*objective_kinds(), *(f"q90_{name}" for name in QUANTITIES)]
     limited = msgspec.structs.replace(
-        problem.source, text=problem.source.text.replace("[robot]\n", f"[robot]\n{LIMITED}")
+        problem.source, text=problem.source.text.replace("[robot]\n", f"[robot]\n{LIMITED}") + DRIVEN
     )
     text = "\n".join(f"{constraint_key(name)} = {{ upper = 9.0 }}" for name in names)
     found = build_problem(bounded(limited, text))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.text import Text
 
 from evodesign.cli.output import heading, rounded
+from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
@@ -29,12 +30,13 @@ BAR = 16
 """Columns of a parameter's bar."""
 
 
-def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
+def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, Any]) -> Group:
     """The card.
 
     Args:
         opened: the design.
         asked: of the people by each of its postures; none to leave it out.
+        bill: of materials; empty to leave it out.
     """
     assessment = opened.evaluation.assessment
     several = any(outcome.case.label for outcome in assessment.cases)
@@ -46,6 +48,8 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics]) -> Group:
     sections["parameters"] = _parameters(opened)
     if made_of:
         sections["materials"] = _materials(made_of)
+    if bill:
+        sections[mass_title(bill)] = actuators_table(bill)
     if several:
         sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
         sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
@@ -128,6 +132,6 @@ def _materials(made_of: Mapping[str, str]) -> FittedTable:
 
 
 def _bar(parameter: Parameter, value: float) -> str:
-    share = (value - parameter.lower) / (parameter.upper - parameter.lower)
+    share = parameter.share_of(value)
     place = round(min(max(share, 0.0), 1.0) * (BAR - 1))
     return "─" * place + "●" + "─" * (BAR - 1 - place)

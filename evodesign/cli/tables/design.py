@@ -7,11 +7,13 @@ from collections.abc import Iterator, Mapping
 from rich.markup import escape
 
 from evodesign.cli.output import heading, rounded
+from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
+from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import detail_of
@@ -34,7 +36,10 @@ def design_tables(
 ) -> Iterator[FittedTable]:
     """One design: its results, what they ask of the people, and what would change them."""
     yield from _assessment_tables(problem, name, result, assessment)
-    if any(solution.solved for solution in result.cases):
+    solved = [detail_of(solution) for solution in result.cases if solution.solved]
+    if bill := bill_of_materials(problem, result.tree, solved):
+        yield actuators_table(bill, mass_title(bill))
+    if solved:
         yield _people_table(result)
     if sensitivities:
         yield _sensitivity_table(problem, sensitivities)

@@ -229,7 +229,9 @@ def _inside(program: Program, start: Mapping[str, Array]) -> dict[str, Array]:
 def _values(space: DesignSpace, genome: Sequence[Expression]) -> tuple[Expression, ...]:
     """Parameter values of a genome of numbers or expressions, also outside the unit cube."""
     return tuple(
-        parameter.lower * (1.0 - share) + parameter.upper * share
+        parameter.lower * (parameter.upper / parameter.lower) ** share
+        if parameter.logarithmic
+        else parameter.lower * (1.0 - share) + parameter.upper * share
         for parameter, share in zip(space.parameters, genome, strict=True)
     )
 

@@ -87,7 +87,11 @@ class _Finder:
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
         self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
         space = setting.space
-        self._designs = [*spread_designs(len(space.parameters), space.values, lambda _: True, DESIGNS)]
+
+        def given(genome: tuple[float, ...]) -> tuple[float, ...]:
+            return space.given(space.values(genome), {})
+
+        self._designs = [*spread_designs(len(space.parameters), given, lambda _: True, DESIGNS)]
 
     def held(self, tasks: Sequence[Task]) -> Iterator[_Posed]:
         """Of the tasks."""

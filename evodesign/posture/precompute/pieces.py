@@ -312,8 +312,11 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def wanted(design: tuple[float, ...]) -> bool:
         return task is None or reach.solve(design).beyond(task.heights) == 0.0
 
+    def given(genome: tuple[float, ...]) -> tuple[float, ...]:
+        return space.given(space.values(genome), {})
+
     looked_at = LOOKED_AT * training.designs
-    designs = spread_designs(len(space.parameters), space.values, wanted, looked_at)
+    designs = spread_designs(len(space.parameters), given, wanted, looked_at)
     if task is None or piece.subject is not Subject.WIDER:
         return start_portfolio(landscape, designs, training)
     offers = [start for other in piece.beside for start in known.postures[other].starts]

@@ -2,7 +2,9 @@
 
     tau = g_joint(q, pi) - J_joint^T f        0 = g_base(q, pi) - J_base^T f
 
-Torques are variables tied to the statics by equalities, which keeps the Hessian sparse. The rows come from
+Torques are variables tied to the statics by equalities, which keeps the Hessian sparse. Where a design
+chooses actuators, |tau| <= rated torque are rows that depend on the design, so that one program serves every
+actuator and tangents know of the limits. The rows come from
 cutting the tree; the residuals from pinocchio's Jacobians and `nonLinearEffects` at rest.
 
 Source: Sartore et al. 2022, Eq. 14 b and Eq. 5 at rest; docs/model.md.
@@ -33,6 +35,7 @@ from evodesign.posture.terms.base import (
     Unknown,
 )
 from evodesign.posture.terms.load import turned_to_world
+from evodesign.tree.equip import rated_torques
 from evodesign.tree.kinematics import vector
 
 __all__ = ["TORQUE", "effort"]
@@ -69,6 +72,20 @@ def rows(body: Body) -> Iterator[Row]:
     yield Row("torques", lifted, 0.0, 0.0, ("torque",), TORQUE_UNIT, labels=form.joints)
     yield Row("force", force, 0.0, 0.0, ("force_balance",), FORCE_UNIT)
     yield Row("moment", moment, 0.0, 0.0, ("moment_balance",), TORQUE_UNIT)
+    yield from _within_rated(body)
+
+
+def _within_rated(body: Body) -> Iterator[Row]:
+    """Torques within what the design's actuators can hold for ever."""
+    rated = rated_torques(body.part)
+    shares = {
+        joint: body.values["torques"][place] / rated[joint]
+        for place, joint in enumerate(body.form.joints)
+        if joint in rated
+    }
+    if shares:
+        within = ca.vertcat(*shares.values())
+        yield Row("rated_torques", within, -1.0, 1.0, ("torque_limits",), labels=tuple(shares))
 
 
 def _contacts(body: Body) -> Iterator[AppliedWrench]:

@@ -208,8 +208,9 @@ def _design(
     cases = evaluation.assessment.cases
     if problem is None or clearances is None or detail is None:
         return DesignContent(cases=cases)
-    parameters = problem.space.parameters
-    values = [evaluation.assessment.design[parameter.name] for parameter in parameters]
+    space, assessment = problem.space, evaluation.assessment
+    design = [assessment.design[parameter.name] for parameter in space.parameters]
+    values = space.given(design, assessment.rated_torques)
     links, joints = changes(problem, values)
     robot = problem.space.resized(problem.scene.robot.tree, values)
     try:

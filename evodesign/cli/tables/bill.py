@@ -1,0 +1,53 @@
+"""The bill of materials for people: one row for each group of joints that share an actuator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rich.markup import escape
+
+from evodesign.cli.output import rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
+from evodesign.errors import on_one_line
+
+__all__ = ["actuators_table", "mass_title"]
+
+
+def mass_title(bill: Mapping[str, Any]) -> str:
+    """The masses of a bill in words."""
+    parts = (f"{name} {rounded(bill['mass_kg'][name])}" for name in ("actuators", "structure", "rest"))
+    return f"hardware ({rounded(bill['mass_kg']['total'])} kg: {', '.join(parts)})"
+
+
+def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
+    """The actuators of a bill, each with the joint of its group that is used most.
+
+    Args:
+        bill: of materials.
+        title: of the table.
+    """
+    columns = [
+        *names("actuator"),
+        *numbers("joints", "rated [N m]", "peak [N m]", "kg each", "used"),
+        *names("most by", "joint"),
+    ]
+    table = titled(title, columns)
+    groups: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for joint, row in bill["joints"].items():
+        groups.setdefault(row["actuator"], {})[joint] = row
+    for group, rows in groups.items():
+        worst = max(rows, key=lambda joint: rows[joint]["share"])
+        row = rows[worst]
+        model = f" ({row['model']})" if row["model"] else ""
+        table.add_row(
+            escape(on_one_line(group + model)),
+            f"{len(rows)}",
+            rounded(row["rated_torque_n_m"]),
+            rounded(row["peak_torque_n_m"]),
+            rounded(row["mass_kg"]),
+            f"{row['share']:.0%}",
+            escape(on_one_line(row["asked_by"])),
+            escape(on_one_line(worst)),
+        )
+    return table

@@ -1,0 +1,145 @@
+"""Sizes that a demand asks for, where the demand grows with the size.
+
+A stronger actuator is heavier, and what carries it needs more torque. The size wanted is the fixed point of
+
+    s = margin x demand(s)
+
+found by solving again with other sizes until none of them changes by more than a share of itself. With F(s)
+the sizes that would meet the demand found for s, or the demand predicted around it, the next sizes are
+
+    log s' = log F(s) - sum_i g_i (log F(s) - log F(s_i)),    g: least squares of  f = sum_i g_i (f - f_i)
+
+over the latest earlier rounds i, at most as many as there are sizes, where f = log F(s) - log s (Anderson's
+mixing; of a single size, the secant).
+
+Source: Anderson 1965; Walker and Ni 2011, Eq. 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.records import Status
+
+__all__ = ["ROUNDS", "TOLERANCE", "Sizing", "sized"]
+
+TOLERANCE = 1e-4
+"""Largest change of a size, as a share of it, that ends the rounds."""
+
+ROUNDS = 4
+"""How often the demand is asked for."""
+
+PREDICTIONS, SETTLED = 200, 1e-9
+"""How often a prediction is asked for, and the change of a size that ends that."""
+
+LARGEST_SHARE = 1.0
+"""Sum of |g_i| from which on earlier rounds say nothing."""
+
+Array = NDArray[np.float64]
+
+Sizes = Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Sizing:
+    """What became of the rounds.
+
+    Args:
+        status: solved, or the iteration limit.
+        reason: a sentence.
+        sizes: for which the demand was asked last, by name.
+        wanted: margin x demand at these sizes.
+        rounds: how often the demand was asked for.
+    """
+
+    status: Status
+    reason: str
+    sizes: Sizes
+    wanted: Sizes
+    rounds: int
+
+    @property
+    def change(self) -> float:
+        """The largest difference of a size from the one wanted, as a share of it."""
+        return _change(self.sizes, self.wanted)
+
+
+def sized(
+    demand: Callable[[Sizes], Sizes | None],
+    start: Sizes,
+    margins: Sizes,
+    bounds: Mapping[str, tuple[float, float]],
+    predict: Callable[[Sizes], Sizes] | None = None,
+    rounds: int = ROUNDS,
+    tolerance: float = TOLERANCE,
+) -> Sizing:
+    """The sizes that are their margins times the demand on them.
+
+    Args:
+        demand: what is asked of each size, in its unit, given all sizes; None where it cannot be told.
+        start: sizes of the first round.
+        margins: how many times the demand each size is.
+        bounds: smallest and largest size that there is; a demand beyond them is met by neither.
+        predict: what the demand would be at other sizes than those it was asked for last, cheaply; left out,
+            it would be the same.
+        rounds: largest number of times that the demand is asked for.
+        tolerance: largest change of a size, as a share of it, that ends the rounds.
+    """
+    sizes: Sizes = dict(start)
+    met_before: list[tuple[Array, Array]] = []
+    wanted = sizes
+    for number in range(1, rounds + 1):
+        asked = demand(sizes)
+        if asked is None:
+            reason = f"the demand on the actuators is not known after {number} rounds of sizing"
+            return Sizing(Status.INFEASIBLE, reason, sizes, wanted, number)
+        wanted = {name: _inside(margins[name] * asked[name], bounds[name]) for name in sizes}
+        if _change(sizes, wanted) <= tolerance:
+            return Sizing(Status.SOLVED, "solved", sizes, wanted, number)
+        if number < rounds:
+            met = wanted if predict is None else _settled(predict, wanted, margins, bounds)
+            met_before.append((np.log([*sizes.values()]), np.log([met[name] for name in sizes])))
+            following = zip(sizes, np.exp(_mixed(met_before)).tolist(), strict=True)
+            sizes = {name: _inside(size, bounds[name]) for name, size in following}
+    change = _change(sizes, wanted)
+    reason = f"actuators still change by {change:.1e} of their size after {rounds} rounds"
+    return Sizing(Status.ITERATION_LIMIT, reason, sizes, wanted, rounds)
+
+
+def _settled(
+    predict: Callable[[Sizes], Sizes], start: Sizes, margins: Sizes, bounds: Mapping[str, tuple[float, float]]
+) -> Sizes:
+    """The sizes that are their margins times the predicted demand on them."""
+    sizes = start
+    for _ in range(PREDICTIONS):
+        asked = predict(sizes)
+        following = {name: _inside(margins[name] * asked[name], bounds[name]) for name in sizes}
+        done = _change(sizes, following) < SETTLED
+        sizes = following
+        if done:
+            break
+    return sizes
+
+
+def _mixed(met: Sequence[tuple[Array, Array]]) -> Array:
+    """The logarithms of the next sizes, from those of each round's sizes and of those that would meet it."""
+    size, wanted = met[-1]
+    if len(met) == 1:
+        return wanted
+    earlier = met[-1 - len(size) : -1]
+    gaps = np.column_stack([(wanted - size) - (w - s) for s, w in earlier])
+    moves = np.column_stack([wanted - w for _, w in earlier])
+    share = np.linalg.lstsq(gaps, wanted - size, rcond=None)[0]
+    return np.asarray(wanted - moves @ share) if np.abs(share).sum() < LARGEST_SHARE else wanted
+
+
+def _inside(size: float, bounds: tuple[float, float]) -> float:
+    return min(max(size, bounds[0]), bounds[1])
+
+
+def _change(sizes: Sizes, wanted: Sizes) -> float:
+    return max((abs(wanted[name] - size) / size for name, size in sizes.items()), default=0.0)

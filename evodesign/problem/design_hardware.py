@@ -1,0 +1,219 @@
+"""Hardware of a problem file: actuators of joints, walls of links.
+
+An actuator's rated torque lies within bounds, or it is one of some models, from the catalogue and the
+problem's own `[[actuator]]` tables together. A wall has a fixed thickness or bounds of it; its material is
+named, or chosen by a density parameter of the same links. Every contradiction is refused.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+
+from evodesign.body.material import Material
+from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.design.walls import Wall
+from evodesign.errors import InputError, nearest_name
+from evodesign.hardware.actuators import Actuator, CatalogueRow, actuator_of_row, catalogue
+from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.stance_case import StanceCase
+from evodesign.problem.agents import refuse_unknown
+from evodesign.problem.design_space import known_materials
+from evodesign.problem.design_table import ActuatorTable, Feet, WallTable
+from evodesign.problem.file import ProblemFile
+from evodesign.records import ProblemSource
+from evodesign.tree.model import Tree
+
+__all__ = ["actuator_parameters", "stance_cases", "wall_parameters", "walls_of"]
+
+
+def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) -> list[DesignParameter]:
+    """The parameters of the `[[design.actuator]]` tables.
+
+    Raises:
+        InputError: an unknown joint or model, a joint twice, or not one way to choose a size.
+    """
+    known, seen = _known_actuators(tables, source), dict[str, str]()
+    found = []
+    for position, table in enumerate(tables.design.actuator):
+        key = f"design.actuator[{position}]"
+        for place, joint in enumerate(table.joints):
+            where = f"{key}.joints[{place}]"
+            refuse_unknown(source, where, "moving joint", joint, tree.actuated, tree.name)
+            if joint in seen:
+                raise InputError(
+                    source.path, where, "a joint in one actuator", f"'{joint}' also in {seen[joint]}"
+                )
+            seen[joint] = key
+        found.append(_actuator(table, key, source, known))
+    return found
+
+
+def _known_actuators(tables: ProblemFile, source: ProblemSource) -> Mapping[str, CatalogueRow]:
+    known = dict(catalogue())
+    for position, row in enumerate(tables.actuator):
+        key = f"actuator[{position}]"
+        if row.model in known:
+            where = "the catalogue" if row.model in catalogue() else "an earlier [[actuator]]"
+            raise InputError(source.path, f"{key}.model", "a new name", f"'{row.model}', which is in {where}")
+        if row.rated_torque_n_m is not None and row.rated_torque_n_m > row.peak_torque_n_m:
+            wanted = f"at most the peak torque, {row.peak_torque_n_m:g}"
+            raise InputError(source.path, f"{key}.rated_torque_n_m", wanted, f"{row.rated_torque_n_m:g}")
+        known[row.model] = row
+    return known
+
+
+def _actuator(
+    table: ActuatorTable, key: str, source: ProblemSource, known: Mapping[str, CatalogueRow]
+) -> DesignParameter:
+    ways = ("rated_torque_n_m", "models", "margin")
+    given = [way for way in ways if getattr(table, way) is not None]
+    if len(given) != 1:
+        raise InputError(source.path, key, f"one of {', '.join(ways)}", " and ".join(given) or "none")
+    for kind, way in ((ParameterKind.ACTUATOR, "rated_torque_n_m"), (ParameterKind.MARGIN, "margin")):
+        if way in given:
+            ends = _rising(getattr(table, way), f"{key}.{way}", source)
+            return DesignParameter(kind, table.name, (), *ends, joints=table.joints)
+    models = _models(table.models or (), f"{key}.models", source, known)
+    ends = (models[0].rated, models[-1].rated)
+    return DesignParameter(ParameterKind.ACTUATOR, table.name, (), *ends, joints=table.joints, models=models)
+
+
+def stance_cases(tables: ProblemFile, source: ProblemSource, robot: Agent) -> tuple[StanceCase, ...]:
+    """The postures in which the robot stands alone.
+
+    Raises:
+        InputError: a name twice, a joint that does not move or is beyond its limits, or other than one group
+            of joints to balance on both feet and two on one.
+    """
+    found: list[StanceCase] = []
+    for position, table in enumerate(tables.load_case):
+        key = f"load_case[{position}]"
+        if table.name in {case.name for case in found}:
+            raise InputError(source.path, f"{key}.name", "a unique name", f"'{table.name}' twice")
+        for joint, angle in table.joints_deg.items():
+            where = f"{key}.joints_deg.{joint}"
+            refuse_unknown(source, where, "moving joint", joint, robot.joints, robot.tree.name)
+            limits = robot.tree.joint_by_name[joint]
+            if not limits.lower <= math.radians(angle) <= limits.upper:
+                ends = (math.degrees(limits.lower), math.degrees(limits.upper))
+                raise InputError(source.path, where, f"{ends[0]:g} to {ends[1]:g} degrees", f"{angle:g}")
+        for joint in (joint for group in table.balance for joint in group):
+            refuse_unknown(source, f"{key}.balance", "moving joint", joint, robot.joints, robot.tree.name)
+        groups = 1 if table.feet is Feet.BOTH else 2
+        if len(table.balance) != groups:
+            wanted = (
+                f"{groups} group{'s' if groups > 1 else ''} of joints to balance with feet = '{table.feet}'"
+            )
+            raise InputError(source.path, f"{key}.balance", wanted, f"{len(table.balance)}")
+        soles = robot.soles.values() if table.feet is Feet.BOTH else (robot.soles[table.feet],)
+        angles = {joint: math.radians(angle) for joint, angle in table.joints_deg.items()}
+        found.append(StanceCase(table.name, angles, tuple(soles), table.balance, table.factor))
+    return tuple(found)
+
+
+def _rising(pair: tuple[float, float], key: str, source: ProblemSource) -> tuple[float, float]:
+    if pair[0] >= pair[1]:
+        raise InputError(source.path, key, "a rising pair", f"[{pair[0]:g}, {pair[1]:g}]")
+    return pair
+
+
+def _models(
+    names: Sequence[str], key: str, source: ProblemSource, known: Mapping[str, CatalogueRow]
+) -> tuple[Actuator, ...]:
+    """Models by name, the weakest first."""
+    if len(names) < 2:
+        raise InputError(source.path, key, "at least two models", f"{len(names)}")
+    for position, name in enumerate(names):
+        where = f"{key}[{position}]"
+        if name not in known:
+            wanted = "a model of the catalogue or of an [[actuator]] table"
+            raise InputError(source.path, where, wanted, f"'{name}'{nearest_name(name, known)}")
+        if name in names[:position]:
+            raise InputError(source.path, where, "each model once", f"'{name}' twice")
+    models = sorted((actuator_of_row(known[name]) for name in names), key=lambda model: model.rated)
+    for one, other in pairwise(models):
+        if one.rated == other.rated:
+            found = f"'{one.model}' and '{other.model}', both of {one.rated:g} N m"
+            raise InputError(source.path, key, "models of different rated torques", found)
+    return tuple(models)
+
+
+def wall_parameters(tables: ProblemFile, source: ProblemSource) -> list[DesignParameter]:
+    """The parameters of the `[[design.wall]]` tables whose thickness a design chooses.
+
+    Raises:
+        InputError: bounds that do not rise.
+    """
+    found = []
+    for position, table in enumerate(tables.design.wall):
+        given = table.thickness_m if isinstance(table.thickness_m, tuple) else (table.thickness_m,)
+        for thickness in given:
+            if thickness <= 0.0:
+                key = f"design.wall[{position}].thickness_m"
+                raise InputError(source.path, key, "a positive number", f"{thickness:g}")
+        if isinstance(table.thickness_m, tuple):
+            ends = _rising(table.thickness_m, f"design.wall[{position}].thickness_m", source)
+            found.append(DesignParameter(ParameterKind.WALL, table.name, table.links, *ends))
+    return found
+
+
+def walls_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> tuple[Wall, ...]:
+    """The walls of a problem.
+
+    Raises:
+        InputError: an unknown link or material, a link or name twice, or not one material of every link.
+    """
+    known, names, seen = known_materials(tables, source), set[str](), dict[str, str]()
+    walls = []
+    for position, table in enumerate(tables.design.wall):
+        key = f"design.wall[{position}]"
+        if table.name in names:
+            raise InputError(source.path, f"{key}.name", "a unique name", f"'{table.name}' twice")
+        names.add(table.name)
+        for place, link in enumerate(table.links):
+            where = f"{key}.links[{place}]"
+            refuse_unknown(source, where, "link", link, tree.link_by_name, tree.name)
+            if link in seen:
+                raise InputError(source.path, where, "a link in one wall", f"'{link}' also in {seen[link]}")
+            seen[link] = key
+        material = _material(table, key, source, known, tables)
+        walls.append(
+            Wall(
+                group=table.name,
+                links=table.links,
+                thickness=None if isinstance(table.thickness_m, tuple) else table.thickness_m,
+                material=table.material,
+                density=None if material is None else material.density,
+                share=tables.hardware.non_structural_share,
+            )
+        )
+    return tuple(walls)
+
+
+def _material(
+    table: WallTable, key: str, source: ProblemSource, known: Mapping[str, Material], tables: ProblemFile
+) -> Material | None:
+    """What a wall is made of; None where density parameters choose."""
+    chosen = set(_links_of_density(tables))
+    if table.material is None:
+        for link in table.links:
+            if link not in chosen:
+                wanted = f"a material, or a [[design.density]] of '{link}'"
+                raise InputError(source.path, f"{key}.material", wanted, "neither")
+        return None
+    if table.material not in known:
+        wanted = "a material of the catalogue or of a [[material]] table"
+        found = f"'{table.material}'{nearest_name(table.material, known)}"
+        raise InputError(source.path, f"{key}.material", wanted, found)
+    for link in table.links:
+        if link in chosen:
+            wanted = f"either a material or a [[design.density]] of '{link}'"
+            raise InputError(source.path, f"{key}.material", wanted, "both")
+    return known[table.material]
+
+
+def _links_of_density(tables: ProblemFile) -> Iterator[str]:
+    for table in tables.design.density:
+        yield from table.links

@@ -1,0 +1,182 @@
+"""Quantities of a robot whose actuators a design chooses.
+
+    holding_power    sum over actuators of (tau / K)^2 [W], K the motor constant at the output
+    actuator_mass    sum of the actuators' masses [kg]
+    hand_deflection  how far the hands give way under the load: bending, twist and windup [mm]
+    least_safety_factor  of all links with walls and cases, against yield and buckling
+    torque_margin    least rated torque over |tau| of all actuators and cases: 1 for one at its limit
+
+A joint without an actuator takes no part. A scene's robot has the tree of the design here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from evodesign.body.placement import Placement
+from evodesign.errors import InputError
+from evodesign.hardware.structure import STRENGTHS
+from evodesign.mechanics import link_beams
+from evodesign.mechanics.scene import ROBOT, SIDES, Scene
+from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
+from evodesign.posture.check import AgentModel
+from evodesign.posture.results import AgentPosture
+from evodesign.problem.file import ProblemFile
+from evodesign.records import ProblemSource
+from evodesign.tree.equip import actuators_of
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import Tree
+
+__all__ = [
+    "NEED_ACTUATORS",
+    "StanceModel",
+    "actuator_mass",
+    "hand_deflection",
+    "holding_power",
+    "least_safety_factor",
+    "power_by_torque",
+    "refuse_without_hardware",
+    "torque_share",
+]
+
+NEED_ACTUATORS = ("holding_power", "actuator_mass", "torque_margin", "hand_deflection")
+"""How the names of quantities end that tell nothing where no design chooses actuators."""
+
+NEED_WALLS = ("least_safety_factor",)
+"""How the names of quantities end that tell nothing without walls."""
+
+Postures = Mapping[str, AgentPosture]
+
+
+def holding_power(scene: Scene, postures: Postures) -> float:
+    """Copper loss of holding the posture [W]."""
+    torques = postures[ROBOT].torques
+    actuators = actuators_of(scene.robot.tree)
+    return float(sum(each.loss(torques[joint]) for joint, each in actuators.items() if joint in torques))
+
+
+def power_by_torque(scene: Scene, postures: Postures) -> dict[str, dict[str, float]]:
+    """D P / d tau = 2 tau / K^2."""
+    torques = postures[ROBOT].torques
+    actuators = actuators_of(scene.robot.tree)
+    slopes = {
+        joint: float(2.0 * torques[joint] / each.motor_constant**2)
+        for joint, each in actuators.items()
+        if joint in torques
+    }
+    return {ROBOT: slopes}
+
+
+def torque_share(scene: Scene, postures: Postures) -> float:
+    """The largest |tau| over rated torque of the actuators; 0 without any."""
+    torques = postures[ROBOT].torques
+    actuators = actuators_of(scene.robot.tree)
+    shares = (abs(torques[joint]) / each.rated for joint, each in actuators.items() if joint in torques)
+    return float(max(shares, default=0.0))
+
+
+def hand_deflection(scene: Scene, postures: Postures) -> float:
+    """How far the robot's hands give way downwards under the load, the mean of both [mm]."""
+    robot, posture = scene.robot, postures[ROBOT]
+    hands = {robot.hands[side]: posture.hand_wrenches[side] for side in SIDES}
+    soles = tuple(robot.soles.values())
+    return 1000.0 * link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, soles)
+
+
+def least_safety_factor(scene: Scene, postures: Postures) -> float:
+    """The least safety factor of the robot's links with walls; infinite without any."""
+    robot, posture = scene.robot, postures[ROBOT]
+    base = _base(posture)
+    places = link_frames(robot.tree, base, posture.joints)
+    wrenches = [(robot.hands[side], w[:3], w[3:]) for side, w in posture.hand_wrenches.items()]
+    for side, wrench in posture.foot_wrenches.items():
+        turn = np.array(places[robot.soles[side]].rotation, float)
+        wrenches.append((robot.soles[side], turn @ wrench[:3], turn @ wrench[3:]))
+    return link_beams.least_safety_factor(robot.tree, base, posture.joints, wrenches)
+
+
+def _base(posture: AgentPosture) -> Placement:
+    return Placement.from_xyz_rpy(tuple(posture.base_position.tolist()), tuple(posture.base_angles.tolist()))
+
+
+def actuator_mass(tree: Tree) -> float:
+    """Mass of all actuators [kg]."""
+    return float(sum(each.mass for each in actuators_of(tree).values()))
+
+
+OF_BEAMS = ("hand_deflection", "least_safety_factor")
+"""How the names of quantities end that need walls of known stiffness and strength."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StanceModel:
+    """The robot in the problem's standing postures, whatever its design.
+
+    Args:
+        cases: of the problem.
+        robot: as pinocchio sees it, of any design.
+        latest: the tree of a design, and the robot with it.
+    """
+
+    cases: tuple[StanceCase, ...]
+    robot: AgentModel
+    latest: tuple[Tree, AgentModel] | None = None
+
+    def with_tree(self, tree: Tree) -> AgentModel:
+        """The robot with the tree of a design."""
+        known = self.latest
+        return known[1] if known is not None and known[0] is tree else self.robot.resized(tree)
+
+    def torques(self, tree: Tree) -> list[tuple[StanceCase, StanceTorques]]:
+        """What became of each case with the tree of a design."""
+        body = self.with_tree(tree).body
+        return [(case, stance_torques(body, case)) for case in self.cases]
+
+    def needed(self, tree: Tree) -> list[Mapping[str, float]] | str:
+        """Factor x |tau| [N m] of each case by joint, which peak torques must be; or why one cannot be."""
+        found = self.torques(tree)
+        for _, each in found:
+            if each.reason:
+                return each.reason
+        return [
+            {joint: case.factor * abs(torque) for joint, torque in each.torques.items()}
+            for case, each in found
+        ]
+
+    def shares(self, tree: Tree) -> list[float] | None:
+        """The largest of these over peak torque, of each case; None where the robot cannot stand."""
+        needed, actuators = self.needed(tree), actuators_of(tree)
+        if isinstance(needed, str):
+            return None
+        return [
+            float(
+                max(
+                    (asked[joint] / actuators[joint].peak for joint in actuators if joint in asked), default=0
+                )
+            )
+            for asked in needed
+        ]
+
+
+def refuse_without_hardware(key: str, name: str, tables: ProblemFile, source: ProblemSource) -> None:
+    """Refuse a quantity of actuators or walls where there are none, or of another material.
+
+    Args:
+        key: where the problem file names it.
+        name: of the quantity.
+        tables: the problem file.
+        source: the problem, for messages.
+    Raises:
+        InputError: naming the quantity.
+    """
+    if name.endswith(NEED_ACTUATORS) and not tables.design.actuator:
+        raise InputError(source.path, key, f"a [[design.actuator]] for '{name}'", "none")
+    if name.endswith(NEED_WALLS) and not tables.design.wall:
+        raise InputError(source.path, key, f"a [[design.wall]] for '{name}'", "none")
+    for position, wall in enumerate(tables.design.wall if name.endswith(OF_BEAMS) else ()):
+        if wall.material is not None and wall.material not in STRENGTHS:
+            wanted = f"one of {', '.join(STRENGTHS)}, as '{name}' is asked for"
+            raise InputError(source.path, f"design.wall[{position}].material", wanted, f"'{wall.material}'")

@@ -1,0 +1,144 @@
+"""How the sizes of actuators move with a design.
+
+A size s_g = m_g D_g(p) depends on all that programs are given, p: the other parameters and all sizes. With
+dD = D_p dp from the tangent of the posture that asks most of the group,
+
+    (1 - m D_s) ds = m D_o do + D dm
+
+for the other parameters o and the margins m. A size at its bound stays there.
+
+Source: implicit function theorem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from evodesign.mechanics.scene import ROBOT
+from evodesign.nlp.optimality import Array, NotDifferentiable
+from evodesign.nlp.sensitivity import Limit, LimitTable
+from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
+from evodesign.problem.hardware_objectives import StanceModel
+from evodesign.problem.objectives import DesignResult
+from evodesign.problem.sizing import BOUNDS, Demand, demand_of
+
+__all__ = ["along_design", "program_slopes", "reach_along_design"]
+
+STEP = 1e-5
+"""Step of differences, as a share of a value."""
+
+
+def program_slopes(
+    result: DesignResult, cases: Sequence[PostureDerivative | NotDifferentiable]
+) -> Array | NotDifferentiable | None:
+    """The derivatives of what programs are given, by the design's parameters, shape (parameters, parameters).
+
+    Args:
+        result: of a design.
+        cases: tangents of its postures by what programs are given, one per case.
+    Returns:
+        None where no actuator is sized: then both are the same.
+    """
+    if not result.rated or result.standing is None:
+        return None
+    as_given = replace(result, values=result.rated)
+    demand = demand_of(result.space, as_given)
+    if isinstance(demand, str):
+        return NotDifferentiable(demand)
+    missing = [each for each in cases if isinstance(each, NotDifferentiable)]
+    if missing:
+        return missing[0]
+    tangents = [each for each in cases if isinstance(each, PostureDerivative)]
+    count, places = len(result.values), result.space.margins
+    by_given, by_margin = np.zeros((len(places), count)), np.zeros(len(places))
+    for row, place in enumerate(places):
+        asked = float(np.abs(demand.torques[:, list(demand.members[row])]).max(initial=0.0))
+        if not BOUNDS[0] < result.values[place] * asked < BOUNDS[1]:
+            continue
+        by_margin[row] = asked
+        by_given[row] = result.values[place] * _slope(as_given, result.standing, demand, row, tangents)
+    others = [place for place in range(count) if place not in places]
+    slopes = np.eye(count)
+    held = np.eye(len(places)) - by_given[:, list(places)]
+    slopes[np.ix_(places, others)] = np.linalg.solve(held, by_given[:, others])
+    slopes[np.ix_(places, places)] = np.linalg.solve(held, np.diag(by_margin))
+    return slopes
+
+
+def _slope(
+    result: DesignResult,
+    model: StanceModel,
+    demand: Demand,
+    row: int,
+    cases: Sequence[PostureDerivative],
+) -> Array:
+    """Of what is asked of a group, by what programs are given."""
+    columns = np.array(demand.members[row])
+    torques = np.abs(demand.torques[:, columns])
+    case, column = np.unravel_index(int(np.argmax(torques)), torques.shape)
+    joint = result.robot.joints[int(columns[column])]
+    sign = float(np.sign(demand.torques[case, columns[column]]))
+    lifted = list(_places(result))
+    if case < len(lifted):
+        number, instant, load_case = lifted[case]
+        return cases[number].along_torques(instant, load_case, {ROBOT: {joint: sign}})
+    return _stance_slope(result, model, int(case) - len(lifted), joint, demand)
+
+
+def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
+    """Numbers of case, instant and load case, in the order of `every_case`."""
+    for number, solution in enumerate(result.cases):
+        for instant, each in enumerate(solution.instants):
+            for load_case in range(1 + len(each.disturbed)):
+                yield number, instant, load_case
+
+
+def _stance_slope(result: DesignResult, model: StanceModel, case: int, joint: str, demand: Demand) -> Array:
+    """By differences: a standing posture is found in half a millisecond."""
+    space, tree = result.space, result.robot.tree
+    known = abs(float(model.torques(result.tree)[case][1].torques[joint]))
+    share = float(np.abs(demand.torques[case - len(model.cases), result.robot.joints.index(joint)])) / known
+
+    def torque(position: int, step: float) -> float:
+        values = list(result.values)
+        values[position] += step
+        return share * abs(float(model.torques(space.resized(tree, values))[case][1].torques[joint]))
+
+    steps = [STEP * max(abs(value), 1e-3) for value in result.values]
+    return np.array([(torque(i, step) - torque(i, -step)) / (2.0 * step) for i, step in enumerate(steps)])
+
+
+def along_design(
+    derivative: PostureDerivative | NotDifferentiable, slopes: Array | NotDifferentiable | None
+) -> PostureDerivative | NotDifferentiable:
+    """The tangent of a posture by a design's parameters, from that by what programs are given."""
+    if slopes is None or isinstance(derivative, NotDifferentiable):
+        return derivative
+    if isinstance(slopes, NotDifferentiable):
+        return slopes
+    return replace(
+        derivative,
+        slopes={name: each @ slopes for name, each in derivative.slopes.items()},
+        cost_slope=derivative.cost_slope @ slopes,
+        limits=_limits(derivative.limits, slopes),
+    )
+
+
+def reach_along_design(
+    derivative: ReachDerivative | NotDifferentiable, slopes: Array | NotDifferentiable | None
+) -> ReachDerivative | NotDifferentiable:
+    """The same of an extreme height."""
+    if slopes is None or isinstance(derivative, NotDifferentiable):
+        return derivative
+    if isinstance(slopes, NotDifferentiable):
+        return slopes
+    return replace(derivative, slope=derivative.slope @ slopes, limits=_limits(derivative.limits, slopes))
+
+
+def _limits(limits: Sequence[Limit], slopes: Array) -> Sequence[Limit]:
+    if isinstance(limits, LimitTable):
+        return replace(limits, slopes=limits.slopes @ slopes)
+    return [replace(limit, slope=limit.slope @ slopes) for limit in limits]

@@ -1,0 +1,270 @@
+"""Actuators and walls of a problem file: what it may say, and what becomes of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.errors import InputError
+from evodesign.hardware.actuators import actuator_law
+from evodesign.mechanics.scene import ROBOT
+from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.designs import designs_text, read_designs
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.gradients import assessed_gradients
+from evodesign.problem.model_json import model_json
+from evodesign.problem.objectives import DesignResult, objective_kinds
+from evodesign.problem.sensitivities import Sensitivities
+from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
+from evodesign.tree.equip import actuators_of
+from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
+
+SHOULDER = '\n[[design.actuator]]\nname = "shoulder"\njoints = ["l_shoulder", "r_shoulder"]\n'
+SPIN = '\n[[design.actuator]]\nname = "spin"\njoints = ["spin"]\n'
+SIZES = "rated_torque_n_m = [2.0, 32.0]\n"
+MODELS = 'models = ["X6-60", "own", "X4-10"]\n'
+OWN = """
+[[actuator]]
+model = "own"
+mass_kg = 0.4
+peak_torque_n_m = 30.0
+rated_torque_n_m = 12.0
+source = "assumed"
+"""
+SQUAT = """
+[[load_case]]
+name = "squat"
+joints_deg = { l_shoulder = 60.0 }
+balance = [["spin"]]
+"""
+WALL = '\n[[design.wall]]\nname = "arms"\nlinks = ["l_arm", "r_arm"]\n'
+THIN = "thickness_m = [0.001, 0.004]\n"
+IN_ALUMINIUM = 'material = "aluminium_6061"\n'
+
+
+def small(more: str) -> DesignProblem:
+    return build_problem(ProblemSource(path=PROBLEM, text=TEXTS[PROBLEM] + more, files=TEXTS))
+
+
+def test_a_rated_torque_has_a_logarithmic_scale() -> None:
+    problem = small(SHOULDER + SIZES)
+    record = problem.space.records[-1]
+    assert (record.name, record.unit, record.logarithmic) == ("actuator.shoulder", "N m", True)
+    genome = (0.5,) * len(problem.space.parameters)
+    assert problem.space.values(genome)[-1] == pytest.approx(8.0)
+    assert problem.space.genome(problem.space.values(genome)) == pytest.approx(genome)
+    assert problem.space.unscaled(problem.scene.robot.tree)[-1] == pytest.approx(8.0)
+    ends = [design_of(problem.space.records, (u,) * len(genome))[record.name] for u in (0.0, 1.0)]
+    assert ends == [2.0, 32.0]
+    step = 1e-6
+    slope = (record.value_at(0.3 + step) - record.value_at(0.3 - step)) / (2 * step)
+    assert record.slope_at(record.value_at(0.3)) == pytest.approx(slope)
+    assert model_json(problem)["parameters"][-1]["joints"] == ["l_shoulder", "r_shoulder"]
+
+
+def test_models_are_choices_the_weakest_first_with_their_own_figures() -> None:
+    problem = small(SHOULDER + MODELS + OWN)
+    record, tree = problem.space.records[-1], problem.scene.robot.tree
+    assert record.choices == (4.0, 12.0, 20.0)
+    assert record.materials == ("X4-10", "own", "X6-60")
+    assert problem.space.counts[-1] == 3
+    values = (*problem.space.unscaled(tree)[:-1], 12.0)
+    chosen = actuators_of(problem.space.resized(tree, values))["l_shoulder"]
+    assert (chosen.model, chosen.mass, chosen.peak) == ("own", 0.4, 30.0)
+    assert chosen.motor_constant == actuator_law().motor_constant(12.0)
+
+
+def test_the_programs_know_each_models_figures() -> None:
+    casadi = pytest.importorskip("casadi")
+    (parameter,) = (p for p in small(SHOULDER + MODELS + OWN).space.parameters if p.joints)
+    symbol = casadi.SX.sym("rated")
+    actuator = parameter.actuator(symbol)
+    names = ("mass", "peak", "motor_constant", "inertia", "stiffness", "speed")
+    figures = casadi.Function("f", [symbol], [casadi.vertcat(*(getattr(actuator, n) for n in names))])
+    for model in parameter.models:
+        wanted = [getattr(model, name) for name in names]
+        assert np.array(figures(model.rated)).ravel() == pytest.approx(wanted, rel=1e-12)
+
+
+def test_a_wall_makes_links_hollow_and_its_thickness_may_be_chosen() -> None:
+    fixed = small(
+        WALL + "thickness_m = 0.002\n" + IN_ALUMINIUM + "\n[hardware]\nnon_structural_share = 0.0\n"
+    )
+    assert all(parameter.kind is not ParameterKind.WALL for parameter in fixed.space.parameters)
+    chosen = small(WALL + THIN + IN_ALUMINIUM + "\n[hardware]\nnon_structural_share = 0.0\n")
+    tree = chosen.scene.robot.tree
+    place = [p.kind for p in chosen.space.parameters].index(ParameterKind.WALL)
+    assert chosen.space.records[place].unit == "m"
+    values = list(chosen.space.unscaled(tree))
+    values[place] = 0.002
+    masses = [
+        float(problem.space.resized(tree, given).link_by_name["l_arm"].mass)
+        for problem, given in ((fixed, fixed.space.unscaled(tree)), (chosen, values))
+    ]
+    assert masses[0] == pytest.approx(masses[1], rel=1e-12)
+    values[place] = 0.001
+    thinner = float(chosen.space.resized(tree, values).link_by_name["l_arm"].mass)
+    assert 0.4 < thinner / masses[0] < 0.55
+
+
+def test_designs_name_torques_walls_and_models() -> None:
+    problem = small(SHOULDER + SIZES + SPIN + MODELS + OWN + WALL + THIN + IN_ALUMINIUM)
+    text = (
+        'name = "x"\n[[design]]\nname = "one"\nrated_torque_n_m = { shoulder = 5.0 }\n'
+        'model = { spin = "own" }\nwall_m = { arms = 0.003 }\n'
+    )
+    tree = problem.scene.robot.tree
+    (values,) = read_designs(text, "designs.toml", problem.space, tree).values()
+    named = problem.space.named(values)
+    assert (named["actuator.shoulder"], named["actuator.spin"], named["wall.arms"]) == (5.0, 12.0, 0.003)
+    again = designs_text("x", {"one": values}, problem.space, "written")
+    assert read_designs(again, "designs.toml", problem.space, tree)["one"] == values
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (SHOULDER, ["design.actuator[0]", "one of rated_torque_n_m, models, margin", "none"]),
+        (SHOULDER + SIZES + MODELS, ["design.actuator[0]", "rated_torque_n_m and models"]),
+        (SHOULDER + "rated_torque_n_m = [5.0, 5.0]\n", ["a rising pair", "[5, 5]"]),
+        (SHOULDER + 'models = ["X6-60", "X4-11"]\n', ["models[1]", "'X4-11'; did you mean 'X4-10'?"]),
+        (SHOULDER + 'models = ["X6-60"]\n', ["at least two models"]),
+        (SHOULDER + 'models = ["X6-60", "X6-60"]\n', ["each model once"]),
+        (
+            SHOULDER + MODELS + OWN.replace("12.0", "31.0"),
+            ["rated_torque_n_m", "at most the peak torque, 30"],
+        ),
+        (SHOULDER + MODELS + OWN.replace('"own"', '"RS04"'), ["actuator[0].model", "in the catalogue"]),
+        (SHOULDER + SIZES + SPIN.replace('["spin"]', '["l_shoulder"]') + SIZES, ["a joint in one actuator"]),
+        (SHOULDER.replace("l_shoulder", "l_sholder") + SIZES, ["joints[0]", "did you mean 'l_shoulder'?"]),
+        (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", ">= 1.0"]),
+        (SHOULDER + SIZES + SQUAT.replace("spin", "spine"), ["load_case[0]", "did you mean 'spin'?"]),
+        (SHOULDER + SIZES + SQUAT.replace("60.0", "600.0"), ["joints_deg.l_shoulder", "600"]),
+        (SHOULDER + SIZES + SQUAT + SQUAT, ["load_case[1].name", "'squat' twice"]),
+        (SHOULDER + SIZES + SQUAT + 'feet = "left"\n', ["load_case[0].balance", "2 groups"]),
+        (WALL + "thickness_m = 0.3\n" + IN_ALUMINIUM, ["wall of link l_arm", "less than half"]),
+        (WALL + "thickness_m = -0.1\n" + IN_ALUMINIUM, ["thickness_m", "a positive number"]),
+        (WALL + "thickness_m = [0.2, 0.1]\n" + IN_ALUMINIUM, ["a rising pair"]),
+        (WALL + THIN, ["design.wall[0].material", "or a [[design.density]] of 'l_arm'"]),
+        (WALL + THIN + 'material = "aluminum_6061"\n', ["did you mean 'aluminium_6061'?"]),
+        (
+            WALL + THIN + IN_ALUMINIUM + WALL.replace("arms", "more") + THIN,
+            ["a link in one parameter of a kind"],
+        ),
+        (
+            "\n[constraints]\nholding_power_w = { upper = 5.0 }\n",
+            ["a [[design.actuator]] for 'holding_power'"],
+        ),
+    ],
+)
+def test_contradictions_are_refused_in_a_sentence(more: str, words: list[str]) -> None:
+    with pytest.raises(InputError) as caught:
+        small(more)
+    for word in (PROBLEM, *words):
+        assert word in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+ARMS = tuple(
+    f"{side}_{name}" for name in ("shoulder_pitch", "shoulder_roll", "shoulder_yaw") for side in "lr"
+)
+ELBOWS = ("l_elbow", "r_elbow")
+
+
+@pytest.fixture(scope="module")
+def driven(problem: DesignProblem) -> DesignProblem:
+    """The default problem at one height, with actuators for shoulders and elbows."""
+    actuators = (
+        DesignParameter(ParameterKind.ACTUATOR, "shoulder", (), 0.5, 100.0, joints=ARMS),
+        DesignParameter(ParameterKind.ACTUATOR, "elbow", (), 0.5, 100.0, joints=ELBOWS),
+    )
+    robot = replace(problem.scene.robot, torque_limits=dict.fromkeys(problem.scene.robot.joints, 500.0))
+    return replace(
+        problem,
+        scenes=tuple(replace(scene, robot=robot) for scene in problem.scenes),
+        space=DesignSpace((*problem.space.parameters[:2], *actuators)),
+        tasks=(Hold(height_m=1.2),),
+        objectives=tuple(
+            Objective(name=name, sense=Sense.MINIMISE, unit=objective_kinds()[name].unit)
+            for name in ("holding_power", "mass", "robot_torque", "peak_torque")
+        ),
+        constraints=(Constraint(name="torque_margin", unit="1", lower=1.0, upper=None),),
+        options=replace(problem.options, tolerance=1e-11),
+    )
+
+
+@pytest.fixture(scope="module")
+def inner(driven: DesignProblem) -> Evaluator:
+    return Evaluator(driven)
+
+
+def solved(inner: Evaluator, shoulder: float, elbow: float) -> DesignResult:
+    return inner.solve((1.0, 1.1, shoulder, elbow))
+
+
+@pytest.fixture(scope="module")
+def strong(inner: Evaluator) -> DesignResult:
+    return solved(inner, 40.0, 40.0)
+
+
+def test_holding_power_and_margin_are_those_of_the_torques_by_hand(strong: DesignResult) -> None:
+    kinds, law = objective_kinds(), actuator_law()
+    torques = strong.cases[0].postures[ROBOT].torques
+    constant = law.motor_constant(40.0)
+    power = sum((torques[joint] / constant) ** 2 for joint in (*ARMS, *ELBOWS))
+    assert kinds["holding_power"].value(strong) == pytest.approx(power, rel=1e-12)
+    largest = max(abs(torques[joint]) for joint in (*ARMS, *ELBOWS))
+    assert kinds["torque_margin"].value(strong) == pytest.approx(40.0 / largest, rel=1e-12)
+    ball = law.mass(law.peak(40.0))
+    assert kinds["actuator_mass"].value(strong) == pytest.approx(8 * ball, rel=1e-12)
+
+
+def test_a_posture_keeps_within_what_its_actuators_can_hold(strong: DesignResult, inner: Evaluator) -> None:
+    """Elbows of little torque: the posture changes until they carry no more than their rating."""
+    before = strong.cases[0].postures[ROBOT].torques
+    limit = 0.7 * max(abs(before[joint]) for joint in ELBOWS)
+    weak = solved(inner, 40.0, limit)
+    assert weak.cases[0].solved
+    after = weak.cases[0].postures[ROBOT].torques
+    assert max(abs(after[joint]) for joint in ELBOWS) <= limit + 1e-5
+    assert weak.cases[0].residuals["robot.torque_limits"] <= 1e-5
+    assert objective_kinds()["torque_margin"].value(weak) >= 1.0 - 1e-5
+
+
+def test_actuators_that_are_too_weak_leave_no_posture(inner: Evaluator) -> None:
+    hopeless = solved(inner, 0.5, 0.5)
+    assert hopeless.reach.highest is None or not hopeless.cases[0].solved
+
+
+def test_gradients_by_actuators_are_those_of_differences(
+    driven: DesignProblem, inner: Evaluator, strong: DesignResult
+) -> None:
+    values = strong.values
+    gradients = assessed_gradients(driven, Sensitivities(driven, inner=inner.inner), values, strong).values
+    kinds = objective_kinds()
+    for position in (1, 2, 3):
+        parameter = driven.space.records[position]
+        step = 1e-3 * values[position]
+        results = []
+        for count in (-2, -1, 1, 2):
+            moved = list(values)
+            moved[position] += count * step
+            results.append(inner.solve(moved))
+        for name in ("holding_power", "mass", "robot_torque", "peak_torque", "torque_margin"):
+            found = [kinds[name].value(result) for result in results]
+            slope = (8 * (found[2] - found[1]) - (found[3] - found[0])) / (12 * step)
+            wanted = slope * parameter.slope_at(values[position])
+            scale = abs(kinds[name].value(strong) or 0.0)
+            error = abs(gradients[name][parameter.name] - wanted)
+            assert error <= 1e-5 * max(scale, abs(wanted)), (name, parameter.name)
+
+
+def test_without_hardware_a_genome_means_what_it_meant(problem: DesignProblem) -> None:
+    for record in problem.space.records:
+        assert record.value_at(0.25) == pytest.approx(0.75 * record.lower + 0.25 * record.upper)
+        assert record.slope_at(1.0) == record.upper - record.lower
+        assert math.isclose(record.share_of(record.value_at(0.25)), 0.25)
