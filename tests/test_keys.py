@@ -20,6 +20,7 @@ from typing import Any
 import msgspec
 import pytest
 
+from evodesign.collision.rules import CollisionRules
 from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
@@ -240,3 +241,30 @@ def test_the_designs_that_a_search_starts_from_are_no_part_of_evaluations() -> N
     (start,) = [name for name in source.files if name.endswith(".toml")]
     other = msgspec.structs.replace(source, files={**source.files, start: "other designs"})
     assert problem_digest(other) == problem_digest(source)
+
+
+def test_where_bodies_are_kept_apart_pieces_follow_from_all_scenes_and_tasks() -> None:
+    """What comes near whom is found with everyone's postures, and all that comes later has it."""
+    free = setting_of("three_people_three_loads")
+    scenes = tuple(
+        replace(
+            scene,
+            robot=replace(scene.robot, collisions=CollisionRules(0.005, ())),
+            human=replace(scene.human, collisions=CollisionRules(0.005, ())),
+        )
+        for scene in free.scenes
+    )
+    setting = replace(free, scenes=scenes, middle=scenes[0])
+    fewer, sooner = replace(setting, scenes=scenes[:1]), replace(setting, tasks=setting.tasks[:1])
+    for subject in (Subject.PERSON, Subject.PERSON_REACH, Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE):
+        piece = Piece(subject, scenes[0].pair, Hold(height_m=1.0))
+        assert len({key_of(each, piece) for each in (setting, fewer, sooner)}) == 3
+        assert (
+            len(
+                {
+                    key_of(replace(each, middle=free.middle), piece)
+                    for each in (free, replace(free, tasks=free.tasks[:1]))
+                }
+            )
+            == 1
+        )

@@ -33,7 +33,7 @@ from evodesign.nlp.optimality import (
     moved,
 )
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, has_any
 from evodesign.records import Status
 
 __all__ = ["Limit", "LimitTable", "Optimum", "SolutionSensitivity", "no_limits"]
@@ -212,9 +212,9 @@ class SolutionSensitivity:
         """
         switches = self.program.switches
         if switches is not None and not self.program.switched:
-            on = switches.violated(start, parameters, TOUCHING)
-            if on:
-                return self._parted.at(parameters, {**start, **on}, exact=exact)
+            start = {**start, **switches.violated(start, parameters, TOUCHING)}
+            if has_any(switches.names, start):
+                return self._parted.at(parameters, start, exact=exact)
         if self._near is not None:
             found = self.of(parameters, self._near.solve(parameters, start), exact=exact)
             if isinstance(found, Optimum):
@@ -230,6 +230,9 @@ class SolutionSensitivity:
         self, parameters: Mapping[str, Any], raw: RawSolution, *, exact: bool = True
     ) -> Optimum | NotDifferentiable:
         """The local optimum at a solution with multipliers; `exact` as in `at`."""
+        switches = self.program.switches
+        if switches is not None and not self.program.switched and has_any(switches.names, raw.values):
+            return self._parted.of(parameters, raw, exact=exact)
         if raw.status is not Status.SOLVED:
             return NotDifferentiable(f"the solution was not found again: {raw.reason}")
         given = self.program.packed_parameters(parameters, raw.values)

@@ -24,6 +24,7 @@ from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
     NUMBERS,
     PARTING,
+    ROUNDING,
     PlacedShape,
     directed,
     parted_by,
@@ -239,14 +240,14 @@ def _least_apart(one: PlacedShape, other: PlacedShape) -> Any:
     found = None
     for vector in vectors:
         unit = vector / ca.sqrt(ca.sumsqr(vector) + TINY)
-        apart = ca.fabs(ca.dot(unit, between)) - one.reach(unit) - other.reach(unit)
+        apart = ca.fabs(ca.dot(unit, between)) - one.support(unit) - other.support(unit)
         found = apart if found is None else ca.fmax(found, apart)
     return found
 
 
 def _apart_along(direction: Any, one: PlacedShape, other: PlacedShape) -> Any:
     """How far two shapes are apart along a unit vector [m]."""
-    return ca.dot(direction, other.centre - one.centre) - one.reach(direction) - other.reach(direction)
+    return ca.dot(direction, other.centre - one.centre) - one.support(direction) - other.support(direction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,12 +301,14 @@ def _radii(numbers: Array) -> Array:
 
 
 def _apart(directions: Array, one: Array, other: Array) -> Array:
-    """How far two shapes are apart along unit vectors, shape (n, 3)."""
+    """How far two shapes are apart along unit vectors, shape (n, 3), as rows have it."""
     found = directions @ (other[:3] - one[:3])
     for numbers in (one, other):
         box, disc, ball = _spans(numbers)
-        found = found - np.abs(directions @ box).sum(axis=1)
-        found = found - np.linalg.norm(directions @ disc, axis=1) - np.linalg.norm(directions @ ball, axis=1)
+        box_sizes, disc_size = ROUNDING**2 * (box**2).sum(axis=0), ROUNDING**2 * (disc[:, 0] ** 2).sum()
+        found = found - np.sqrt((directions @ box) ** 2 + box_sizes).sum(axis=1)
+        found = found - np.sqrt(((directions @ disc) ** 2).sum(axis=1) + disc_size)
+        found = found - np.linalg.norm(directions @ ball, axis=1)
     return np.asarray(found)
 
 

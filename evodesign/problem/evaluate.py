@@ -18,7 +18,6 @@ from evodesign.pool.base import Limits
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.reach import Reach, common_reach
-from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
 from evodesign.problem.build import DesignProblem
@@ -63,8 +62,7 @@ class Evaluator:
     """
 
     def __init__(self, problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
-        scenes = tuple(with_meetings(scene, known.meetings) for scene in problem.scenes)
-        self.problem = problem = replace(problem, scenes=scenes)
+        self.problem = problem
         self.known = known
         self.inner = inner_problems(problem, known)
         self._growths = problem.space.growths(problem.scene.robot.tree)

@@ -9,6 +9,7 @@ from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import DesignProblem
 
@@ -31,7 +32,8 @@ class InnerProblems:
 def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> InnerProblems:
     """The inner problems of a problem, with what is known beforehand."""
     symmetric, solvers = problem.symmetry is not Symmetry.OFF, SolverCache()
-    settings = [Setting(scene, problem.space, problem.weights, problem.options) for scene in problem.scenes]
+    scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
+    settings = [Setting(scene, problem.space, problem.weights, problem.options) for scene in scenes]
     return InnerProblems(
         postures={
             setting.scene.pair: PostureProblem(setting, problem.symmetry, known, solvers)

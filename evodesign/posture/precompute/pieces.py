@@ -158,6 +158,16 @@ NO_PART_OF_MEETINGS: Exceptions = {
     },
 }
 
+NO_PART_OF_PARTED: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why
+        for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items()
+        if name in ("middle", "symmetry")
+    },
+}
+"""Where bodies are kept apart every piece follows from the meetings of all scenes at all tasks."""
+
 NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.MEETINGS: NO_PART_OF_MEETINGS,
     Subject.PERSON: NO_PART_OF_A_PERSONS,
@@ -228,7 +238,9 @@ def _scene_of(setting: PrecomputeSetting, piece: Piece) -> Scene:
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     """The digest under which a piece is kept: of all that it may follow from, and of the code."""
     data = (setting, setting.symmetric, _scene_of(setting, piece), piece)
-    return digest((data, code_digest(__name__)), without=NO_PART_OF[piece.subject])
+    parted = _scene_of(setting, piece).human.collisions is not None and piece.subject is not Subject.MEETINGS
+    without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
+    return digest((data, code_digest(__name__)), without=without)
 
 
 def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:

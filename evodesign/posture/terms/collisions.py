@@ -55,6 +55,7 @@ __all__ = [
     "NUMBERS",
     "OVERLAP",
     "PARTING",
+    "ROUNDING",
     "Meeting",
     "PlacedShape",
     "directed",
@@ -69,7 +70,7 @@ PARTING, NUMBERS = "parting", 7
 OFF = 10.0
 """What a row that is switched off has added to it [m]."""
 
-ROUNDING = 0.02
+ROUNDING = 0.01
 """By how much a corner is rounded off, as a share of the half side."""
 
 
@@ -167,23 +168,17 @@ class PlacedShape:
             columns.append(ca.cross(self.disc[:, 0], self.disc[:, 1]))
         return columns
 
-    def reach(self, direction: Expression) -> Expression:
-        """How far it reaches from its centre along a unit vector [m]."""
-        box = ca.sum1(ca.fabs(self.box.T @ direction))
-        return box + ca.norm_2(self.disc.T @ direction) + ca.norm_2(self.ball.T @ direction)
-
     def support(self, direction: Expression) -> Expression:
-        """How far it reaches from its centre along a direction, with corners rounded off [m]."""
+        """How far it reaches from its centre along a unit vector, with corners rounded off [m]."""
         reach = 0.0
         for column in ca.horzsplit(self.box):
             if not column.is_zero():
                 size = ca.sumsqr(column)
                 reach += ca.sqrt(ca.dot(column, direction) ** 2 + ROUNDING**2 * size)
-        for columns in (self.disc, self.ball):
-            if not columns.is_zero():
-                size = ca.sumsqr(columns[:, 0])
-                reach += ca.sqrt(ca.sumsqr(columns.T @ direction) + ROUNDING**2 * size)
-        return reach
+        if not self.disc.is_zero():
+            size = ca.sumsqr(self.disc[:, 0])
+            reach += ca.sqrt(ca.sumsqr(self.disc.T @ direction) + ROUNDING**2 * size)
+        return reach if self.ball.is_zero() else reach + ca.norm_2(self.ball.T @ direction)
 
 
 def placed_shape(shape: ConvexShape, pose: Pose) -> PlacedShape:
