@@ -15,7 +15,7 @@ from evodesign.posture.results import Array
 __all__ = ["PEOPLE", "STARTS_BESIDE", "different_people", "fixed_starts", "named_starts", "person_starts"]
 
 
-STARTS_BESIDE = 8
+STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
 
 PEOPLE = 16

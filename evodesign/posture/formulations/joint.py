@@ -32,7 +32,7 @@ from evodesign.posture.load_cases import aggregated, with_worst
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import STARTS_BESIDE, different_people, fixed_starts, named_starts
+from evodesign.posture.starts import different_people, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -107,9 +107,9 @@ class JointPostures:
         neighbour: Neighbour,
         checker: Checker,
     ) -> Trial:
-        """What the solution in a similar scene leads to, and the first starts of the portfolio."""
+        """What the solution in a similar scene leads to, and the portfolio."""
         known = self._start(neighbour.solution.instants)
-        others = named_starts(self._solver, portfolio, self._fixed)[:STARTS_BESIDE]
+        others = named_starts(self._solver, portfolio, self._fixed)
         return self._trial(design, task, [("neighbour", known), *others], checker)
 
     def polish(
