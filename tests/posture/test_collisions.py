@@ -22,10 +22,12 @@ from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.reach import LOWEST, ReachProblem
 from evodesign.posture.parting import SHAPE, parted_along
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
+from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.collisions import ROUNDING, PlacedShape, placed_shape
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.sensitivities import Sensitivities
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Link, Look, Tree
 
@@ -221,3 +223,24 @@ def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
     assert around is not None
     assert through < around < 0.8
     assert SHAPE == 36
+
+
+def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
+    apart: DesignProblem, met: dict
+) -> None:
+    known = replace(Evaluator(apart).known, meetings=met)
+    evaluator, rng = Evaluator(apart, known), np.random.default_rng(6)
+    tangents = Sensitivities(apart, known, evaluator.inner)
+    compared = 0
+    for _ in range(3):
+        point = tuple(rng.uniform(0.2, 0.8, len(apart.space.parameters)).tolist())
+        values = np.array(apart.space.values(point))
+        step = 1e-4 * values * rng.standard_normal(len(values))
+        here, ahead, behind = (evaluator.solve(values + sign * step) for sign in (0.0, 1.0, -1.0))
+        for solution, after, before in zip(here.cases, ahead.cases, behind.cases, strict=True):
+            found = tangents.of_case(values, solution) if solution.solved else None
+            if isinstance(found, PostureDerivative) and after.solved and before.solved:
+                difference = (after.attempt.cost - before.attempt.cost) / 2.0
+                assert float(found.cost_slope @ step) == pytest.approx(difference, rel=1e-4, abs=1e-8)
+                compared += 1
+    assert compared >= 6
