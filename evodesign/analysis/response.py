@@ -41,13 +41,13 @@ SCALES = (2.0, 1.0, 0.5, 0.25, 0.125)
 LEAST_EXPLAINED = 0.5
 """Share of the variance of unseen designs that a model explains at least."""
 
-FEWEST, FEWEST_PER_PARAMETER = 20, 2
+FEWEST, FEWEST_PER_PARAMETER = 60, 2
 """Designs without which there is no model: so many, and so many for each parameter."""
 
 MOST = 10_000
 """Designs that a model is made of, at most; of more, the log is thinned evenly."""
 
-LARGEST = 1e100
+LARGEST = 1e60
 """Size beyond which a value or a derivative counts as none: its square would be no number."""
 
 CONSTANT = 1e-9

@@ -123,7 +123,7 @@ class Run:
             through: number of a design of the run, to add slices through it along every parameter.
         Example:
             >>> [each["reason"] for each in run.matters()["objectives"]][0]
-            '5 evaluated designs have it, and at least 20 are wanted'
+            '5 evaluated designs have it, and at least 60 are wanted'
         """
         from evodesign.analysis.importance_json import matters_json  # SciPy's statistics take time to load
 

@@ -149,7 +149,7 @@ def test_where_designs_look_like_chance_no_importance_is_made_up() -> None:
         (np.full(64, 2.0), "it is the same for all designs"),
         (
             np.r_[np.full(60, np.nan), np.arange(4.0)],
-            "4 evaluated designs have it, and at least 20 are wanted",
+            "4 evaluated designs have it, and at least 60 are wanted",
         ),
     ],
 )

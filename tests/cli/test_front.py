@@ -83,7 +83,7 @@ def test_materials_stand_beside_their_densities(tmp_path: Path, capsys: pytest.C
         assert told["materials"] == {"arm.1": material}
     shown = StringIO()
     opened = OpenedDesign(read_run(run), evaluations[5], (), on_front=False, rebuilt=RebuiltProblem(header))
-    Console(file=shown, width=120).print(card(opened, ()))
+    Console(file=shown, width=120).print(card(opened, (), {}))
     assert materials_of(header.parameters, evaluations[5].assessment.design)["arm.1"] in shown.getvalue()
 
 

@@ -74,7 +74,7 @@ ROUNDING = 0.01
 """By how much a corner is rounded off, as a share of the half side."""
 
 
-class Kind(Enum):
+class MeetingKind(Enum):
     """How two bodies are kept apart."""
 
     DIRECTION = auto()
@@ -93,7 +93,7 @@ class Meeting:
         mirrored: whether the mirror image of the second is meant.
     """
 
-    kind: Kind
+    kind: MeetingKind
     first: str
     second: str
     mirrored: bool = False
@@ -114,26 +114,26 @@ def _meeting(form: Form, pair: BodyPair) -> Meeting:
     first, second = pair
     mirror = form.mirror
     if mirror is None:
-        return Meeting(Kind.PLANE if second in PLANES else Kind.DIRECTION, first, second)
+        return Meeting(MeetingKind.PLANE if second in PLANES else MeetingKind.DIRECTION, first, second)
     kept = form.part(form.agent.tree)[0].link_by_name
     if second == LOAD or second in PLANES:
         first = first if first in kept else mirror.links[first]
-        return Meeting(Kind.PLANE if second in PLANES else Kind.DIRECTION, first, second)
+        return Meeting(MeetingKind.PLANE if second in PLANES else MeetingKind.DIRECTION, first, second)
     if first not in kept:
         first, second = mirror.links[first], mirror.links[second]
     if second in kept:
-        return Meeting(Kind.DIRECTION, first, second)
+        return Meeting(MeetingKind.DIRECTION, first, second)
     if mirror.links[first] == first:  # on the middle line
-        return Meeting(Kind.DIRECTION, first, mirror.links[second])
+        return Meeting(MeetingKind.DIRECTION, first, mirror.links[second])
     if mirror.links[second] == first:
-        return Meeting(Kind.MIDDLE, first, first, True)
+        return Meeting(MeetingKind.MIDDLE, first, first, True)
     one, other = sorted((first, mirror.links[second]))  # mirror images of this pair are another name of it
-    return Meeting(Kind.DIRECTION, one, other, True)
+    return Meeting(MeetingKind.DIRECTION, one, other, True)
 
 
 def directed(form: Form) -> tuple[Meeting, ...]:
     """Those that have a direction."""
-    return tuple(meeting for meeting in meetings(form) if meeting.kind is Kind.DIRECTION)
+    return tuple(meeting for meeting in meetings(form) if meeting.kind is MeetingKind.DIRECTION)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,17 +237,21 @@ def rows(body: Body) -> Iterator[Row]:
     rules = body.agent.collisions
     if rules is None:
         return
-    found: dict[Kind, list[tuple[str, Expression]]] = {kind: [] for kind in Kind}
+    found: dict[MeetingKind, list[tuple[str, Expression]]] = {kind: [] for kind in MeetingKind}
     left = ca.DM([0.0, 1.0, 0.0])
     parted = directed(body.form)
     for meeting in meetings(body.form):
-        if meeting.kind is Kind.PLANE:
+        if meeting.kind is MeetingKind.PLANE:
             away = ca.DM(PLANES[meeting.second])
             for shape in _placed(body, meeting.first):
-                found[Kind.PLANE].append((meeting.label, -ca.dot(away, shape.centre) - shape.support(away)))
-        elif meeting.kind is Kind.MIDDLE:
+                found[MeetingKind.PLANE].append(
+                    (meeting.label, -ca.dot(away, shape.centre) - shape.support(away))
+                )
+        elif meeting.kind is MeetingKind.MIDDLE:
             for shape in _placed(body, meeting.first):
-                found[Kind.MIDDLE].append((meeting.label, 2.0 * (shape.centre[1] - shape.support(left))))
+                found[MeetingKind.MIDDLE].append(
+                    (meeting.label, 2.0 * (shape.centre[1] - shape.support(left)))
+                )
         elif PARTING in body.values:
             place = NUMBERS * parted.index(meeting)
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
@@ -255,11 +259,11 @@ def rows(body: Body) -> Iterator[Row]:
             for one, other in pairs:
                 apart = ca.dot(direction, other.centre - one.centre)
                 apart -= one.support(direction) + other.support(direction)
-                found[Kind.DIRECTION].append((meeting.label, apart + OFF * (1.0 - numbers[0])))
+                found[MeetingKind.DIRECTION].append((meeting.label, apart + OFF * (1.0 - numbers[0])))
     for kind, name, least in (
-        (Kind.MIDDLE, "clear_of_mirror_image", rules.margin),
-        (Kind.PLANE, "clear_of_plane", rules.margin / 2.0),
-        (Kind.DIRECTION, "clear", rules.margin),
+        (MeetingKind.MIDDLE, "clear_of_mirror_image", rules.margin),
+        (MeetingKind.PLANE, "clear_of_plane", rules.margin / 2.0),
+        (MeetingKind.DIRECTION, "clear", rules.margin),
     ):
         yield from _column(name, found[kind], least)
 
