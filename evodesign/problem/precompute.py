@@ -99,7 +99,10 @@ def precomputed(
             for piece, content in _worked_out(problem, missing, known, pool, watcher).items():
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)
-                known = with_piece(known, piece, content) or known
+                found = with_piece(known, piece, content)
+                if found is None:
+                    raise RunError(f"{piece}: what was worked out cannot be read back")
+                known = found
         if any(piece.subject is Subject.PERSON_REACH for piece in stage):
             refuse_heights(problem, known)
     return known
