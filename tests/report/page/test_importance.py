@@ -21,11 +21,11 @@ ROWS = "[...document.querySelectorAll('[data-matters]')]"
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunLog:
-    """Sixty designs of two parameters, of which a model can be made."""
-    header = toy_header(budget=60)
+    """Eighty-four designs of two parameters, of which a model can be made."""
+    header = toy_header(budget=84)
     directory = tmp_path_factory.mktemp("importance") / "run"
     with RunWriter(directory, header) as log:
-        for evaluation in toy_evaluations(header, 60):
+        for evaluation in toy_evaluations(header, 84):
             log.evaluation(evaluation)
     return read_run(directory)
 
