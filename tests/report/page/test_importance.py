@@ -21,11 +21,11 @@ ROWS = "[...document.querySelectorAll('[data-matters]')]"
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunLog:
-    """Eighty-four designs of two parameters, of which a model can be made."""
-    header = toy_header(budget=84)
+    """A hundred and twenty designs of two parameters, of which a model can be made."""
+    header = toy_header(budget=120)
     directory = tmp_path_factory.mktemp("importance") / "run"
     with RunWriter(directory, header) as log:
-        for evaluation in toy_evaluations(header, 84):
+        for evaluation in toy_evaluations(header, 120):
             log.evaluation(evaluation)
     return read_run(directory)
 
