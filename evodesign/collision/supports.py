@@ -137,8 +137,8 @@ def _along(points: Array, axes: Array) -> Iterator[tuple[float, ConvexShape]]:
 
 
 def _placed(axes: Array, middle: Array, half: Array, disc: float = 0.0, ball: float = 0.0) -> ConvexShape:
-    rows = [tuple(float(entry) for entry in row) for row in axes]
-    rotation: Matrix = (rows[0], rows[1], rows[2])  # type: ignore[assignment]
+    first, second, third = axes.tolist()
+    rotation: Matrix = (tuple(first), tuple(second), tuple(third))
     x, y, z = (float(each) for each in axes @ middle)
     sides = (float(half[0]), float(half[1]), float(half[2]))
     return ConvexShape(Placement(rotation, (x, y, z)), sides, disc, ball)

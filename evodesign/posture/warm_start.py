@@ -74,8 +74,7 @@ def start_from(program: Program, forms: Sequence[Form], instants: Sequence[Insta
         cases = [instants[slot.instant].postures, *instants[slot.instant].disturbed.values()]
         if slot.load_case < len(cases):
             parts = by_name[slot.party].parts(cases[slot.load_case][slot.party])
-            if slot.part in parts:
-                known[name] = parts[slot.part][: program.counts[name]]
+            known[name] = parts[slot.part][: program.counts[name]]
     return known
 
 

@@ -20,8 +20,8 @@ from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.reach import LOWEST, ReachProblem
-from evodesign.posture.parting import SHAPE, parted_along
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
+from evodesign.posture.separating_axes import parted_along
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.collisions import ROUNDING, PlacedShape, placed_shape
@@ -222,7 +222,6 @@ def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
     assert through is not None
     assert around is not None
     assert through < around < 0.8
-    assert SHAPE == 36
 
 
 def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(

@@ -190,7 +190,7 @@ class ReachProblem:
         parameters = {"design": design, **self._beside(sense)}
         solver = self._solver
         if sense == LOWEST and self.program.switches is not None:
-            for begun in (starts, FIXED):
+            for begun in (starts, FIXED) if self._starts[sense] else (FIXED,):
                 parted = [solver.parted_start(parameters, start) for start in begun]
                 found = _best_settled(solver, parameters, parted, sense)
                 if any(raw.status is Status.SOLVED for raw in found):

@@ -163,7 +163,7 @@ def _in_order(agent: Agent, found: set[BodyPair], form: Form) -> list[BodyPair]:
     checked = agent.collisions.checked if agent.collisions else ()
     if form.mirror is not None:
         links = form.mirror.links
-        found = found | {tuple(links.get(name, name) for name in pair) for pair in found}  # type: ignore[misc]
+        found = found | {(links.get(one, one), links.get(other, other)) for one, other in found}
     return [pair for pair in checked if pair in found or pair[::-1] in found]
 
 
