@@ -13,7 +13,8 @@ from typing import Any
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box
 from evodesign.collision.clearance import BodyDistance, PlacedSolids, Places, SolidBodies, places_of
-from evodesign.collision.pairs import collision_pairs, holding_links
+from evodesign.collision.pairs import checked_pairs
+from evodesign.collision.rules import LOAD
 from evodesign.collision.shapes import box_solid
 from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
@@ -23,10 +24,7 @@ from evodesign.records import AgentDetail, Case, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["LOAD", "Clearances", "distance_json", "overlaps", "solved_distances"]
-
-LOAD = "load"
-"""Name of the load beside `robot` and `person` followed by a link."""
+__all__ = ["Clearances", "distance_json", "overlaps", "solved_distances"]
 
 WHO: Mapping[str, str] = {ROBOT: "robot", HUMAN: "person"}
 
@@ -85,16 +83,18 @@ class Clearances:
         for one in links[ROBOT]:
             yield from ((_name(ROBOT, one), _name(HUMAN, other)) for other in links[HUMAN])
         for agent in (scene.robot, scene.human):
-            holding = holding_links(agent.tree, agent.hands)
-            yield from ((_name(agent.name, a), _name(agent.name, b)) for a, b in self._of_agent(agent))
-            yield from ((_name(agent.name, link), LOAD) for link in links[agent.name] if link not in holding)
+            for link, other in self._of_agent(agent):
+                if other == LOAD:
+                    yield _name(agent.name, link), LOAD
+                elif other in links[agent.name]:
+                    yield _name(agent.name, link), _name(agent.name, other)
 
     def _of_agent(self, agent: Agent) -> Pairs:
+        """Those of its links, and of these with load, floor and partner."""
         if agent.collisions is not None:
-            names = agent.tree.link_by_name
-            return tuple(pair for pair in agent.collisions.checked if pair[1] in names)
+            return agent.collisions.checked
         if id(agent.tree) not in self._own:
-            self._own[id(agent.tree)] = collision_pairs(agent.tree)
+            self._own[id(agent.tree)] = checked_pairs(agent.tree, agent.hands, agent.soles)
         return self._own[id(agent.tree)]
 
 

@@ -8,11 +8,12 @@ import msgspec
 import numpy as np
 import pytest
 
+from evodesign.collision.rules import LOAD
 from evodesign.errors import RunError
 from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.clearance import LOAD, Clearances, overlaps, solved_distances
+from evodesign.problem.clearance import Clearances, overlaps, solved_distances
 from evodesign.problem.evaluate import Evaluator, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.objectives import DesignResult
