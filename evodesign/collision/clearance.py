@@ -101,6 +101,12 @@ class SolidBodies:
         turns = np.array([frames[name].rotation for name in self.names], float)
         return self.placed_at(turns, np.array([frames[name].translation for name in self.names], float))
 
+    @cached_property
+    def links(self) -> tuple[tuple[str, ...], Indices]:
+        """The bodies' names, once each, and which of them each solid is of."""
+        places = {name: place for place, name in enumerate(dict.fromkeys(self.names))}
+        return tuple(places), np.array([places[name] for name in self.names], np.intp)
+
     def placed_at(self, turns: Array, origins: Array) -> PlacedSolids:
         """The solids where their bodies' frames are.
 

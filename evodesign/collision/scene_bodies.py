@@ -68,8 +68,8 @@ class SceneBodies:
 
     def __init__(self, agents: Mapping[str, CheckedBodies], load: Vector) -> None:
         checked = list(agents.values())
-        self._links = {name: each.bodies.names for name, each in agents.items()}
-        first = np.cumsum([0, *(len(names) for names in self._links.values())]).tolist()
+        self._links = {name: each.bodies.links for name, each in agents.items()}
+        first = np.cumsum([0, *(len(each.bodies.names) for each in checked)]).tolist()
         box = SolidBodies((LOAD,), (box_solid(Box(*load)),))
         parts = [_named(name, each.bodies) for name, each in agents.items()]
         self._bodies = parts[0].beside(*parts[1:], box)
@@ -96,10 +96,10 @@ class SceneBodies:
         """
         turns, origins = [], []
         for name, (sign, pose) in poses.items():
-            found = [pose(link) for link in self._links[name]]
-            turn = np.array([sign, sign, 1.0])
-            turns.append(turn[:, None] * np.array([rotation for rotation, _ in found]))
-            origins.append(turn * np.array([origin for _, origin in found]))
+            links, places = self._links[name]
+            found, turn = [pose(link) for link in links], np.array([sign, sign, 1.0])
+            turns.append((turn[:, None] * np.array([rotation for rotation, _ in found]))[places])
+            origins.append((turn * np.array([origin for _, origin in found]))[places])
         turns.append(np.eye(3)[None])
         origins.append(np.array([[0.0, 0.0, load_height]]))
         placed = self._bodies.placed_at(np.concatenate(turns), np.concatenate(origins))

@@ -126,7 +126,7 @@ class Solver:
     def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Array]) -> RawSolution:
         """Solve for parameters, by name, from a start (variables left out begin at the program's own)."""
         if self._is_parted(start):
-            return self.parted.solve(parameters, start)
+            return (self.parted.near if self.options.near else self.parted).solve(parameters, start)
         began = time.perf_counter()
         ending = self._method.solve(
             self.options, self.program.packed(start), self.program.packed_parameters(parameters, start)
@@ -189,7 +189,7 @@ class Solver:
             if switches is None or found.status is not Status.SOLVED:
                 break
             better = switches.better(found.values, parameters)
-            other = self._solved_from(parameters, found, better) if better else found
+            other = self.near._solved_from(parameters, found, better) if better else found
             other = self._without_violations(parameters, other)
             if other.status is not Status.SOLVED or not other.cost < found.cost - abs(found.cost) * GAIN:
                 break

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.program import Program, Start
-from evodesign.posture.separating_axes import SHAPE, parted_along
+from evodesign.posture.separating_axes import Ways, ways_of
 from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
     NUMBERS,
     PARTING,
+    SHAPE,
     PlacedShape,
     directed,
     parted_by,
@@ -84,8 +85,8 @@ class Parted:
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
             return np.ones(len(seen.margins), bool)
 
-        def wanted(pairs: Array, margin: float, along: float) -> Array:
-            return parted_along(pairs, np.inf)[0].numbers
+        def wanted(ways: Ways, margin: float, along: float) -> Array:
+            return ways.ranked(0)
 
         return self._changed(values, given, looked_at, wanted)
 
@@ -95,11 +96,8 @@ class Parted:
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
             return np.asarray(~seen.on & (seen.least < seen.margins + short))
 
-        def wanted(pairs: Array, margin: float, along: float) -> Array | None:
-            ways = parted_along(pairs, margin + short)
-            if not ways or ways[0].distance >= margin + short - ALMOST:
-                return None
-            return ways[min(rank, len(ways) - 1)].numbers
+        def wanted(ways: Ways, margin: float, along: float) -> Array | None:
+            return ways.ranked(rank) if ways.distance < margin + short - ALMOST else None
 
         return self._changed(values, given, looked_at, wanted)
 
@@ -109,9 +107,8 @@ class Parted:
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
             return np.asarray(seen.on & (seen.along <= seen.margins + TOUCHING))
 
-        def wanted(pairs: Array, margin: float, along: float) -> Array | None:
-            way = parted_along(pairs, np.inf)[0]
-            return way.numbers if way.distance > along + BETTER else None
+        def wanted(ways: Ways, margin: float, along: float) -> Array | None:
+            return ways.ranked(0) if ways.distance > along + BETTER else None
 
         return self._changed(values, given, looked_at, wanted)
 
@@ -120,7 +117,7 @@ class Parted:
         values: Start,
         given: Mapping[str, Any],
         looked_at: Callable[[_Screened], NDArray[np.bool_]],
-        wanted: Callable[[Array, float, float], Array | None],
+        wanted: Callable[[Ways, float, float], Array | None],
     ) -> Start:
         """The parameters with new numbers for some meetings; without those of bodies for which none are new.
 
@@ -128,8 +125,8 @@ class Parted:
             values: of a solution or a start.
             given: the other parameters.
             looked_at: which meetings may get new numbers.
-            wanted: new numbers for one of them, from its pairs, its margin [m], and how far it is apart along
-                its direction [m]; or None.
+            wanted: new numbers for one of them, from the ways to part it, its margin [m], and how far it is
+                apart along its direction [m]; or None.
         """
         program, meetings = self.program, self._meetings
         held = program.held(values)
@@ -142,10 +139,11 @@ class Parted:
         if not places:
             return {}
         pairs = np.asarray(meetings.shapes(*numbers)).T.reshape(-1, 2, SHAPE)
-        ends = np.cumsum([0, *(len(column) for column in columns)])
+        ends = np.cumsum([0, *map(len, columns)])
         found: dict[str, Array] = {}
-        for place in places:
-            new = wanted(pairs[meetings.places == place], meetings.margins[place], seen.along[place])
+        ways = ways_of([pairs[meetings.places == place] for place in places])
+        for place, own in zip(places, ways, strict=True):
+            new = wanted(own, meetings.margins[place], seen.along[place])
             if new is not None:
                 body = int(np.searchsorted(ends, place, side="right")) - 1
                 name, first = self._bodies[body].name, NUMBERS * (place - int(ends[body]))
@@ -172,7 +170,7 @@ class Parted:
                 places += [len(margins)] * len(own)
                 margins.append(rules.margin if rules else 0.0)
         least = [_least_apart(*pair) for pair in pairs]
-        along = [_apart_along(direction, *pair) for direction, pair in zip(directions, pairs, strict=True)]
+        along = [one.apart(other, way) for way, (one, other) in zip(directions, pairs, strict=True)]
         given = [program.symbols, program.given]
         shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
         return _Meetings(
@@ -226,8 +224,3 @@ def _least_apart(one: PlacedShape, other: PlacedShape) -> Any:
         apart = ca.fabs(ca.dot(unit, between)) - one.support(unit) - other.support(unit)
         found = apart if found is None else ca.fmax(found, apart)
     return found
-
-
-def _apart_along(direction: Any, one: PlacedShape, other: PlacedShape) -> Any:
-    """How far two shapes are apart along a unit vector [m]."""
-    return ca.dot(direction, other.centre - one.centre) - one.support(direction) - other.support(direction)

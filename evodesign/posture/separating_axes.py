@@ -10,16 +10,22 @@ Source: separating axes: Gottschalk, Lin and Manocha, OBBTree (1996).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from typing import Any
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.posture.terms.collisions import NUMBERS, ROUNDING
+from evodesign.nlp.codegen import compiled_function
+from evodesign.posture.terms.collisions import NUMBERS, SHAPE, PlacedShape
 
-__all__ = ["SHAPE", "Way", "parted_along"]
+__all__ = ["Ways", "ways_of"]
 
 Array = NDArray[np.float64]
+Expression = Any
 
 DIFFERENT = 0.7
 """Cosine between two directions that are different ways to part bodies."""
@@ -27,124 +33,110 @@ DIFFERENT = 0.7
 STEPS = 8
 """From body to body, on the shortest way between them."""
 
-SHAPE = 36
-"""Numbers of a placed shape: centre, box, disc, ball, axes."""
+SHORT = 1e-18
+"""Squared length [m^2] below which a vector has no direction."""
 
 
-@dataclass(frozen=True, slots=True)
-class Way:
-    """A direction that parts two bodies.
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """Directions that may part two bodies.
 
     Args:
-        numbers: that stand for it, as in `terms.collisions`.
-        distance: how far they are apart along it [m].
+        units: unit vectors from the one to the other, shape (n, 3).
+        numbers: that stand for them, as in `terms.collisions`, shape (n, NUMBERS).
+        apart: how far the bodies are apart along each [m]; minus infinity for one that is none.
     """
 
+    units: Array
     numbers: Array
-    distance: float
+    apart: Array
+
+    @property
+    def distance(self) -> float:
+        """How far the bodies are apart along the best one [m]."""
+        return float(self.apart.max())
+
+    def ranked(self, rank: int) -> Array:
+        """The numbers of the best direction (rank 0), or of the best one that differs from all better ones."""
+        chosen: list[int] = []
+        for place in np.argsort(-self.apart, kind="stable").tolist():
+            if all(self.units[place] @ self.units[other] < DIFFERENT for other in chosen):
+                chosen.append(place)
+            if len(chosen) > rank:
+                break
+        return self.numbers[chosen[-1]]
 
 
-def parted_along(pairs: Array, enough: float) -> list[Way]:
-    """Directions along which two bodies are parted, the best one first; others that differ from all before.
+def ways_of(meetings: Sequence[Array]) -> list[Ways]:
+    """The ways to part the bodies of each meeting.
 
     Args:
-        pairs: the numbers of each shape of the one with each of the other, shape (pairs, 2, SHAPE).
-        enough: bodies whose balls are farther apart than this [m] are not looked at.
+        meetings: of each, the numbers of every shape of the one with every shape of the other, shape
+            (pairs, 2, SHAPE).
     """
-    between = np.linalg.norm(pairs[:, 1, :3] - pairs[:, 0, :3], axis=1)
-    if np.min(between - _radii(pairs[:, 0]) - _radii(pairs[:, 1])) > enough:
-        return []
-    found = [_candidates(one, other) for one, other in pairs]
-    vectors, numbers = (np.concatenate([each[k] for each in found]) for k in (0, 1))
-    apart = np.min([_apart(vectors, one, other) for one, other in pairs], axis=0)
-    chosen: list[int] = []
-    for place in np.argsort(-apart, kind="stable").tolist():
-        if all(vectors[place] @ vectors[other] < DIFFERENT for other in chosen):
-            chosen.append(place)
-    return [Way(numbers[place], float(apart[place])) for place in chosen]
+    candidates, apart = _functions()
+    pairs = np.concatenate(meetings).reshape(-1, 2 * SHAPE)
+    found = [np.array(each).T for each in candidates(pairs.T)]
+    units, numbers = found[0].reshape(len(pairs), -1, 3), found[1].reshape(len(pairs), -1, NUMBERS)
+    ends = np.cumsum([len(meeting) for meeting in meetings]).tolist()
+    ways = []
+    for first, end in zip([0, *ends], ends, strict=False):
+        least = found[2][first:end]
+        if end - first > 1:  # along the directions of every pair of shapes, all of them
+            each = [np.array(apart(pairs[first:end].T, found[0][place])) for place in range(first, end)]
+            least = np.array([along.min(axis=1) for along in each])
+        ways.append(
+            Ways(
+                units[first:end].reshape(-1, 3),
+                numbers[first:end].reshape(-1, NUMBERS),
+                np.where(np.isfinite(found[2][first:end]), least, -np.inf).ravel(),
+            )
+        )
+    return ways
 
 
-def _spans(numbers: Array) -> tuple[Array, Array, Array]:
-    """Columns of box, disc and ball."""
-    return (
-        numbers[3:12].reshape(3, 3).T,
-        numbers[12:18].reshape(2, 3).T,
-        numbers[18:27].reshape(3, 3).T,
-    )
-
-
-def _radii(numbers: Array) -> Array:
-    """Of balls about shapes, shape (n, SHAPE)."""
-    box = np.linalg.norm(numbers[:, 3:12], axis=1)
-    return np.asarray(
-        box + np.linalg.norm(numbers[:, 12:15], axis=1) + np.linalg.norm(numbers[:, 18:27], axis=1)
-    )
-
-
-def _apart(directions: Array, one: Array, other: Array) -> Array:
-    """How far two shapes are apart along unit vectors, shape (n, 3), as rows have it."""
-    found = directions @ (other[:3] - one[:3])
-    for numbers in (one, other):
-        box, disc, ball = _spans(numbers)
-        box_sizes, disc_size = ROUNDING**2 * (box**2).sum(axis=0), ROUNDING**2 * (disc[:, 0] ** 2).sum()
-        found = found - np.sqrt((directions @ box) ** 2 + box_sizes).sum(axis=1)
-        found = found - np.sqrt(((directions @ disc) ** 2).sum(axis=1) + disc_size)
-        found = found - np.linalg.norm(directions @ ball, axis=1)
-    return np.asarray(found)
-
-
-def _candidates(one: Array, other: Array) -> tuple[Array, Array]:
-    """Unit vectors that lead from the one to the other, and the numbers that stand for them."""
-    between = other[:3] - one[:3]
-    axes, other_axes = (each[27:].reshape(3, 3).T for each in (one, other))
-    edges, other_edges = _edges(one), _edges(other)
-    sides = np.array([*edges, *other_edges])
+@cache
+def _functions() -> tuple[Any, Any]:
+    """Of two placed shapes: directions, their numbers and distances along them; and distances along given ones."""
+    pair = ca.SX.sym("pair", 2 * SHAPE)
+    one, other = (PlacedShape.of(pair[half * SHAPE : (half + 1) * SHAPE]) for half in range(2))
+    between = other.centre - one.centre
+    edges, other_edges = one.sides, other.sides
     away = [between, _shortest(one, other)]
-    away += [
-        between - (between @ edge) * edge for edge in (*edges, *other_edges)
-    ]  # straight away from an axis
-    away += [_cross(u, v) for u in edges for v in other_edges]
-    vectors = np.concatenate([sides, np.array(away)]) if len(sides) else np.array(away)
-    lengths = np.linalg.norm(vectors, axis=1)
-    kept = lengths > 1e-9
-    units = vectors[kept] / lengths[kept, None]
-    units = np.where((units @ between < 0.0)[:, None], -units, units)
-    places = np.flatnonzero(kept)
-    numbers = np.zeros((len(units), NUMBERS))
-    numbers[:, 0] = 1.0
-    of_other = (places >= len(edges)) & (places < len(sides))
-    numbers[~of_other, 1:4] = units[~of_other] @ axes
-    numbers[of_other, 4:7] = units[of_other] @ other_axes
-    return units, numbers
+    away += [between - ca.dot(between, edge) / (ca.sumsqr(edge) + SHORT) * edge for edge in (*edges, *other_edges)]
+    away += [ca.cross(u, v) for u in edges for v in other_edges]
+    units, numbers, distances = [], [], []
+    for place, vector in enumerate((*edges, *other_edges, *away)):
+        square = ca.sumsqr(vector)
+        unit = ca.if_else(ca.dot(vector, between) < 0.0, -vector, vector) / ca.sqrt(square + SHORT)
+        of_other = len(edges) <= place < len(edges) + len(other_edges)
+        own, others = (ca.SX.zeros(3), other.axes.T @ unit) if of_other else (one.axes.T @ unit, ca.SX.zeros(3))
+        units.append(unit)
+        numbers.append(ca.vertcat(1.0, own, others))
+        distances.append(ca.if_else(square > 4.0 * SHORT, one.apart(other, unit), -np.inf))
+    given = ca.SX.sym("directions", 3 * len(units))
+    along = [one.apart(other, given[3 * place : 3 * place + 3]) for place in range(len(units))]
+    columns = [ca.vertcat(*each) for each in (units, numbers, distances)]
+    options = {"cse": True}
+    return (
+        compiled_function(ca.Function("ways", [pair], [ca.densify(each) for each in columns], options)),
+        compiled_function(ca.Function("apart", [pair, given], [ca.vertcat(*along)], options)),
+    )
 
 
-def _cross(a: Array, b: Array) -> Array:
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
-def _edges(numbers: Array) -> list[Array]:
-    """Unit vectors along a box's sides, or along a cylinder's axis."""
-    disc = numbers[12:18].reshape(2, 3)
-    columns = [*numbers[3:12].reshape(3, 3), _cross(disc[0], disc[1])]
-    lengths = [float(np.linalg.norm(column)) for column in columns]
-    found: list[Array] = []
-    for column, length in zip(columns, lengths, strict=True):
-        if length > 1e-9 and all(abs(column @ each) < 0.999 * length for each in found):
-            found.append(column / length)
-    return found
-
-
-def _shortest(one: Array, other: Array) -> Array:
+def _shortest(one: PlacedShape, other: PlacedShape) -> Expression:
     """From the one's box to the other's, by going to and fro."""
-    from_one, from_other = one[:3], other[:3]
+    from_one, from_other = one.centre, other.centre
     for _ in range(STEPS):
         from_one = _nearest_in_box(one, from_other)
         from_other = _nearest_in_box(other, from_one)
-    return np.asarray(from_other - from_one)
+    return from_other - from_one
 
 
-def _nearest_in_box(numbers: Array, point: Array) -> Array:
-    box = _spans(numbers)[0]
-    squares = (box**2).sum(axis=0)
-    shares = np.divide((point - numbers[:3]) @ box, squares, out=np.zeros(3), where=squares > 0.0)
-    return np.asarray(numbers[:3] + box @ np.clip(shares, -1.0, 1.0))
+def _nearest_in_box(shape: PlacedShape, point: Expression) -> Expression:
+    nearest = shape.centre
+    for side in ca.horzsplit(shape.box):
+        square = ca.sumsqr(side)
+        share = ca.if_else(square > 0.0, ca.dot(point - shape.centre, side) / (square + SHORT), 0.0)
+        nearest += ca.fmin(ca.fmax(share, -1.0), 1.0) * side
+    return nearest

@@ -21,7 +21,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.reach import LOWEST, ReachProblem
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
-from evodesign.posture.separating_axes import parted_along
+from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.collisions import ROUNDING, PlacedShape, placed_shape
@@ -80,7 +80,7 @@ def test_the_best_direction_parts_bodies_as_far_as_they_are_apart(one: Shape, ot
         rotation, position = turned(rng)
         apart = by_coal(one, other, rotation, position)
         pair = np.stack([here, numbers(other, rotation, position)])[None]
-        found = parted_along(pair, np.inf)[0].distance
+        found = ways_of([pair])[0].distance
         assert found <= apart + 1e-6
         assert found > 0.0 or apart < 0.01
 

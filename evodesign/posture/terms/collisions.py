@@ -56,6 +56,7 @@ __all__ = [
     "OVERLAP",
     "PARTING",
     "ROUNDING",
+    "SHAPE",
     "Meeting",
     "PlacedShape",
     "directed",
@@ -66,6 +67,9 @@ __all__ = [
 
 PARTING, NUMBERS = "parting", 7
 """What an agent holds of the directions that part its bodies: on, a and b of each."""
+
+SHAPE = 36
+"""Numbers of a placed shape: centre, box, disc, ball, axes."""
 
 OFF = 10.0
 """What a row that is switched off has added to it [m]."""
@@ -148,10 +152,16 @@ class PlacedShape:
 
     @property
     def numbers(self) -> Expression:
-        """All of it as one column of 36."""
+        """All of it as one column of `SHAPE`."""
         return ca.vertcat(
             self.centre, *(ca.vec(each) for each in (self.box, self.disc, self.ball, self.axes))
         )
+
+    @staticmethod
+    def of(numbers: Expression) -> PlacedShape:
+        """That which a column of numbers stands for."""
+        columns = ca.reshape(numbers, 3, SHAPE // 3)
+        return PlacedShape(columns[:, 0], *ca.horzsplit(columns[:, 1:], [0, 3, 5, 8, 11]))
 
     def mirrored(self) -> PlacedShape:
         """Its mirror image in the plane y = 0."""
@@ -179,6 +189,11 @@ class PlacedShape:
             size = ca.sumsqr(self.disc[:, 0])
             reach += ca.sqrt(ca.sumsqr(self.disc.T @ direction) + ROUNDING**2 * size)
         return reach if self.ball.is_zero() else reach + ca.norm_2(self.ball.T @ direction)
+
+    def apart(self, other: PlacedShape, direction: Expression) -> Expression:
+        """How far another one is from this one along a unit vector [m]."""
+        between = ca.dot(direction, other.centre - self.centre)
+        return between - self.support(direction) - other.support(direction)
 
 
 def placed_shape(shape: ConvexShape, pose: Pose) -> PlacedShape:
@@ -257,9 +272,8 @@ def rows(body: Body) -> Iterator[Row]:
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
             direction = parted_by(numbers, *pairs[0])
             for one, other in pairs:
-                apart = ca.dot(direction, other.centre - one.centre)
-                apart -= one.support(direction) + other.support(direction)
-                found[MeetingKind.DIRECTION].append((meeting.label, apart + OFF * (1.0 - numbers[0])))
+                apart = one.apart(other, direction) + OFF * (1.0 - numbers[0])
+                found[MeetingKind.DIRECTION].append((meeting.label, apart))
     for kind, name, least in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", rules.margin),
         (MeetingKind.PLANE, "clear_of_plane", rules.margin / 2.0),
