@@ -103,14 +103,18 @@ def _functions() -> tuple[Any, Any]:
     between = other.centre - one.centre
     edges, other_edges = one.sides, other.sides
     away = [between, _shortest(one, other)]
-    away += [between - ca.dot(between, edge) / (ca.sumsqr(edge) + SHORT) * edge for edge in (*edges, *other_edges)]
+    away += [
+        between - ca.dot(between, edge) / (ca.sumsqr(edge) + SHORT) * edge for edge in (*edges, *other_edges)
+    ]
     away += [ca.cross(u, v) for u in edges for v in other_edges]
     units, numbers, distances = [], [], []
     for place, vector in enumerate((*edges, *other_edges, *away)):
         square = ca.sumsqr(vector)
         unit = ca.if_else(ca.dot(vector, between) < 0.0, -vector, vector) / ca.sqrt(square + SHORT)
         of_other = len(edges) <= place < len(edges) + len(other_edges)
-        own, others = (ca.SX.zeros(3), other.axes.T @ unit) if of_other else (one.axes.T @ unit, ca.SX.zeros(3))
+        own, others = (
+            (ca.SX.zeros(3), other.axes.T @ unit) if of_other else (one.axes.T @ unit, ca.SX.zeros(3))
+        )
         units.append(unit)
         numbers.append(ca.vertcat(1.0, own, others))
         distances.append(ca.if_else(square > 4.0 * SHORT, one.apart(other, unit), -np.inf))

@@ -33,11 +33,11 @@ from evodesign.records import Case, Hold, Task
 
 __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
 
-REACH_TRAINING = Training(designs=32, starts=8)
-HALF_TRAINING = Training(designs=48, starts=8)
+REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
+HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
 DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=2)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
-WHOLE_REACH_TRAINING = Training(designs=48, starts=6, portfolio=8, rounds=2)
+WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
 
 PARTED_STARTS = 1
 """Starts of the lowest load where bodies are kept apart, whose program is twice as large."""

@@ -8,7 +8,6 @@ Source: Sartore et al. 2022, Eq. 14 e to g; contact: `mechanics.contact`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import casadi as ca
@@ -49,7 +48,7 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
 
 def rows(body: Body) -> Iterator[Row]:
     """Each sole on the ground and flat (Eq. 14 e to g), within the limits of contact, and not turned far."""
-    most = math.sin(body.scene.stance.foot_yaw)
+    most = body.scene.stance.foot_yaw
     for side in body.form.sides:
         sole = body.poses[body.agent.soles[side]]
         level = ca.vertcat(sole.position[2], sole.rotation[0, 2], sole.rotation[1, 2])
@@ -65,7 +64,7 @@ def rows(body: Body) -> Iterator[Row]:
             MARGIN_UNIT,
             LimitGroup.CONTACT,
         )
-        turn, stance = sole.rotation[1, 0], LimitGroup.STANCE
+        turn, stance = ca.atan2(sole.rotation[1, 0], sole.rotation[0, 0]), LimitGroup.STANCE
         yield Row(f"{side}_foot_yaw", turn, -most, most, ("feet_yaw",), group=stance, posture_only=True)
 
 
