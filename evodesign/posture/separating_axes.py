@@ -57,7 +57,7 @@ class Ways:
         return float(self.apart.max())
 
     def ranked(self, rank: int) -> Array:
-        """The numbers of the best direction (rank 0), or of the best one that differs from all better ones."""
+        """The numbers of the best direction, or of the next best ones that differ from all better ones."""
         chosen: list[int] = []
         for place in np.argsort(-self.apart, kind="stable").tolist():
             if all(self.units[place] @ self.units[other] < DIFFERENT for other in chosen):
@@ -97,7 +97,7 @@ def ways_of(meetings: Sequence[Array]) -> list[Ways]:
 
 @cache
 def _functions() -> tuple[Any, Any]:
-    """Of two placed shapes: directions, their numbers and distances along them; and distances along given ones."""
+    """Of two shapes: directions, their numbers and distances along them; and distances along given ones."""
     pair = ca.SX.sym("pair", 2 * SHAPE)
     one, other = (PlacedShape.of(pair[half * SHAPE : (half + 1) * SHAPE]) for half in range(2))
     between = other.centre - one.centre
