@@ -64,7 +64,7 @@ class Ways:
                 chosen.append(place)
             if len(chosen) > rank:
                 break
-        return self.numbers[chosen[-1]]
+        return np.asarray(self.numbers[chosen[-1]])
 
 
 def ways_of(meetings: Sequence[Array]) -> list[Ways]:
