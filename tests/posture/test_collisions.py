@@ -239,7 +239,10 @@ def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
         for solution, after, before in zip(here.cases, ahead.cases, behind.cases, strict=True):
             found = tangents.of_case(values, solution) if solution.solved else None
             if isinstance(found, PostureDerivative) and after.solved and before.solved:
-                difference = (after.attempt.cost - before.attempt.cost) / 2.0
+                ends = [each.attempt.cost for each in (before, solution, after)]
+                if abs(ends[0] - 2.0 * ends[1] + ends[2]) > 1e-3 * ends[1]:  # from another fixed start
+                    continue
+                difference = (ends[2] - ends[0]) / 2.0
                 assert float(found.cost_slope @ step) == pytest.approx(difference, rel=1e-4, abs=1e-8)
                 compared += 1
-    assert compared >= 6
+    assert compared >= 7

@@ -7,7 +7,7 @@ in which another pair overlaps is refused by the check.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from evodesign.collision.clearance import BodyDistance
@@ -26,8 +26,11 @@ from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.tasks import Task
 
-_Posed = tuple[tuple[float, ...], Mapping[str, AgentPosture], float]
-"""A design, its postures and the load's height [m]."""
+_Met = tuple[str, BodyPair]
+"""A pair, after whom it is of."""
+
+_Near = dict[_Met, float]
+"""Pairs of a posture with their distances [m]."""
 
 __all__ = ["REACH", "found_meetings", "with_meetings"]
 
@@ -37,37 +40,63 @@ REACH = "reach"
 DESIGNS = 16
 """Whose postures are looked at."""
 
-NEAR, AT_REACH = 0.03, 0.002
-"""Distances [m] below which bodies are near, at the task's heights and at extreme ones."""
+NEAR, APART = 0.03, 0.002
+"""Distances [m] below which bodies are near each other, and hardly apart."""
 
 ROUNDS = 16
-"""How often the pair that overlaps most in the lowest posture of each design is added."""
+"""How often the pair that overlaps most in a posture is added."""
 
 
 def found_meetings(setting: Setting, tasks: Sequence[Task], *, symmetric: bool) -> dict[str, list[BodyPair]]:
-    """Pairs that come near each other, by agent name or `REACH`, in the order of the check.
+    """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
-    In the full fold of the lowest loads everything passes through everything, and a few rows part it all:
-    there the pair that overlaps most is kept apart, then the one that does so still, and so on.
+    In a fold everything passes through everything, and a few rows part it all: the pair that overlaps most in
+    each posture is kept apart, then the one that does so still, and so on. At the task's heights those that
+    are near each other in the end are kept apart as well.
     """
     finder = _Finder(setting, symmetric=symmetric)
     scene = finder.scene
-    found: dict[str, set[BodyPair]] = {ROBOT: set(), HUMAN: set()}
-    for values, postures, height in finder.held(tasks):
-        for agent, pair, _ in finder.near(values, postures, height, NEAR):
-            found[agent].add(pair)
-    kept = {pair for near in finder.at_reach(HIGHEST, set()) for pair in near}
-    for _ in range(ROUNDS):
-        near = finder.at_reach(LOWEST, kept)
-        more = {min(pairs, key=lambda pair: (pairs[pair], pair)) for pairs in near if pairs} - kept
-        if not more:
-            break
-        kept |= more
+    held, near = _deepest_first(lambda kept, left: finder.held(tasks, kept, left))
+    highest = {met for pairs in finder.at_reach(HIGHEST, set()).values() for met in _overlapping(pairs)}
+    lowest, _ = _deepest_first(lambda kept, left: finder.at_reach(LOWEST, kept), highest)
+    met = {*held, *near, *lowest}
+    found = {name: {pair for of, pair in met if of == name} for name in (ROBOT, HUMAN, REACH)}
     return {
         ROBOT: _in_order(scene.robot, found[ROBOT], finder.forms[0]),
-        REACH: _in_order(scene.robot, kept, finder.forms[0]),
+        REACH: _in_order(scene.robot, found[REACH], finder.forms[0]),
         HUMAN: _in_order(scene.human, found[HUMAN], finder.forms[1]),
     }
+
+
+def _overlapping(pairs: _Near) -> list[_Met]:
+    """Those that are hardly apart, the deepest overlap first."""
+    return sorted((met for met in pairs if pairs[met] < APART), key=lambda met: (pairs[met], met))
+
+
+def _deepest_first(
+    looked_at: Callable[[Collection[_Met], Collection[Hashable] | None], Mapping[Hashable, _Near]],
+    kept: Collection[_Met] = (),
+) -> tuple[set[_Met], set[_Met]]:
+    """Pairs, by whom they are of, that let none overlap when they are kept apart; and what is near then.
+
+    Args:
+        looked_at: what is near in each posture, from the pairs that are kept apart and the postures to look
+            at; None for all.
+        kept: pairs that are kept apart from the beginning.
+    """
+    found, latest = set(kept), dict[Hashable, _Near]()
+    left: Collection[Hashable] | None = None
+    for _ in range(ROUNDS):
+        latest.update(looked_at(found, left))
+        more: set[_Met] = set()
+        for pairs in latest.values():
+            deepest = {agent: (agent, pair) for agent, pair in reversed(_overlapping(pairs))}
+            more.update(deepest.values())
+        if not more - found:
+            break
+        found |= more
+        left = [posture for posture, pairs in latest.items() if _overlapping(pairs)]
+    return found, {met for pairs in latest.values() for met in pairs}
 
 
 class _Finder:
@@ -93,55 +122,80 @@ class _Finder:
 
         self._designs = [*spread_designs(len(space.parameters), given, lambda _: True, DESIGNS)]
 
-    def held(self, tasks: Sequence[Task]) -> Iterator[_Posed]:
-        """Of the tasks."""
+    def held(
+        self, tasks: Sequence[Task], parted: Collection[_Met], left: Collection[Hashable] | None
+    ) -> dict[Hashable, _Near]:
+        """What is near in postures of the tasks, by numbers of design and task.
+
+        Args:
+            tasks: of the problem.
+            parted: pairs that are kept apart.
+            left: the postures to look at; None for all.
+        """
         name, space = "symmetric" if self._symmetric else "whole", self._setting.space
-        scene = self._setting.scene
-        problem = JointPostures(name, self.forms, self._setting, SolverCache())
-        human = AgentModel.of(scene.human, scene.human.tree)
-        for values in self._designs:
-            robot = AgentModel.of(scene.robot, space.resized(scene.robot.tree, values))
-            checker = Checker(scene, robot, human)
-            for task in tasks:
+        free, scene = self._setting.scene, self._parting(parted)
+        forms = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
+        problem = JointPostures(name, forms, replace(self._setting, scene=scene), SolverCache())
+        human = AgentModel.of(free.human, free.human.tree)
+        found: dict[Hashable, _Near] = {}
+        for number, values in enumerate(self._designs):
+            robot = AgentModel.of(free.robot, space.resized(free.robot.tree, values))
+            checker = Checker(free, robot, human)
+            for place, task in enumerate(tasks):
+                if left is not None and (number, place) not in left:
+                    continue
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
-                    yield values, instant.postures, height
+                    near = self.near(values, instant.postures, height)
+                    found.setdefault((number, place), {}).update(near)
+        return found
 
-    def at_reach(self, sense: float, parted: Collection[BodyPair]) -> list[dict[BodyPair, float]]:
-        """The robot's pairs that are near in the extreme posture of each design, with their distances [m].
+    def at_reach(self, sense: float, parted: Collection[_Met]) -> dict[Hashable, _Near]:
+        """What of the robot is near in the extreme posture of each design, by its number.
 
         Args:
             sense: of the reach problem.
             parted: pairs that are kept apart.
         """
-        scene, rules = self._setting.scene, self.scene.robot.collisions
-        if rules is not None:
-            pairs = _in_order(self.scene.robot, set(parted), self.forms[0])
-            rules = replace(rules, parted_at_reach=tuple(pairs))
-            scene = replace(scene, robot=replace(scene.robot, collisions=rules))
+        scene = self._parting(parted)
         problem = ReachProblem(replace(self._setting, scene=scene), symmetric=self._symmetric)
-        found: list[dict[BodyPair, float]] = []
-        for values in self._designs:
+        found: dict[Hashable, _Near] = {}
+        for number, values in enumerate(self._designs):
             height, raw = problem.extreme(values, sense)
             if height is not None:
                 parts = {name.partition(".")[2]: value for name, value in raw.values.items()}
-                near = self.near(values, {ROBOT: self.forms[0].expand(parts)}, height, AT_REACH)
-                found.append({pair: distance for _, pair, distance in near})
+                near = self.near(values, {ROBOT: self.forms[0].expand(parts)}, height)
+                found[number] = {(REACH, pair): distance for (_, pair), distance in near.items()}
         return found
 
-    def near(
-        self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float, within: float
-    ) -> Iterator[tuple[str, BodyPair, float]]:
-        """Agent, pair and distance [m] of those that are nearer than a distance [m]."""
+    def _parting(self, pairs: Collection[_Met]) -> Scene:
+        """The scene without collisions but for some pairs."""
+
+        def parted(agent: Agent, form: Form) -> Agent:
+            own, reach = (
+                tuple(_in_order(agent, {pair for of, pair in pairs if of == name}, form))
+                for name in (agent.name, REACH)
+            )
+            if agent.collisions is None or not (own or reach):
+                return replace(agent, collisions=None)
+            return replace(agent, collisions=replace(agent.collisions, parted=own, parted_at_reach=reach))
+
+        robot, human = (
+            parted(agent, form)
+            for agent, form in zip((self.scene.robot, self.scene.human), self.forms, strict=True)
+        )
+        return replace(self._setting.scene, robot=robot, human=human)
+
+    def near(self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float) -> _Near:
+        """The pairs that are near, with their distances [m]."""
         robot = self._robot.resized(self._setting.space.resized(self.scene.robot.tree, values))
         models = {name: {ROBOT: robot, HUMAN: self._human}[name] for name in postures}
         solids = {name: model.solid for name, model in models.items() if model.solid is not None}
         poses = {
             name: (models[name].agent.sign, models[name].at(each).pose) for name, each in postures.items()
         }
-        for gap in SceneBodies(solids, self.scene.payload.size).near(poses, height, within):
-            for agent, pair in _own_pairs(gap):
-                yield agent, pair, gap.distance
+        gaps = SceneBodies(solids, self.scene.payload.size).near(poses, height, NEAR)
+        return {met: gap.distance for gap in gaps for met in _own_pairs(gap)}
 
 
 def _own_pairs(gap: BodyDistance) -> Iterator[tuple[str, BodyPair]]:

@@ -188,7 +188,10 @@ class PlacedShape:
         if not self.disc.is_zero():
             size = ca.sumsqr(self.disc[:, 0])
             reach += ca.sqrt(ca.sumsqr(self.disc.T @ direction) + ROUNDING**2 * size)
-        return reach if self.ball.is_zero() else reach + ca.norm_2(self.ball.T @ direction)
+        if not self.ball.is_zero():  # a row that is off has no direction, and a derivative all the same
+            size = ca.sumsqr(self.ball[:, 0])
+            reach += ca.sqrt(ca.sumsqr(self.ball.T @ direction) + ROUNDING**2 * size)
+        return reach
 
     def apart(self, other: PlacedShape, direction: Expression) -> Expression:
         """How far another one is from this one along a unit vector [m]."""
