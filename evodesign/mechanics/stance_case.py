@@ -1,12 +1,14 @@
-"""A robot that stands alone in a given posture: which torques its joints need.
+"""A robot that stands alone in a given posture, and what it carries there: which torques its joints need.
 
-Feet are flat on the ground; some joints move by as much as brings the centre of mass over the middle of the
-soles, which carry the weight in equal parts at their origins:
+Feet are flat on the ground and pass forces at the origins of their soles. Weights and loads L have a moment
+that such forces cannot carry: about the line between the soles on both feet, about every level line through
+the sole on one. Some joints move until there is none,
 
-    c_xy(q + d) = middle of the soles        tau = g_joint(q) - J_joint^T f,   f = weight / feet, upwards
+    0 = a . sum over weights and loads of (p(q + d) - middle of the soles) x F     for each such axis a
+    tau = g_joint(q) - J_joint^T L - J_feet^T f,       g_base - J_base^T L = J_feet,base^T f,   |f| least
 
-The offsets d are found by Gauss and Newton from zero, with differences. As many groups of joints as there are
-coordinates to bring over the soles: one for a symmetric posture on both feet, two on one foot.
+with as many groups of joints as there are axes; one foot may twist the ground, too. The offsets d are found
+by Newton from zero, with differences. Axes of loads are those of the first sole: ahead, to the left, upwards.
 
 Source: statics, as everywhere; pinocchio's centre of mass, Jacobians and gravity torques.
 """
@@ -15,21 +17,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from evodesign.body.placement import Vector
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
+from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
-__all__ = ["StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
+__all__ = ["StanceCase", "StanceTorques", "stance_torques"]
 
 Array = NDArray[np.float64]
 
 STEPS, DIFFERENCE, OVER = 30, 1e-6, 1e-10
-"""Most steps of Newton; step of its differences [rad]; distance [m] from the middle that counts as none."""
+"""Most steps of Newton; step of its differences [rad]; lever [m] of the moment that counts as none."""
 
 UNEVEN = 1e-3
 """Difference in height [m] of two soles that stand on the same ground."""
@@ -48,6 +51,8 @@ class StanceCase:
         soles: frames under the feet that carry.
         balance: groups of joints that move by the same offset each, until the robot is balanced.
         factor: how many times the torques of the case the peak torque must be.
+        loads: force [N] on frames of the robot, ahead, to the left and upwards.
+        friction: largest horizontal force of a foot, as a share of its vertical one.
     """
 
     name: str
@@ -55,134 +60,142 @@ class StanceCase:
     soles: tuple[str, ...]
     balance: tuple[tuple[str, ...], ...]
     factor: float
+    loads: tuple[tuple[str, Vector], ...] = ()
+    friction: float = math.inf
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StanceTorques:
     """What became of a case.
 
     Args:
         torques: [N m] of every joint that moves; none where the robot cannot stand so.
         offsets: of the groups of joints that balance [rad].
+        coordinates: pinocchio's, with the first sole level.
         reason: a sentence; empty where it stands.
     """
 
     torques: Mapping[str, float]
     offsets: tuple[float, ...] = ()
+    coordinates: Array = field(default_factory=lambda: np.zeros(0))
     reason: str = ""
 
 
-def stance_torques(body: FloatingBody, case: StanceCase) -> StanceTorques:
+def stance_torques(body: FloatingBody, case: StanceCase, near: Sequence[float] = ()) -> StanceTorques:
     """The joint torques of a robot that stands as a case says.
 
     Args:
         body: of the robot, with a design's masses; configurations are given in the world's axes.
         case: posture and feet.
+        near: offsets of a similar robot, from which they are sought; zero if left out.
     """
-    offsets = np.zeros(len(case.balance))
-    for _ in range(STEPS):
-        away = _away(body, case, offsets)
-        if np.abs(away).max() < OVER:
-            break
-        slopes = np.column_stack(
-            [
-                (_away(body, case, offsets + unit) - away) / DIFFERENCE
-                for unit in DIFFERENCE * np.eye(len(offsets))
-            ]
-        )
-        offsets = offsets - np.linalg.lstsq(slopes, away, rcond=None)[0]
-        if not np.abs(offsets).max() < FURTHEST:
-            break
-    if not np.abs(_away(body, case, offsets)).max() < 1e3 * OVER:
+    posture = _Posture(body, case)
+    offsets = posture.balanced(near or (0.0,) * len(case.balance))
+    if offsets is None:
         reason = f"the robot cannot stand as in '{case.name}': its centre of mass is not over its soles"
         return StanceTorques({}, reason=reason)
-    state = _level(body, case, offsets)
-    heights = [state.pose(sole)[1][2] for sole in case.soles]
+    heights = posture.heights(offsets)
     if max(heights) - min(heights) > UNEVEN:
         apart = max(heights) - min(heights)
         reason = f"the robot cannot stand as in '{case.name}': one sole is {apart:.3f} m above the other"
         return StanceTorques({}, reason=reason)
-    torques = _joint_rows(state, case, _mass(body))
-    return StanceTorques(dict(zip(body.joints, torques.tolist(), strict=True)), tuple(offsets.tolist()))
+    q, torques, feet = posture.held(offsets)
+    for sole, force in zip(case.soles, feet, strict=True):
+        if force[2] <= 0.0:
+            reason = f"the robot cannot stand as in '{case.name}': it tips, as {sole} would have to pull"
+            return StanceTorques({}, reason=reason)
+        if math.hypot(force[0], force[1]) > case.friction * force[2]:
+            reason = f"the robot cannot stand as in '{case.name}': {sole} slips"
+            return StanceTorques({}, reason=reason)
+    by_joint = dict(zip(body.joints, torques.tolist(), strict=True))
+    return StanceTorques(by_joint, tuple(offsets.tolist()), q)
 
 
-def stance_slopes(
-    body: FloatingBody, case: StanceCase, found: StanceTorques, places: Sequence[Sequence[str]]
-) -> Array:
-    """How the torques change with masses at some places, the robot balanced again.
+class _Posture:
+    """The posture of a case for any offsets, in pinocchio's own terms."""
 
-    Args:
-        body: as in `stance_torques`.
-        case: likewise.
-        found: what became of it.
-        places: groups of frames, at whose origins a group's mass is each.
-    Returns:
-        [N m/kg], shape (moving joints, groups).
-    """
-    offsets, mass = np.array(found.offsets), _mass(body)
-    state, units = _level(body, case, offsets), DIFFERENCE * np.eye(len(offsets))
-    center = _center_of_mass(state)
-    added, moved = [], []
-    for frames in places:
-        rows = GRAVITY * np.sum([state.jacobian_in_world(frame)[2] for frame in frames], axis=0)
-        for sole in case.soles:
-            rows = rows - GRAVITY * len(frames) / len(case.soles) * state.jacobian_in_world(sole)[2]
-        added.append(rows[ROOT:])
-        away = np.sum([(state.pose(frame)[1] - center)[:2] for frame in frames], axis=0) / mass
-        moved.append(away if len(case.soles) == 1 else away[:1])
-    torques = _joint_rows(state, case, mass)
-    middle = _away(body, case, offsets)
-    turned, back = [], []
-    for unit in units:
-        other = _level(body, case, offsets + unit)
-        turned.append((_joint_rows(other, case, mass) - torques) / DIFFERENCE)
-        back.append((_away(body, case, offsets + unit) - middle) / DIFFERENCE)
-    again = -np.linalg.lstsq(np.column_stack(back), np.column_stack(moved), rcond=None)[0]
-    return np.asarray(np.column_stack(added) + np.column_stack(turned) @ again)
+    def __init__(self, body: FloatingBody, case: StanceCase) -> None:
+        self._body, self._model, self._data = body, body.model, body.workspace.data
+        body.workspace.holds = None
+        places = dict(zip(body.joints, body.places.tolist(), strict=True))
+        self._q = pin.neutral(self._model)
+        for joint, position in case.joints.items():
+            self._q[places[joint]] = position
+        self._groups = [[places[joint] for joint in group] for group in case.balance]
+        frames = body.workspace.frames
+        self._soles = [frames[sole] for sole in case.soles]
+        self._loads = [(frames[frame], np.array(force)) for frame, force in case.loads]
+        self._weight = GRAVITY * pin.computeTotalMass(self._model)
+
+    def balanced(self, near: Sequence[float]) -> Array | None:
+        """The offsets [rad] of the groups; None where there are none that are small."""
+        offsets, slopes = np.array(near, float), None
+        before = np.inf
+        for _ in range(STEPS):
+            lever = self._lever(offsets)
+            size = float(np.abs(lever).max())
+            if size < OVER or not np.abs(offsets).max() < FURTHEST:
+                break
+            if slopes is None or size > 0.1 * before:
+                units = DIFFERENCE * np.eye(len(offsets))
+                columns = [(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units]
+                slopes = np.column_stack(columns)
+            before = size
+            offsets -= np.linalg.lstsq(slopes, lever, rcond=None)[0]
+        return offsets if np.abs(self._lever(offsets)).max() < 1e3 * OVER else None
+
+    def _moved(self, offsets: Array) -> Array:
+        q = self._q.copy()
+        for group, offset in zip(self._groups, offsets.tolist(), strict=True):
+            q[group] += offset
+        return q
+
+    def _lever(self, offsets: Array) -> Array:
+        """The moment that the feet cannot carry, over the weight [m]: ahead, and on one foot to the left.
+
+        Without loads it is how far the centre of mass is from over the middle of the soles.
+        """
+        model, data = self._model, self._data
+        center = pin.centerOfMass(model, data, self._moved(offsets), False)
+        soles = [pin.updateFramePlacement(model, data, sole) for sole in self._soles]
+        upright, places = soles[0].rotation.T, [sole.translation for sole in soles]
+        middle = places[0] if len(places) == 1 else 0.5 * (places[0] + places[1])
+        x, y, _ = upright @ (center - middle)
+        for frame, force in self._loads:
+            place = pin.updateFramePlacement(model, data, frame).translation
+            x, y = (x, y) + _lever_of(upright @ (place - middle), force) / self._weight
+        if len(soles) == 1:
+            return np.array([x, y])
+        line = upright @ (places[0] - places[1])
+        return np.array([(x * line[1] - y * line[0]) / math.hypot(line[0], line[1])])
+
+    def heights(self, offsets: Array) -> list[float]:
+        """Of the soles, along the normal of the first one [m]."""
+        pin.forwardKinematics(self._model, self._data, self._moved(offsets))
+        soles = [pin.updateFramePlacement(self._model, self._data, sole) for sole in self._soles]
+        return [float(soles[0].rotation[:, 2] @ sole.translation) for sole in soles]
+
+    def held(self, offsets: Array) -> tuple[Array, Array, list[Array]]:
+        """Pinocchio's coordinates, torques of the joints [N m], and the force of each foot [N]."""
+        model, data, q = self._model, self._data, self._moved(offsets)
+        pin.forwardKinematics(model, data, q)
+        upright = pin.updateFramePlacement(model, data, self._soles[0]).rotation.T
+        q[3:7] = pin.Quaternion(np.array(upright)).coeffs()
+        rows = np.array(pin.computeGeneralizedGravity(model, data, q))
+        for frame, force in self._loads:
+            rows -= self._jacobian(q, frame)[:3].T @ force
+        feet = [self._jacobian(q, sole) for sole in self._soles]
+        carried = [foot[:3] for foot in feet] if len(feet) > 1 else [feet[0][[0, 1, 2, 5]]]
+        columns = np.vstack(carried).T
+        forces = np.linalg.lstsq(columns[:ROOT], rows[:ROOT], rcond=1e-10)[0]
+        torques = (rows - columns @ forces)[self._body.order][ROOT:]
+        return q, torques, [forces[3 * number : 3 * number + 3] for number in range(len(feet))]
+
+    def _jacobian(self, q: Array, frame: int) -> Array:
+        axes = pin.LOCAL_WORLD_ALIGNED
+        return np.array(pin.computeFrameJacobian(self._model, self._data, q, frame, axes))
 
 
-def _joint_rows(state: BodyState, case: StanceCase, mass: float) -> Array:
-    """The torques of a state whose soles carry a mass [kg] in equal parts [N m]."""
-    rows = np.array(state.bias)
-    for sole in case.soles:
-        rows -= GRAVITY * mass / len(case.soles) * state.jacobian_in_world(sole)[2]
-    return np.asarray(rows[ROOT:])
-
-
-def _mass(body: FloatingBody) -> float:
-    return float(pin.computeTotalMass(body.model))
-
-
-def _configuration(body: FloatingBody, case: StanceCase, offsets: Array, angles: Array) -> Configuration:
-    positions = {joint: case.joints.get(joint, 0.0) for joint in body.joints}
-    for joints, offset in zip(case.balance, offsets, strict=True):
-        for joint in joints:
-            positions[joint] += float(offset)
-    return Configuration(np.zeros(3), angles, positions)
-
-
-def _level(body: FloatingBody, case: StanceCase, offsets: Array) -> BodyState:
-    """The state with the first sole level."""
-    still = np.zeros(body.size)
-    upright = body.at(_configuration(body, case, offsets, np.zeros(3)), still)
-    rotation, _ = upright.pose(case.soles[0])
-    angles = np.array(pin.rpy.matrixToRpy(rotation.T))
-    return body.at(_configuration(body, case, offsets, angles), still)
-
-
-def _away(body: FloatingBody, case: StanceCase, offsets: Array) -> Array:
-    """How far the centre of mass is from over the middle of the soles, ahead and to the left [m].
-
-    On two feet only ahead: a symmetric robot has it between them.
-    """
-    state = _level(body, case, offsets)
-    center = _center_of_mass(state)
-    middle = np.mean([state.pose(sole)[1] for sole in case.soles], axis=0)
-    away = (center - middle)[:2]
-    return np.asarray(away if len(case.soles) == 1 else away[:1])
-
-
-def _center_of_mass(state: BodyState) -> Array:
-    """In the world [m]."""
-    body = state.body
-    return np.array(pin.centerOfMass(body.model, body.workspace.data, state.coordinates, False))
+def _lever_of(place: Array, force: Array) -> Array:
+    """How far ahead and to the left the same moment would need a unit weight [N m]."""
+    return np.array([place[2] * force[0] - place[0] * force[2], place[2] * force[1] - place[1] * force[2]])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,10 @@ class Instant:
     time: float
     postures: Mapping[str, AgentPosture]
     disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
+
+    def with_postures(self, postures: Mapping[str, AgentPosture]) -> Instant:
+        """The same with some agents standing otherwise; it has no disturbances."""
+        return replace(self, postures={**self.postures, **postures})
 
 
 @dataclass(frozen=True, slots=True)

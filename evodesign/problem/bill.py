@@ -19,7 +19,6 @@ from evodesign.design.space import DesignSpace
 from evodesign.hardware.actuators import Actuator
 from evodesign.mechanics.scene import ROBOT, Agent
 from evodesign.mechanics.stance_case import StanceCase
-from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.records import CaseDetail
@@ -65,7 +64,7 @@ def _lifted(cases: Sequence[CaseDetail]) -> Iterator[Asked]:
 
 
 def _alone(robot: Agent, stances: Sequence[StanceCase], tree: Tree) -> Iterator[Asked]:
-    model = StanceModel(tuple(stances), AgentModel.of(robot, robot.tree))
+    model = StanceModel.of(tuple(stances), robot, tuple(actuators_of(tree)))
     for case, found in model.torques(tree) if stances else ():
         yield case.name, {joint: case.factor * torque for joint, torque in found.torques.items()}, True
 

@@ -11,8 +11,7 @@ A joint without an actuator takes no part. A scene's robot has the tree of the d
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,9 +19,9 @@ from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.hardware.structure import STRENGTHS
 from evodesign.mechanics import link_beams
-from evodesign.mechanics.scene import ROBOT, SIDES, Scene
+from evodesign.mechanics.floating_base import FloatingBody
+from evodesign.mechanics.scene import ROBOT, SIDES, Agent, Scene
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
-from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
@@ -111,29 +110,38 @@ OF_BEAMS = ("hand_deflection", "least_safety_factor")
 """How the names of quantities end that need walls of known stiffness and strength."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class StanceModel:
-    """The robot in the problem's standing postures, whatever its design.
+    """The robot in the problem's standing postures, whatever its design; results of one design are kept.
 
     Args:
         cases: of the problem.
-        robot: as pinocchio sees it, of any design.
-        latest: the tree of a design, and the robot with it.
+        body: the robot with all joints that move or are driven, of any design.
+        latest: the tree of a design, and the body with it.
     """
 
-    cases: tuple[StanceCase, ...]
-    robot: AgentModel
-    latest: tuple[Tree, AgentModel] | None = None
+    def __init__(
+        self,
+        cases: tuple[StanceCase, ...],
+        body: FloatingBody,
+        latest: tuple[Tree, FloatingBody] | None = None,
+    ) -> None:
+        self.cases, self.body = cases, body
+        self._latest = latest
+        self._known: tuple[Tree, list[tuple[StanceCase, StanceTorques]]] | None = None
 
-    def with_tree(self, tree: Tree) -> AgentModel:
-        """The robot with the tree of a design."""
-        known = self.latest
-        return known[1] if known is not None and known[0] is tree else self.robot.resized(tree)
+    @classmethod
+    def of(cls, cases: tuple[StanceCase, ...], agent: Agent, driven: Sequence[str]) -> StanceModel:
+        """Of a robot some of whose joints are driven, by name; they count whether they move in the lift."""
+        joints = (*agent.joints, *(name for name in driven if name not in agent.joints))
+        return cls(cases, FloatingBody.of_tree(agent.tree, joints, np.eye(3)))
 
     def torques(self, tree: Tree) -> list[tuple[StanceCase, StanceTorques]]:
         """What became of each case with the tree of a design."""
-        body = self.with_tree(tree).body
-        return [(case, stance_torques(body, case)) for case in self.cases]
+        if self._known is None or self._known[0] is not tree:
+            known = self._latest
+            body = known[1] if known is not None and known[0] is tree else self.body.resized(tree)
+            self._known = tree, [(case, stance_torques(body, case)) for case in self.cases]
+        return self._known[1]
 
     def needed(self, tree: Tree) -> list[Mapping[str, float]] | str:
         """Factor x |tau| [N m] of each case by joint, which peak torques must be; or why one cannot be."""

@@ -33,6 +33,7 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
+from evodesign.problem.demand import Demand
 from evodesign.problem.hardware_objectives import (
     StanceModel,
     actuator_mass,
@@ -82,6 +83,7 @@ class DesignResult:
         standing: what postures in which the robot stands alone ask of a tree's actuators.
         cases: one solution per undisturbed case of the problem, in its order.
         paper: the paper's tasks and their weights.
+        demand: on sized actuators; None without any, and where no posture was found.
     """
 
     scenes: tuple[Scene, ...]
@@ -94,6 +96,7 @@ class DesignResult:
     people_highest: float | None = None
     rated: tuple[float, ...] = ()
     standing: StanceModel | None = None
+    demand: Demand | None = None
 
     @property
     def program_values(self) -> Sequence[float]:
@@ -248,7 +251,7 @@ def shared_reach_height(result: DesignResult) -> float | None:
 
 def mass(result: DesignResult) -> float:
     """Mass of the robot [kg]."""
-    return float(sum(link.inertia.mass for link in result.tree.links))
+    return float(sum(link.mass for link in result.tree.links))
 
 
 def mass_of_actuators(result: DesignResult) -> float:

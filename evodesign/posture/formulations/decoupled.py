@@ -139,6 +139,19 @@ class DecoupledPostures:
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return self._trial(task, parameters, ends, checker)
 
+    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+        """The robot's postures of another design near those of a solution; the person stays."""
+        parameters = {"design": design, **self._beside(solution.case.task)}
+        known = start_from(self._robot.program, self._forms, solution.instants)
+        raw = self._robot.settled(parameters, self._robot.near.solve(parameters, known))
+        if raw.status is not Status.SOLVED:
+            return None
+        robots = instants_of(
+            layout_of(self._robot.program, ROBOT), self._forms[:1], self._setting.scene, raw.values
+        )
+        pairs = zip(solution.instants, robots, strict=True)
+        return replace(solution, instants=tuple(old.with_postures(new.postures) for old, new in pairs))
+
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The robot's parameters beside the design."""
         mass, value = self._setting.scene.payload.mass, self._values[task]

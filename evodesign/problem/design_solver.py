@@ -1,0 +1,182 @@
+"""Reach and postures of one design: reach first, then the postures of every case.
+
+With sized actuators postures are found in rounds (`problem.sizing`): the first asks for reach and begins all
+cases; the last one checks them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+
+from evodesign.mechanics.added_mass import AddedMasses
+from evodesign.posture.allocation import shared_scene
+from evodesign.posture.check import AgentModel, Checker, Unchecked
+from evodesign.posture.formulations.reach import Reach, common_reach
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import CaseSolution, Neighbour
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.demand import SizedRobot
+from evodesign.problem.hardware_objectives import StanceModel
+from evodesign.problem.inner import InnerProblems
+from evodesign.problem.objectives import DesignResult
+from evodesign.problem.sizing import sized_result
+from evodesign.records import Case, Status
+
+__all__ = ["DesignSolver"]
+
+Cases = tuple[CaseSolution, ...]
+
+
+class DesignSolver:
+    """Solves any number of designs; no state is carried from one to the next.
+
+    Args:
+        problem: whose designs they are.
+        known: what is known beforehand.
+        inner: its inner problems.
+    """
+
+    def __init__(self, problem: DesignProblem, known: Precomputed, inner: InnerProblems) -> None:
+        self.problem, self.known, self.inner = problem, known, inner
+        robot, space = problem.scene.robot, problem.space
+        self.growths = space.growths(robot.tree)
+        self.tree = space.with_fixed_walls(robot.tree)
+        self.robot = AgentModel.of(robot, self.tree)
+        self.people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
+
+    def solve(self, values: Sequence[float]) -> DesignResult:
+        """Reach and postures of a design given as one number per parameter."""
+        design = _Design(self, values)
+        if not self.problem.space.margins:
+            return design.result(values)
+        result = sized_result(self.problem.space, values, design.sized_robot, design)
+        return replace(result, values=tuple(values), rated=tuple(result.values))
+
+    @cached_property
+    def alone(self) -> StanceModel:
+        """The robot that stands alone, of any design."""
+        agent, driven = self.robot.agent, self.problem.space.driven
+        if set(driven) <= set(agent.joints):
+            return StanceModel(self.problem.stances, self.robot.body)
+        return StanceModel.of(self.problem.stances, replace(agent, tree=self.tree), driven)
+
+    @cached_property
+    def added(self) -> AddedMasses:
+        """The groups of sized actuators."""
+        space, joints = self.problem.space, self.tree.joint_by_name
+        groups = [space.parameters[place].joints for place in space.margins]
+        return AddedMasses(self.alone.body, [[joints[name].child for name in group] for group in groups])
+
+
+class _Design:
+    """One design, with actuators of any size.
+
+    Args:
+        solver: of its problem.
+        values: of the design; those of margins do not count.
+    """
+
+    def __init__(self, solver: DesignSolver, values: Sequence[float]) -> None:
+        self._solver, self._problem = solver, solver.problem
+        self._tree = solver.problem.space.without_actuators(solver.tree, values, solver.growths)
+        self._robot = solver.robot.resized(self._tree)
+        self._first: tuple[tuple[float, ...], Reach] | None = None
+
+    @cached_property
+    def sized_robot(self) -> SizedRobot:
+        """The robot without its actuators."""
+        model, solver = self._solver.alone, self._solver
+        body = self._robot.body if model.body is solver.robot.body else model.body.resized(self._tree)
+        return SizedRobot(self._robot.agent, self._tree, body, self._problem.stances, solver.added)
+
+    def first(self, values: Sequence[float]) -> Cases:
+        """Postures of every case, not checked."""
+        reach = self._reach(values)
+        self._first = tuple(values), reach
+        return self._cases(values, reach, Unchecked())
+
+    def following(self, values: Sequence[float], before: Cases) -> Cases:
+        """Those near the postures of another round, not checked."""
+        found: list[CaseSolution] = []
+        for solution in before:
+            postures = self._solver.inner.postures[solution.case.pair]
+            near = postures.followed(values, solution) if solution.solved else None
+            if near is None and self._first is not None:
+                near = self._in_case(values, solution.case, self._first[1], Unchecked(), None)
+            found.append(near or solution)
+        return tuple(found)
+
+    def checked(self, values: Sequence[float], before: Cases) -> DesignResult:
+        """The results near them; cases that have no posture there have none."""
+        return self.result(values, before)
+
+    def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
+        """The results for the values that programs are given; near those of an earlier round."""
+        problem, solver = self._problem, self._solver
+        tree = problem.space.with_actuators(self._tree, values)
+        robot = self._robot.driven(tree) if problem.space.driven else self._robot
+        if self._first is None:
+            reach = self._reach(values)
+        else:
+            reaches = solver.inner.reaches.values()
+            reach = common_reach([each.followed(values, self._first[0]) for each in reaches])
+        check = Checker(problem.scene, robot, solver.people[problem.scene.human.label])
+        alone = solver.alone
+        body = robot.body if alone.body is solver.robot.body else None
+        return DesignResult(
+            scenes=problem.scenes,
+            space=problem.space,
+            values=tuple(values),
+            tree=tree,
+            standing=StanceModel(alone.cases, alone.body, None if body is None else (tree, body)),
+            reach=reach,
+            cases=self._cases(values, reach, check, before),
+            paper=problem.joint,
+            people_highest=min(
+                (person.highest for person in solver.known.person_reaches.values()), default=None
+            ),
+        )
+
+    def _reach(self, values: Sequence[float]) -> Reach:
+        return common_reach([reach.solve(values) for reach in self._solver.inner.reaches.values()])
+
+    def _cases(self, values: Sequence[float], reach: Reach, check: Checker, before: Cases = ()) -> Cases:
+        problem, found = self._problem, list[CaseSolution]()
+        for number, case in enumerate(problem.cases):
+            if before and not before[number].solved:
+                found.append(before[number])
+                continue
+            scene = shared_scene(problem.scene_of(case), problem.space, values)
+            checker = check.elsewhere(scene, self._solver.people[case.person])
+            near = Neighbour(before[number], same_load=True) if before else self._neighbour(found, case)
+            found.append(self._in_case(values, case, reach, checker, near))
+        return tuple(found)
+
+    def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
+        """The most similar case of the same task that was solved before: of the same load if there is one."""
+        joints, best = self._problem.scene_of(case).human.joints, None
+        for solution in before:
+            other = self._problem.scene_of(solution.case)
+            if solution.solved and solution.case.task == case.task and other.human.joints == joints:
+                same_load = solution.case.payload == case.payload
+                if best is None or same_load >= best.same_load:
+                    best = Neighbour(solution, same_load)
+        return best
+
+    def _in_case(
+        self,
+        values: Sequence[float],
+        case: Case,
+        reach: Reach,
+        checker: Checker,
+        neighbour: Neighbour | None,
+    ) -> CaseSolution:
+        distance = reach.beyond(case.task.heights)
+        if distance is None:
+            return CaseSolution(case, reach.status, reach.reason)
+        if distance > 0.0:
+            reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
+            return CaseSolution(case, Status.INFEASIBLE, reason)
+        return self._solver.inner.postures[case.pair].solve(values, case.task, checker, neighbour)
