@@ -17,17 +17,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from evodesign.body.placement import Vector
+from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
-__all__ = ["StanceCase", "StanceTorques", "stance_torques"]
+__all__ = ["StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
 
 Array = NDArray[np.float64]
 
@@ -64,20 +65,18 @@ class StanceCase:
     friction: float = math.inf
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class StanceTorques:
     """What became of a case.
 
     Args:
         torques: [N m] of every joint that moves; none where the robot cannot stand so.
         offsets: of the groups of joints that balance [rad].
-        coordinates: pinocchio's, with the first sole level.
         reason: a sentence; empty where it stands.
     """
 
     torques: Mapping[str, float]
     offsets: tuple[float, ...] = ()
-    coordinates: Array = field(default_factory=lambda: np.zeros(0))
     reason: str = ""
 
 
@@ -99,7 +98,7 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: Sequence[float] =
         apart = max(heights) - min(heights)
         reason = f"the robot cannot stand as in '{case.name}': one sole is {apart:.3f} m above the other"
         return StanceTorques({}, reason=reason)
-    q, torques, feet = posture.held(offsets)
+    _, torques, feet = posture.held(offsets)
     for sole, force in zip(case.soles, feet, strict=True):
         if force[2] <= 0.0:
             reason = f"the robot cannot stand as in '{case.name}': it tips, as {sole} would have to pull"
@@ -108,7 +107,19 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: Sequence[float] =
             reason = f"the robot cannot stand as in '{case.name}': {sole} slips"
             return StanceTorques({}, reason=reason)
     by_joint = dict(zip(body.joints, torques.tolist(), strict=True))
-    return StanceTorques(by_joint, tuple(offsets.tolist()), q)
+    return StanceTorques(by_joint, tuple(offsets.tolist()))
+
+
+def stance_slopes(body: FloatingBody, case: StanceCase, found: StanceTorques, added: AddedMasses) -> Array:
+    """How the torques change with added masses [N m/kg], the robot balanced again; shape (joints, groups).
+
+    Args:
+        body: as in `stance_torques`.
+        case: likewise.
+        found: what became of it.
+        added: groups of masses.
+    """
+    return _Posture(body, case).slopes(np.array(found.offsets), added)
 
 
 class _Posture:
@@ -157,17 +168,25 @@ class _Posture:
         """
         model, data = self._model, self._data
         center = pin.centerOfMass(model, data, self._moved(offsets), False)
-        soles = [pin.updateFramePlacement(model, data, sole) for sole in self._soles]
-        upright, places = soles[0].rotation.T, [sole.translation for sole in soles]
-        middle = places[0] if len(places) == 1 else 0.5 * (places[0] + places[1])
-        x, y, _ = upright @ (center - middle)
+        upright, middle, axes = self._ground()
+        lever: Array = (upright @ (center - middle))[:2]
         for frame, force in self._loads:
-            place = pin.updateFramePlacement(model, data, frame).translation
-            x, y = (x, y) + _lever_of(upright @ (place - middle), force) / self._weight
+            x, y, z = upright @ (pin.updateFramePlacement(model, data, frame).translation - middle)
+            lever += np.array([z * force[0] - x * force[2], z * force[1] - y * force[2]]) / self._weight
+        return lever @ axes
+
+    def _ground(self) -> tuple[Array, Array, Array]:
+        """Axes of the first sole by rows, middle of the soles [m], and what the feet cannot carry.
+
+        That is the parts of a lever ahead and to the left, by columns; all of pinocchio's latest posture.
+        """
+        model, data = self._model, self._data
+        soles = [pin.updateFramePlacement(model, data, sole) for sole in self._soles]
+        upright, places = np.array(soles[0].rotation.T), [sole.translation for sole in soles]
         if len(soles) == 1:
-            return np.array([x, y])
-        line = upright @ (places[0] - places[1])
-        return np.array([(x * line[1] - y * line[0]) / math.hypot(line[0], line[1])])
+            return upright, np.array(places[0]), np.eye(2)
+        x, y, _ = upright @ (places[0] - places[1])
+        return upright, 0.5 * (places[0] + places[1]), np.array([[y], [-x]]) / math.hypot(x, y)
 
     def heights(self, offsets: Array) -> list[float]:
         """Of the soles, along the normal of the first one [m]."""
@@ -184,18 +203,30 @@ class _Posture:
         rows = np.array(pin.computeGeneralizedGravity(model, data, q))
         for frame, force in self._loads:
             rows -= self._jacobian(q, frame)[:3].T @ force
+        feet = self._feet(q)
+        forces = np.linalg.lstsq(feet[:ROOT], rows[:ROOT], rcond=1e-10)[0]
+        torques = (rows - feet @ forces)[self._body.order][ROOT:]
+        return q, torques, [forces[3 * number : 3 * number + 3] for number in range(len(self._soles))]
+
+    def _feet(self, q: Array) -> Array:
+        """Transposed Jacobians of what feet pass: forces, and of a single foot the moment about z."""
         feet = [self._jacobian(q, sole) for sole in self._soles]
-        carried = [foot[:3] for foot in feet] if len(feet) > 1 else [feet[0][[0, 1, 2, 5]]]
-        columns = np.vstack(carried).T
-        forces = np.linalg.lstsq(columns[:ROOT], rows[:ROOT], rcond=1e-10)[0]
-        torques = (rows - columns @ forces)[self._body.order][ROOT:]
-        return q, torques, [forces[3 * number : 3 * number + 3] for number in range(len(feet))]
+        passed = [foot[:3] for foot in feet] if len(feet) > 1 else [feet[0][[0, 1, 2, 5]]]
+        return np.vstack(passed).T
+
+    def slopes(self, offsets: Array, added: AddedMasses) -> Array:
+        """How torques change with added masses [N m/kg], the robot balanced again; shape (joints, groups)."""
+        q, torques, _ = self.held(offsets)
+        fixed = joint_slopes(added.rows(self._body, q), self._feet(q), self._body.order)
+        upright, middle, axes = self._ground()
+        places = added.groups @ (added.places(self._body) - middle) @ upright.T
+        moved = places[:, :2] @ axes * GRAVITY / self._weight
+        lever, units = self._lever(offsets), DIFFERENCE * np.eye(len(offsets))
+        turned = [(self.held(offsets + unit)[1] - torques) / DIFFERENCE for unit in units]
+        back = [(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units]
+        again = np.linalg.lstsq(np.column_stack(back), moved.T, rcond=None)[0]
+        return np.asarray(fixed - np.column_stack(turned) @ again)
 
     def _jacobian(self, q: Array, frame: int) -> Array:
         axes = pin.LOCAL_WORLD_ALIGNED
         return np.array(pin.computeFrameJacobian(self._model, self._data, q, frame, axes))
-
-
-def _lever_of(place: Array, force: Array) -> Array:
-    """How far ahead and to the left the same moment would need a unit weight [N m]."""
-    return np.array([place[2] * force[0] - place[0] * force[2], place[2] * force[1] - place[1] * force[2]])

@@ -8,21 +8,19 @@ A joint that does not move in the lift, but is driven, counts in standing cases.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.design.space import DesignSpace
 from evodesign.hardware.actuators import actuator_law
-from evodesign.mechanics.added_mass import AddedMasses
+from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.floating_base import Configuration, FloatingBody
 from evodesign.mechanics.scene import ROBOT, Agent
-from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
+from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_slopes, stance_torques
 from evodesign.posture.results import CaseSolution
-from evodesign.tree.equip import mounted_solids
-from evodesign.tree.model import Tree
 
 __all__ = ["Demand", "SizedRobot", "demand_of"]
 
@@ -31,18 +29,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class SizedRobot:
-    """A design's robot without its actuators, which rounds put into it.
+    """A design's robot without the actuators that are sized, which rounds put into it.
 
     Args:
         agent: as the file describes it.
-        tree: of the design.
-        body: of the tree, with all joints that move or are driven.
+        body: with all joints that move or are driven.
         stances: in which it stands alone.
         added: the groups of sized actuators.
     """
 
     agent: Agent
-    tree: Tree
     body: FloatingBody
     stances: tuple[StanceCase, ...]
     added: AddedMasses
@@ -69,6 +65,11 @@ class Demand:
     torques: Array
     slopes: Array
     alone: tuple[StanceTorques, ...]
+
+    def of_lift(self, cases: Sequence[CaseSolution]) -> Demand:
+        """The same with other postures of the lift."""
+        rows = _lift_rows(cases, self.joints)
+        return replace(self, torques=np.vstack([rows, self.torques[len(rows) :]]))
 
     def at(self, sizes: Mapping[str, float]) -> dict[str, float]:
         """The largest |tau| of each group at other sizes [N m], in the same postures."""
@@ -100,10 +101,11 @@ def demand_of(
     """
     if not all(solution.solved for solution in cases):
         return "a height is not held"
-    body = robot.body.carrying(mounted_solids(robot.tree, space.actuators(values)))
-    parameters, joints = [space.parameters[place] for place in space.margins], body.joints
-    share = 1.0 / float(actuator_law().peak(1.0))
-    rows = [[torques.get(name, 0.0) for name in joints] for torques in _lifted(cases)]
+    parameters, joints = [space.parameters[place] for place in space.margins], robot.body.joints
+    law = actuator_law()
+    body = robot.added.loaded(robot.body, [law.mass(law.peak(values[place])) for place in space.margins])
+    share = 1.0 / float(law.peak(1.0))
+    rows = _lift_rows(cases, joints)
     alone = []
     near = [each.offsets for each in before.alone] if before is not None else [()] * len(robot.stances)
     for case, offsets in zip(robot.stances, near, strict=True):
@@ -124,12 +126,14 @@ def demand_of(
     )
 
 
-def _lifted(cases: Sequence[CaseSolution]) -> Iterator[Mapping[str, float]]:
-    """Torques of the robot in every case of the lift, as in `DesignResult.every_case`."""
-    for solution in cases:
-        for instant in solution.instants:
-            for postures in (instant.postures, *instant.disturbed.values()):
-                yield postures[ROBOT].torques
+def _lift_rows(cases: Sequence[CaseSolution], joints: Sequence[str]) -> list[list[float]]:
+    """Torques of the robot's joints in every case of the lift [N m], as in `DesignResult.every_case`."""
+    return [
+        [postures[ROBOT].torques.get(name, 0.0) for name in joints]
+        for solution in cases
+        for instant in solution.instants
+        for postures in (instant.postures, *instant.disturbed.values())
+    ]
 
 
 def _slopes(
@@ -145,8 +149,10 @@ def _slopes(
         posture = instant.postures[ROBOT]
         positions = {**dict.fromkeys(body.joints, 0.0), **posture.joints}
         place = Configuration(posture.base_position, posture.base_angles, positions)
-        coordinates = body.at(place, np.zeros(body.size)).coordinates
-        slopes += [robot.added.slopes(body, coordinates, soles)] * (1 + len(instant.disturbed))
+        state = body.at(place, np.zeros(body.size))
+        feet = np.vstack([state.jacobian_in_frame(sole) for sole in soles])[:, np.argsort(body.order)].T
+        rows = robot.added.rows(body, state.coordinates)
+        slopes += [joint_slopes(rows, feet, body.order)] * (1 + len(instant.disturbed))
     for case, found in zip(robot.stances, alone, strict=True):
-        slopes.append(case.factor * share * robot.added.slopes(body, found.coordinates, case.soles))
+        slopes.append(case.factor * share * stance_slopes(body, case, found, robot.added))
     return np.array(slopes)

@@ -23,6 +23,7 @@ from evodesign.problem.inner import InnerProblems
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sizing import sized_result
 from evodesign.records import Case, Status
+from evodesign.tree.equip import mounted_solids
 
 __all__ = ["DesignSolver"]
 
@@ -79,17 +80,20 @@ class _Design:
     """
 
     def __init__(self, solver: DesignSolver, values: Sequence[float]) -> None:
-        self._solver, self._problem = solver, solver.problem
+        self._solver, self._problem, self._values = solver, solver.problem, values
         self._tree = solver.problem.space.without_actuators(solver.tree, values, solver.growths)
         self._robot = solver.robot.resized(self._tree)
         self._first: tuple[tuple[float, ...], Reach] | None = None
 
     @cached_property
     def sized_robot(self) -> SizedRobot:
-        """The robot without its actuators."""
-        model, solver = self._solver.alone, self._solver
+        """The robot without the actuators that are sized."""
+        model, solver, space = self._solver.alone, self._solver, self._problem.space
         body = self._robot.body if model.body is solver.robot.body else model.body.resized(self._tree)
-        return SizedRobot(self._robot.agent, self._tree, body, self._problem.stances, solver.added)
+        chosen = {name: each for name, each in space.actuators(self._values).items() if each.holds}
+        if chosen:
+            body = body.carrying(mounted_solids(self._tree, chosen))
+        return SizedRobot(self._robot.agent, body, self._problem.stances, solver.added)
 
     def first(self, values: Sequence[float]) -> Cases:
         """Postures of every case, not checked."""

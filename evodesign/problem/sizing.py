@@ -88,8 +88,8 @@ def sized_result(
     result = rounds.checked(ended, cases[-1])
     if not all(each.solved for each in result.cases):
         return result
-    final = demand_of(space, ended, robot, result.cases, latest if isinstance(latest, Demand) else None)
-    if isinstance(final, Demand) and _left(final, sizing, margins) <= 2.0 * TOLERANCE:
+    final = latest.of_lift(result.cases) if isinstance(latest, Demand) else None
+    if final is not None and _left(final, sizing, margins) <= 2.0 * TOLERANCE:
         return replace(result, demand=final)
     lost = replace(sizing, status=Status.ITERATION_LIMIT)
     return replace(result, cases=_failed(result.cases, lost, "checked postures ask for other actuators"))
