@@ -16,7 +16,7 @@ Source: statics, as everywhere; pinocchio's centre of mass, Jacobians and gravit
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,8 +35,14 @@ Array = NDArray[np.float64]
 STEPS, DIFFERENCE, OVER = 30, 1e-6, 1e-10
 """Most steps of Newton; step of its differences [rad]; lever [m] of the moment that counts as none."""
 
+FEWER = 0.1
+"""Share of the lever that a step leaves with slopes that are good enough for the next."""
+
 UNEVEN = 1e-3
 """Difference in height [m] of two soles that stand on the same ground."""
+
+FLAT = 1e-12
+"""Determinant of slopes [m/rad] below which joints balance nothing."""
 
 FURTHEST = math.radians(40.0)
 """Largest offset of a joint [rad]."""
@@ -72,24 +78,28 @@ class StanceTorques:
     Args:
         torques: [N m] of every joint that moves; none where the robot cannot stand so.
         offsets: of the groups of joints that balance [rad].
+        slopes: of what is balanced by the offsets, about [m/rad].
         reason: a sentence; empty where it stands.
     """
 
     torques: Mapping[str, float]
     offsets: tuple[float, ...] = ()
+    slopes: Array | None = None
     reason: str = ""
 
 
-def stance_torques(body: FloatingBody, case: StanceCase, near: Sequence[float] = ()) -> StanceTorques:
+def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | None = None) -> StanceTorques:
     """The joint torques of a robot that stands as a case says.
 
     Args:
         body: of the robot, with a design's masses; configurations are given in the world's axes.
         case: posture and feet.
-        near: offsets of a similar robot, from which they are sought; zero if left out.
+        near: a similar robot, whose offsets are where they are sought first; zero if left out.
     """
     posture = _Posture(body, case)
-    offsets = posture.balanced(near or (0.0,) * len(case.balance))
+    offsets, slopes = posture.balanced(near)
+    if offsets is None and near is not None:
+        return stance_torques(body, case)
     if offsets is None:
         reason = f"the robot cannot stand as in '{case.name}': its centre of mass is not over its soles"
         return StanceTorques({}, reason=reason)
@@ -107,7 +117,7 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: Sequence[float] =
             reason = f"the robot cannot stand as in '{case.name}': {sole} slips"
             return StanceTorques({}, reason=reason)
     by_joint = dict(zip(body.joints, torques.tolist(), strict=True))
-    return StanceTorques(by_joint, tuple(offsets.tolist()))
+    return StanceTorques(by_joint, tuple(offsets.tolist()), slopes)
 
 
 def stance_slopes(body: FloatingBody, case: StanceCase, found: StanceTorques, added: AddedMasses) -> Array:
@@ -138,22 +148,30 @@ class _Posture:
         self._loads = [(frames[frame], np.array(force)) for frame, force in case.loads]
         self._weight = GRAVITY * pin.computeTotalMass(self._model)
 
-    def balanced(self, near: Sequence[float]) -> Array | None:
-        """The offsets [rad] of the groups; None where there are none that are small."""
-        offsets, slopes = np.array(near, float), None
-        before = np.inf
+    def balanced(self, near: StanceTorques | None) -> tuple[Array | None, Array | None]:
+        """The offsets [rad] of the groups, and slopes; None where there are none that are small."""
+        offsets, slopes, before = np.zeros(len(self._groups)), None, np.inf
+        if near is not None and near.offsets:
+            offsets, slopes = np.array(near.offsets), near.slopes
         for _ in range(STEPS):
             lever = self._lever(offsets)
-            size = float(np.abs(lever).max())
-            if size < OVER or not np.abs(offsets).max() < FURTHEST:
-                break
-            if slopes is None or size > 0.1 * before:
-                units = DIFFERENCE * np.eye(len(offsets))
-                columns = [(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units]
-                slopes = np.column_stack(columns)
+            size = max(abs(each) for each in lever.tolist())
+            if size < OVER:
+                return offsets, slopes
+            if slopes is None or size > FEWER * before:
+                slopes = self._slopes(offsets, lever)
             before = size
-            offsets -= np.linalg.lstsq(slopes, lever, rcond=None)[0]
-        return offsets if np.abs(self._lever(offsets)).max() < 1e3 * OVER else None
+            if abs(float(np.linalg.det(slopes))) < FLAT:
+                break
+            offsets = offsets - np.linalg.solve(slopes, lever)
+            if not max(abs(each) for each in offsets.tolist()) < FURTHEST:
+                break
+        return None, None
+
+    def _slopes(self, offsets: Array, lever: Array) -> Array:
+        """D lever / d offsets [m/rad], by differences."""
+        units = DIFFERENCE * np.eye(len(offsets))
+        return np.column_stack([(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units])
 
     def _moved(self, offsets: Array) -> Array:
         q = self._q.copy()
@@ -173,7 +191,7 @@ class _Posture:
         for frame, force in self._loads:
             x, y, z = upright @ (pin.updateFramePlacement(model, data, frame).translation - middle)
             lever += np.array([z * force[0] - x * force[2], z * force[1] - y * force[2]]) / self._weight
-        return lever @ axes
+        return np.asarray(lever @ axes)
 
     def _ground(self) -> tuple[Array, Array, Array]:
         """Axes of the first sole by rows, middle of the soles [m], and what the feet cannot carry.
@@ -221,10 +239,9 @@ class _Posture:
         upright, middle, axes = self._ground()
         places = added.groups @ (added.places(self._body) - middle) @ upright.T
         moved = places[:, :2] @ axes * GRAVITY / self._weight
-        lever, units = self._lever(offsets), DIFFERENCE * np.eye(len(offsets))
+        units = DIFFERENCE * np.eye(len(offsets))
         turned = [(self.held(offsets + unit)[1] - torques) / DIFFERENCE for unit in units]
-        back = [(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units]
-        again = np.linalg.lstsq(np.column_stack(back), moved.T, rcond=None)[0]
+        again = np.linalg.solve(self._slopes(offsets, self._lever(offsets)), moved.T)
         return np.asarray(fixed - np.column_stack(turned) @ again)
 
     def _jacobian(self, q: Array, frame: int) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.method import MethodName
+from evodesign.nlp.solver import RawSolution
 from evodesign.records import Case, Status
 
 __all__ = ["AgentPosture", "Attempt", "CaseSolution", "Instant", "Neighbour"]
@@ -105,6 +106,7 @@ class CaseSolution:
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         attempt: that led to the postures; None unless solved.
+        unchecked: the robot's solve that gave the instants, where nothing has been checked.
     """
 
     case: Case
@@ -114,6 +116,7 @@ class CaseSolution:
     residuals: Mapping[str, float] = field(default_factory=dict)
     attempts: tuple[Attempt, ...] = ()
     attempt: Attempt | None = None
+    unchecked: RawSolution | None = None
 
     @property
     def solved(self) -> bool:

@@ -35,12 +35,14 @@ class SizedRobot:
         agent: as the file describes it.
         body: with all joints that move or are driven.
         stances: in which it stands alone.
+        near: a similar robot in them.
         added: the groups of sized actuators.
     """
 
     agent: Agent
     body: FloatingBody
     stances: tuple[StanceCase, ...]
+    near: tuple[StanceTorques, ...]
     added: AddedMasses
 
 
@@ -107,9 +109,9 @@ def demand_of(
     share = 1.0 / float(law.peak(1.0))
     rows = _lift_rows(cases, joints)
     alone = []
-    near = [each.offsets for each in before.alone] if before is not None else [()] * len(robot.stances)
-    for case, offsets in zip(robot.stances, near, strict=True):
-        found = stance_torques(body, case, offsets)
+    near = robot.near if before is None else before.alone
+    for case, similar in zip(robot.stances, near, strict=True):
+        found = stance_torques(body, case, similar)
         if found.reason:
             return found.reason
         alone.append(found)

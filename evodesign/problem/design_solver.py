@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import cached_property
 
 from evodesign.mechanics.added_mass import AddedMasses
+from evodesign.mechanics.stance_case import StanceTorques
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker, Unchecked
 from evodesign.posture.formulations.reach import Reach, common_reach
@@ -64,6 +65,13 @@ class DesignSolver:
         return StanceModel.of(self.problem.stances, replace(agent, tree=self.tree), driven)
 
     @cached_property
+    def near(self) -> tuple[StanceTorques, ...]:
+        """The unscaled robot in each standing case."""
+        space = self.problem.space
+        unscaled = space.given(space.unscaled(self.problem.scene.robot.tree), {})
+        return tuple(found for _, found in self.alone.torques(space.resized(self.tree, unscaled)))
+
+    @cached_property
     def added(self) -> AddedMasses:
         """The groups of sized actuators."""
         space, joints = self.problem.space, self.tree.joint_by_name
@@ -83,7 +91,6 @@ class _Design:
         self._solver, self._problem, self._values = solver, solver.problem, values
         self._tree = solver.problem.space.without_actuators(solver.tree, values, solver.growths)
         self._robot = solver.robot.resized(self._tree)
-        self._first: tuple[tuple[float, ...], Reach] | None = None
 
     @cached_property
     def sized_robot(self) -> SizedRobot:
@@ -93,23 +100,19 @@ class _Design:
         chosen = {name: each for name, each in space.actuators(self._values).items() if each.holds}
         if chosen:
             body = body.carrying(mounted_solids(self._tree, chosen))
-        return SizedRobot(self._robot.agent, body, self._problem.stances, solver.added)
+        return SizedRobot(self._robot.agent, body, self._problem.stances, solver.near, solver.added)
 
     def first(self, values: Sequence[float]) -> Cases:
         """Postures of every case, not checked."""
-        reach = self._reach(values)
-        self._first = tuple(values), reach
-        return self._cases(values, reach, Unchecked())
+        return self._cases(values, None, Unchecked())
 
     def following(self, values: Sequence[float], before: Cases) -> Cases:
         """Those near the postures of another round, not checked."""
         found: list[CaseSolution] = []
         for solution in before:
             postures = self._solver.inner.postures[solution.case.pair]
-            near = postures.followed(values, solution) if solution.solved else None
-            if near is None and self._first is not None:
-                near = self._in_case(values, solution.case, self._first[1], Unchecked(), None)
-            found.append(near or solution)
+            near = postures.followed(values, solution) if solution.solved else solution
+            found.append(near or self._in_case(values, solution.case, None, Unchecked(), None))
         return tuple(found)
 
     def checked(self, values: Sequence[float], before: Cases) -> DesignResult:
@@ -121,11 +124,7 @@ class _Design:
         problem, solver = self._problem, self._solver
         tree = problem.space.with_actuators(self._tree, values)
         robot = self._robot.driven(tree) if problem.space.driven else self._robot
-        if self._first is None:
-            reach = self._reach(values)
-        else:
-            reaches = solver.inner.reaches.values()
-            reach = common_reach([each.followed(values, self._first[0]) for each in reaches])
+        reach = self._reach(values)
         check = Checker(problem.scene, robot, solver.people[problem.scene.human.label])
         alone = solver.alone
         body = robot.body if alone.body is solver.robot.body else None
@@ -146,7 +145,9 @@ class _Design:
     def _reach(self, values: Sequence[float]) -> Reach:
         return common_reach([reach.solve(values) for reach in self._solver.inner.reaches.values()])
 
-    def _cases(self, values: Sequence[float], reach: Reach, check: Checker, before: Cases = ()) -> Cases:
+    def _cases(
+        self, values: Sequence[float], reach: Reach | None, check: Checker, before: Cases = ()
+    ) -> Cases:
         problem, found = self._problem, list[CaseSolution]()
         for number, case in enumerate(problem.cases):
             if before and not before[number].solved:
@@ -173,14 +174,21 @@ class _Design:
         self,
         values: Sequence[float],
         case: Case,
-        reach: Reach,
+        reach: Reach | None,
         checker: Checker,
         neighbour: Neighbour | None,
     ) -> CaseSolution:
+        """The posture in a case; a reach that is not known is asked for where there is none at once."""
+        postures = self._solver.inner.postures[case.pair]
+        if reach is None:
+            begun = postures.begun(values, case.task, checker, neighbour)
+            if begun.solved:
+                return begun
+            reach = self._reach(values)
         distance = reach.beyond(case.task.heights)
         if distance is None:
             return CaseSolution(case, reach.status, reach.reason)
         if distance > 0.0:
             reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
             return CaseSolution(case, Status.INFEASIBLE, reason)
-        return self._solver.inner.postures[case.pair].solve(values, case.task, checker, neighbour)
+        return postures.solve(values, case.task, checker, neighbour)

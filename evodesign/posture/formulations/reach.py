@@ -174,24 +174,7 @@ class ReachProblem:
             which = "highest" if high.status is not Status.SOLVED else "lowest"
             reason = high.reason if high.status is not Status.SOLVED else low.reason
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
-        return Reach(lowest, highest, status, _words(lowest, highest))
-
-    def followed(self, design: Sequence[float], near: Sequence[float]) -> Reach:
-        """The interval of a design that differs little from another one, from the optima of that.
-
-        Args:
-            design: one number per design parameter.
-            near: of the other design.
-        """
-        heights = []
-        for sense in (LOWEST, HIGHEST):
-            parameters, (_, best) = {"design": design, **self._beside(sense)}, self.extreme(near, sense)
-            raw = self._solver.settled(parameters, self._solver.near.solve(parameters, best.values))
-            if raw.status is not Status.SOLVED:
-                return self.solve(design)
-            heights.append(_height(raw))
-        lowest, highest = heights
-        return Reach(lowest, highest, Status.SOLVED, _words(lowest, highest))
+        return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
 
     def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense; that of the latest design is at hand."""
@@ -289,10 +272,6 @@ def _best_settled(
             return found
         found[best] = solver.settled(parameters, found[best])
         settled.add(best)
-
-
-def _words(lowest: float | None, highest: float | None) -> str:
-    return f"holds loads from {lowest:.3f} to {highest:.3f} m"
 
 
 def _height(raw: RawSolution) -> float:
