@@ -30,6 +30,8 @@ __all__ = ["DesignSolver"]
 
 Cases = tuple[CaseSolution, ...]
 
+LESS = "less was tried, as another case has no posture"
+
 
 class DesignSolver:
     """Solves any number of designs; no state is carried from one to the next.
@@ -156,7 +158,8 @@ class _Design:
             scene = shared_scene(problem.scene_of(case), problem.space, values)
             checker = check.elsewhere(scene, self._solver.people[case.person])
             near = Neighbour(before[number], same_load=True) if before else self._neighbour(found, case)
-            found.append(self._in_case(values, case, reach, checker, near))
+            lost = any(each.attempts and not each.solved for each in found)
+            found.append(self._in_case(values, case, reach, checker, near, lost=lost))
         return tuple(found)
 
     def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
@@ -177,8 +180,13 @@ class _Design:
         reach: Reach | None,
         checker: Checker,
         neighbour: Neighbour | None,
+        *,
+        lost: bool = False,
     ) -> CaseSolution:
-        """The posture in a case; a reach that is not known is asked for where there is none at once."""
+        """The posture in a case; a reach that is not known is asked for where there is none at once.
+
+        Where another case has none (`lost`), the design is infeasible, and no refuge is sought.
+        """
         postures = self._solver.inner.postures[case.pair]
         if reach is None:
             begun = postures.begun(values, case.task, checker, neighbour)
@@ -191,4 +199,7 @@ class _Design:
         if distance > 0.0:
             reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
             return CaseSolution(case, Status.INFEASIBLE, reason)
-        return postures.solve(values, case.task, checker, neighbour)
+        if not lost:
+            return postures.solve(values, case.task, checker, neighbour)
+        begun = postures.begun(values, case.task, checker, neighbour)
+        return begun if begun.solved else replace(begun, reason=f"{begun.reason} ({LESS})")
