@@ -7,8 +7,9 @@ the sole on one. Some joints move until there is none,
     0 = a . sum over weights and loads of (p(q + d) - middle of the soles) x F     for each such axis a
     tau = g_joint(q) - J_joint^T L - J_feet^T f,       g_base - J_base^T L = J_feet,base^T f,   |f| least
 
-with as many groups of joints as there are axes; one foot may twist the ground, too. The offsets d are found
-by Newton from zero, with differences. Axes of loads are those of the first sole: ahead, to the left, upwards.
+with as many groups of joints as there are axes; one foot may twist the ground, too. A hand that is to be at
+a height has a group of its own. The offsets d are found by Newton from zero, with differences. Axes of loads
+are those of the first sole: ahead, to the left, upwards.
 
 Source: statics, as everywhere; pinocchio's centre of mass, Jacobians and gravity torques.
 """
@@ -28,7 +29,7 @@ from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
-__all__ = ["StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
+__all__ = ["RaisedHand", "StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
 
 Array = NDArray[np.float64]
 
@@ -45,7 +46,27 @@ FLAT = 1e-12
 """Determinant of slopes [m/rad] below which joints balance nothing."""
 
 FURTHEST = math.radians(40.0)
-"""Largest offset of a joint [rad]."""
+"""Largest offset of a joint that balances [rad]."""
+
+LONGEST = 0.7
+"""Longest step of Newton [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class RaisedHand:
+    """A hand that is brought to a height.
+
+    Args:
+        frame: of the hand.
+        height: above the first sole [m].
+        joints: that move by the same offset until it is there.
+        limits: least and largest position [rad] of each of these joints.
+    """
+
+    frame: str
+    height: float
+    joints: tuple[str, ...]
+    limits: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +81,7 @@ class StanceCase:
         factor: how many times the torques of the case the peak torque must be.
         loads: force [N] on frames of the robot, ahead, to the left and upwards.
         friction: largest horizontal force of a foot, as a share of its vertical one.
+        raised: a hand at a height; None: where the joints put it.
     """
 
     name: str
@@ -69,6 +91,12 @@ class StanceCase:
     factor: float
     loads: tuple[tuple[str, Vector], ...] = ()
     friction: float = math.inf
+    raised: RaisedHand | None = None
+
+    @property
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """The groups of joints that move, those that raise a hand last."""
+        return self.balance if self.raised is None else (*self.balance, self.raised.joints)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,23 +129,39 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | N
     if offsets is None and near is not None:
         return stance_torques(body, case)
     if offsets is None:
-        reason = f"the robot cannot stand as in '{case.name}': its centre of mass is not over its soles"
-        return StanceTorques({}, reason=reason)
+        where = "" if case.raised is None else f", or its hand not at {case.raised.height:g} m"
+        return _fallen(case, f"its centre of mass is not over its soles{where}")
     heights = posture.heights(offsets)
     if max(heights) - min(heights) > UNEVEN:
-        apart = max(heights) - min(heights)
-        reason = f"the robot cannot stand as in '{case.name}': one sole is {apart:.3f} m above the other"
-        return StanceTorques({}, reason=reason)
-    _, torques, feet = posture.held(offsets)
+        return _fallen(case, f"one sole is {max(heights) - min(heights):.3f} m above the other")
+    beyond = _beyond_limits(case, offsets)
+    if beyond:
+        return _fallen(case, beyond)
+    torques, feet = posture.held(offsets)
     for sole, force in zip(case.soles, feet, strict=True):
         if force[2] <= 0.0:
-            reason = f"the robot cannot stand as in '{case.name}': it tips, as {sole} would have to pull"
-            return StanceTorques({}, reason=reason)
+            return _fallen(case, f"it tips, as {sole} would have to pull")
         if math.hypot(force[0], force[1]) > case.friction * force[2]:
-            reason = f"the robot cannot stand as in '{case.name}': {sole} slips"
-            return StanceTorques({}, reason=reason)
+            return _fallen(case, f"{sole} slips")
     by_joint = dict(zip(body.joints, torques.tolist(), strict=True))
     return StanceTorques(by_joint, tuple(offsets.tolist()), slopes)
+
+
+def _fallen(case: StanceCase, why: str) -> StanceTorques:
+    return StanceTorques({}, reason=f"the robot cannot stand as in '{case.name}': {why}")
+
+
+def _beyond_limits(case: StanceCase, offsets: Array) -> str:
+    """Which joint that raises a hand would be beyond its limits; empty where none is."""
+    if case.raised is None:
+        return ""
+    for joint, (lower, upper) in zip(case.raised.joints, case.raised.limits, strict=True):
+        position = case.joints.get(joint, 0.0) + float(offsets[-1])
+        if not lower <= position <= upper:
+            ends = f"{math.degrees(lower):.0f} to {math.degrees(upper):.0f}"
+            angle, height = f"{math.degrees(position):.0f} degrees", f"{case.raised.height:g} m"
+            return f"its hand at {height} needs {joint} at {angle}, which moves from {ends}"
+    return ""
 
 
 def stance_slopes(body: FloatingBody, case: StanceCase, found: StanceTorques, added: AddedMasses) -> Array:
@@ -142,10 +186,12 @@ class _Posture:
         self._q = pin.neutral(self._model)
         for joint, position in case.joints.items():
             self._q[places[joint]] = position
-        self._groups = [[places[joint] for joint in group] for group in case.balance]
+        self._groups = [[places[joint] for joint in group] for group in case.groups]
+        self._furthest = np.array([FURTHEST] * len(case.balance) + [math.pi] * (case.raised is not None))
         frames = body.workspace.frames
         self._soles = [frames[sole] for sole in case.soles]
         self._loads = [(frames[frame], np.array(force)) for frame, force in case.loads]
+        self._raised = None if case.raised is None else (frames[case.raised.frame], case.raised.height)
         self._weight = GRAVITY * pin.computeTotalMass(self._model)
 
     def balanced(self, near: StanceTorques | None) -> tuple[Array | None, Array | None]:
@@ -163,8 +209,8 @@ class _Posture:
             before = size
             if abs(float(np.linalg.det(slopes))) < FLAT:
                 break
-            offsets = offsets - np.linalg.solve(slopes, lever)
-            if not max(abs(each) for each in offsets.tolist()) < FURTHEST:
+            offsets = offsets - np.clip(np.linalg.solve(slopes, lever), -LONGEST, LONGEST)
+            if not (np.abs(offsets) < self._furthest).all():
                 break
         return None, None
 
@@ -174,7 +220,7 @@ class _Posture:
         return np.column_stack([(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units])
 
     def _moved(self, offsets: Array) -> Array:
-        q = self._q.copy()
+        q: Array = self._q.copy()
         for group, offset in zip(self._groups, offsets.tolist(), strict=True):
             q[group] += offset
         return q
@@ -182,7 +228,8 @@ class _Posture:
     def _lever(self, offsets: Array) -> Array:
         """The moment that the feet cannot carry, over the weight [m]: ahead, and on one foot to the left.
 
-        Without loads it is how far the centre of mass is from over the middle of the soles.
+        Without loads it is how far the centre of mass is from over the middle of the soles. Where a hand is
+        at a height, how far it is above comes last.
         """
         model, data = self._model, self._data
         center = pin.centerOfMass(model, data, self._moved(offsets), False)
@@ -191,7 +238,12 @@ class _Posture:
         for frame, force in self._loads:
             x, y, z = upright @ (pin.updateFramePlacement(model, data, frame).translation - middle)
             lever += np.array([z * force[0] - x * force[2], z * force[1] - y * force[2]]) / self._weight
-        return np.asarray(lever @ axes)
+        left = lever @ axes
+        if self._raised is None:
+            return np.asarray(left)
+        frame, height = self._raised
+        above = upright[2] @ (pin.updateFramePlacement(model, data, frame).translation - middle) - height
+        return np.append(left, above)
 
     def _ground(self) -> tuple[Array, Array, Array]:
         """Axes of the first sole by rows, middle of the soles [m], and what the feet cannot carry.
@@ -212,19 +264,24 @@ class _Posture:
         soles = [pin.updateFramePlacement(self._model, self._data, sole) for sole in self._soles]
         return [float(soles[0].rotation[:, 2] @ sole.translation) for sole in soles]
 
-    def held(self, offsets: Array) -> tuple[Array, Array, list[Array]]:
-        """Pinocchio's coordinates, torques of the joints [N m], and the force of each foot [N]."""
+    def _upright(self, offsets: Array) -> Array:
+        """Pinocchio's coordinates, with the first sole level."""
         model, data, q = self._model, self._data, self._moved(offsets)
         pin.forwardKinematics(model, data, q)
         upright = pin.updateFramePlacement(model, data, self._soles[0]).rotation.T
         q[3:7] = pin.Quaternion(np.array(upright)).coeffs()
+        return q
+
+    def held(self, offsets: Array) -> tuple[Array, list[Array]]:
+        """Torques of the joints [N m], and the force of each foot [N]."""
+        model, data, q = self._model, self._data, self._upright(offsets)
         rows = np.array(pin.computeGeneralizedGravity(model, data, q))
         for frame, force in self._loads:
             rows -= self._jacobian(q, frame)[:3].T @ force
         feet = self._feet(q)
         forces = np.linalg.lstsq(feet[:ROOT], rows[:ROOT], rcond=1e-10)[0]
         torques = (rows - feet @ forces)[self._body.order][ROOT:]
-        return q, torques, [forces[3 * number : 3 * number + 3] for number in range(len(self._soles))]
+        return torques, [forces[3 * number : 3 * number + 3] for number in range(len(self._soles))]
 
     def _feet(self, q: Array) -> Array:
         """Transposed Jacobians of what feet pass: forces, and of a single foot the moment about z."""
@@ -234,14 +291,15 @@ class _Posture:
 
     def slopes(self, offsets: Array, added: AddedMasses) -> Array:
         """How torques change with added masses [N m/kg], the robot balanced again; shape (joints, groups)."""
-        q, torques, _ = self.held(offsets)
+        q, (torques, _) = self._upright(offsets), self.held(offsets)
         fixed = joint_slopes(added.rows(self._body, q), self._feet(q), self._body.order)
         upright, middle, axes = self._ground()
         places = added.groups @ (added.places(self._body) - middle) @ upright.T
-        moved = places[:, :2] @ axes * GRAVITY / self._weight
+        moved = np.zeros((len(offsets), len(places)))
+        moved[: axes.shape[1]] = (places[:, :2] @ axes).T * GRAVITY / self._weight
         units = DIFFERENCE * np.eye(len(offsets))
-        turned = [(self.held(offsets + unit)[1] - torques) / DIFFERENCE for unit in units]
-        again = np.linalg.solve(self._slopes(offsets, self._lever(offsets)), moved.T)
+        turned = [(self.held(offsets + unit)[0] - torques) / DIFFERENCE for unit in units]
+        again = np.linalg.solve(self._slopes(offsets, self._lever(offsets)), moved)
         return np.asarray(fixed - np.column_stack(turned) @ again)
 
     def _jacobian(self, q: Array, frame: int) -> Array:
