@@ -124,7 +124,7 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | N
         case: posture and feet.
         near: a similar robot, whose offsets are where they are sought first; zero if left out.
     """
-    posture = _Posture(body, case)
+    posture = _Stance(body, case)
     offsets, slopes = posture.balanced(near)
     if offsets is None and near is not None:
         return stance_torques(body, case)
@@ -173,10 +173,10 @@ def stance_slopes(body: FloatingBody, case: StanceCase, found: StanceTorques, ad
         found: what became of it.
         added: groups of masses.
     """
-    return _Posture(body, case).slopes(np.array(found.offsets), added)
+    return _Stance(body, case).slopes(np.array(found.offsets), added)
 
 
-class _Posture:
+class _Stance:
     """The posture of a case for any offsets, in pinocchio's own terms."""
 
     def __init__(self, body: FloatingBody, case: StanceCase) -> None:

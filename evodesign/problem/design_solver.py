@@ -52,7 +52,7 @@ class DesignSolver:
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
-        design = _Design(self, values)
+        design = _OneDesign(self, values)
         if not self.problem.space.margins:
             return design.result(values)
         result = sized_result(self.problem.space, values, design.sized_robot, design)
@@ -81,7 +81,7 @@ class DesignSolver:
         return AddedMasses(self.alone.body, [[joints[name].child for name in group] for group in groups])
 
 
-class _Design:
+class _OneDesign:
     """One design, with actuators of any size.
 
     Args:

@@ -37,6 +37,7 @@ from evodesign.problem.demand import Demand
 from evodesign.problem.hardware_objectives import (
     StanceModel,
     actuator_mass,
+    cost,
     hand_deflection,
     holding_power,
     least_safety_factor,
@@ -318,6 +319,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
+    "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),
