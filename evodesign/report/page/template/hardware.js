@@ -11,50 +11,56 @@ const headRow = (heads) =>
     ),
   );
 
-const wide = (table) => element("div", { class: "across" }, table);
-
-// How much of an actuator is used; beyond all of it the bar is full and the figure tells.
-const usedCell = (one) =>
-  element(
-    "td",
-    { class: "number" },
-    meter(one.share, null),
-    element("span", { class: one.share > 1.0001 ? "beyond" : "", text: `${(100 * one.share).toFixed(0)} %` }),
+// What is asked of a group, below it: the share that is used as a bar, and by what.
+const askedRow = (one, columns) => {
+  const used = `${figure(100 * one.share, 3)} % used: ${one.joint} needs ${figure(one.asked_n_m, 3)} N m (${one.asked_by})`;
+  return element(
+    "tr",
+    { class: "asked" },
+    element(
+      "td",
+      { colspan: columns },
+      meter(one.share, null),
+      element("span", {
+        class: one.share > 1.0001 ? "beyond" : "",
+        text: one.asked_by ? used : "nothing is asked of it",
+      }),
+    ),
   );
+};
+
+const smallest = (value) => (value === null ? "" : 0 < value && value < 0.01 ? "< 0.01" : figure(value, 3));
 
 const actuatorTable = (hardware) => {
   const priced = hardware.actuators.some((one) => one.price_eur !== null);
-  const heads = [["Joints", ""], ["Rated [N m]"], ["Peak [N m]"], ["kg each"], ["Used"], ["Loss [W]"]];
-  if (priced) heads.push(["EUR each"]);
-  const body = hardware.actuators.map((one) =>
+  const heads = [["Joints", ""], ["Rated [N m]"], ["Peak [N m]"], ["Mass [kg]"], ["Loss [W]"]];
+  if (priced) heads.push(["Price [EUR]"]);
+  const cell = (value) => element("td", { class: "number", text: smallest(value) });
+  const groups = hardware.actuators.map((one) =>
     element(
-      "tr",
+      "tbody",
       { "data-actuator": one.name },
       element(
-        "th",
-        { scope: "row" },
-        `${one.count} × ${one.name}`,
-        element("small", { text: one.model || "sized by the law" }),
-        element("small", {
-          text: one.asked_by ? `${one.joint}: ${figure(one.asked_n_m)} N m in ${one.asked_by}` : "nothing is asked of it",
-        }),
+        "tr",
+        {},
+        element("th", { scope: "row" }, `${one.count} × ${one.name}`, element("small", { text: one.model })),
+        cell(one.rated_torque_n_m),
+        cell(one.peak_torque_n_m),
+        cell(one.mass_kg),
+        cell(one.loss_w),
+        ...(priced ? [cell(one.price_eur)] : []),
       ),
-      element("td", { class: "number", text: figure(one.rated_torque_n_m) }),
-      element("td", { class: "number", text: figure(one.peak_torque_n_m) }),
-      element("td", { class: "number", text: figure(one.mass_kg) }),
-      usedCell(one),
-      element("td", { class: "number", text: figure(one.loss_w) }),
-      ...(priced ? [element("td", { class: "number", text: one.price_eur === null ? "" : figure(one.price_eur) })] : []),
+      askedRow(one, heads.length),
     ),
   );
   return element(
     "table",
     { class: "bill" },
     element("caption", {
-      text: "Below each group the joint that uses most of its actuator, and the case that asks for it: of rated torque in the lift, of peak torque where the robot stands alone (times the case's factor). Loss is the most in the lift, of all joints together.",
+      text: "Mass and price of one; loss is the most in the lift, of all joints of the group. Used: of rated torque in the lift, of peak torque where the robot stands alone, times the case's factor.",
     }),
     headRow(heads),
-    element("tbody", {}, ...body),
+    ...groups,
   );
 };
 
@@ -69,12 +75,12 @@ const wallTable = (hardware) => {
         one.link,
         element("small", { text: (one.material ?? "").replaceAll("_", " ") }),
       ),
-      element("td", { class: "number", text: figure(1000 * one.wall_m) }),
-      element("td", { class: "number", text: figure(one.mass_kg) }),
+      element("td", { class: "number", text: figure(1000 * one.wall_m, 3) }),
+      element("td", { class: "number", text: figure(one.mass_kg, 3) }),
       element(
         "td",
         { class: "number" },
-        one.safety_factor === null ? "rigid" : figure(one.safety_factor),
+        one.safety_factor === null ? "rigid" : figure(one.safety_factor, 3),
         element("small", { text: one.safety_case ?? "" }),
       ),
     ),
@@ -116,8 +122,8 @@ const hardwareSections = (design) => {
   if (!hardware) return [];
   const joints = hardware.actuators.reduce((sum, one) => sum + one.count, 0);
   const sections = [fold("Bill of materials", `${figure(hardware.mass_kg.total)} kg`, massSplit(hardware))];
-  if (joints) sections.push(fold("Actuators", `${joints} joints`, wide(actuatorTable(hardware))));
+  if (joints) sections.push(fold("Actuators", `${joints} joints`, actuatorTable(hardware)));
   if (hardware.walls.length)
-    sections.push(fold("Walls", `${hardware.walls.length} links`, wide(wallTable(hardware))));
+    sections.push(fold("Walls", `${hardware.walls.length} links`, wallTable(hardware)));
   return sections;
 };
