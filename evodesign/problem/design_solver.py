@@ -6,7 +6,7 @@ cases; the last one checks them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -55,8 +55,16 @@ class DesignSolver:
         design = _OneDesign(self, values)
         if not self.problem.space.margins:
             return design.result(values)
-        result = sized_result(self.problem.space, values, design.sized_robot, design)
+        result = sized_result(self.problem.space, values, design.sized_robot, design, self.usual)
         return replace(result, values=tuple(values), rated=tuple(result.values))
+
+    @cached_property
+    def usual(self) -> Mapping[str, float]:
+        """What the unscaled robot asks of sized actuators [N m], by parameter; nothing if it holds none."""
+        values = self.problem.space.unscaled(self.problem.scene.robot.tree)
+        design = _OneDesign(self, values)
+        found = sized_result(self.problem.space, values, design.sized_robot, design)
+        return {} if found.demand is None else found.demand.at(found.demand.sizes)
 
     @cached_property
     def alone(self) -> StanceModel:

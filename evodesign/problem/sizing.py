@@ -26,6 +26,8 @@ __all__ = ["BOUNDS", "SizingRounds", "sized_result"]
 BOUNDS = (1.0, 300.0)
 """Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
 
+NOTHING_KNOWN: Mapping[str, float] = {}
+
 Cases = tuple[CaseSolution, ...]
 
 
@@ -43,7 +45,11 @@ class SizingRounds(Protocol):
 
 
 def sized_result(
-    space: DesignSpace, values: Sequence[float], robot: SizedRobot, rounds: SizingRounds
+    space: DesignSpace,
+    values: Sequence[float],
+    robot: SizedRobot,
+    rounds: SizingRounds,
+    usual: Mapping[str, float] = NOTHING_KNOWN,
 ) -> DesignResult:
     """The results of a design with sized actuators.
 
@@ -52,6 +58,7 @@ def sized_result(
         values: of the design.
         robot: of the design.
         rounds: its postures with any sizes.
+        usual: what another design asks of each group [N m], for the first round.
     """
     groups = {space.parameters[place].name: place for place in space.margins}
     asked: list[Demand | str] = []
@@ -76,7 +83,7 @@ def sized_result(
     margins = {name: values[place] for name, place in groups.items()}
     sizing = sized(
         demand,
-        start={name: margin * TYPICAL for name, margin in margins.items()},
+        start={name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()},
         margins=margins,
         bounds=dict.fromkeys(groups, BOUNDS),
         predict=predict,
