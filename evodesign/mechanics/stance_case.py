@@ -36,20 +36,15 @@ Array = NDArray[np.float64]
 STEPS, DIFFERENCE, OVER = 30, 1e-6, 1e-10
 """Most steps of Newton; step of its differences [rad]; lever [m] of the moment that counts as none."""
 
-FEWER = 0.1
-"""Share of the lever that a step leaves with slopes that are good enough for the next."""
-
 UNEVEN = 1e-3
 """Difference in height [m] of two soles that stand on the same ground."""
-
-FLAT = 1e-12
-"""Determinant of slopes [m/rad] below which joints balance nothing."""
 
 FURTHEST = math.radians(40.0)
 """Largest offset of a joint that balances [rad]."""
 
-LONGEST = 0.7
-"""Longest step of Newton [rad]."""
+FEWER, FLAT, LONGEST = 0.1, 1e-12, 0.7
+"""Share of the lever that a step leaves with slopes good enough for the next; determinant [m/rad] below
+which joints balance nothing; longest step [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +126,9 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | N
     if offsets is None:
         where = "" if case.raised is None else f", or its hand not at {case.raised.height:g} m"
         return _fallen(case, f"its centre of mass is not over its soles{where}")
-    heights = posture.heights(offsets)
-    if max(heights) - min(heights) > UNEVEN:
-        return _fallen(case, f"one sole is {max(heights) - min(heights):.3f} m above the other")
-    beyond = _beyond_limits(case, offsets)
-    if beyond:
+    if (apart := posture.unevenness(offsets)) > UNEVEN:
+        return _fallen(case, f"one sole is {apart:.3f} m above the other")
+    if beyond := _beyond_limits(case, offsets):
         return _fallen(case, beyond)
     torques, feet = posture.held(offsets)
     for sole, force in zip(case.soles, feet, strict=True):
@@ -143,8 +136,8 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | N
             return _fallen(case, f"it tips, as {sole} would have to pull")
         if math.hypot(force[0], force[1]) > case.friction * force[2]:
             return _fallen(case, f"{sole} slips")
-    by_joint = dict(zip(body.joints, torques.tolist(), strict=True))
-    return StanceTorques(by_joint, tuple(offsets.tolist()), slopes)
+    pairs = zip(body.joints, torques.tolist(), strict=True)
+    return StanceTorques(dict(pairs), tuple(offsets.tolist()), slopes)
 
 
 def _fallen(case: StanceCase, why: str) -> StanceTorques:
@@ -158,9 +151,8 @@ def _beyond_limits(case: StanceCase, offsets: Array) -> str:
     for joint, (lower, upper) in zip(case.raised.joints, case.raised.limits, strict=True):
         position = case.joints.get(joint, 0.0) + float(offsets[-1])
         if not lower <= position <= upper:
-            ends = f"{math.degrees(lower):.0f} to {math.degrees(upper):.0f}"
             angle, height = f"{math.degrees(position):.0f} degrees", f"{case.raised.height:g} m"
-            return f"its hand at {height} needs {joint} at {angle}, which moves from {ends}"
+            return f"its hand at {height} needs {joint} at {angle}, beyond its limits"
     return ""
 
 
@@ -258,11 +250,12 @@ class _Stance:
         x, y, _ = upright @ (places[0] - places[1])
         return upright, 0.5 * (places[0] + places[1]), np.array([[y], [-x]]) / math.hypot(x, y)
 
-    def heights(self, offsets: Array) -> list[float]:
-        """Of the soles, along the normal of the first one [m]."""
+    def unevenness(self, offsets: Array) -> float:
+        """How far soles are above each other, along the normal of the first one [m]."""
         pin.forwardKinematics(self._model, self._data, self._moved(offsets))
         soles = [pin.updateFramePlacement(self._model, self._data, sole) for sole in self._soles]
-        return [float(soles[0].rotation[:, 2] @ sole.translation) for sole in soles]
+        heights = [float(soles[0].rotation[:, 2] @ sole.translation) for sole in soles]
+        return max(heights) - min(heights)
 
     def _upright(self, offsets: Array) -> Array:
         """Pinocchio's coordinates, with the first sole level."""

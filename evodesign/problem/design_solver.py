@@ -125,12 +125,11 @@ class _OneDesign:
             found.append(near or self._in_case(values, solution.case, None, Unchecked(), None))
         return tuple(found)
 
-    def checked(self, values: Sequence[float], before: Cases) -> DesignResult:
-        """The results near them; cases that have no posture there have none."""
-        return self.result(values, before)
-
     def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
-        """The results for the values that programs are given; near those of an earlier round."""
+        """The checked results for the values that programs are given, near the postures of a round.
+
+        Cases that have none in that round have none.
+        """
         problem, solver = self._problem, self._solver
         tree = problem.space.with_actuators(self._tree, values)
         robot = self._robot.driven(tree) if problem.space.driven else self._robot

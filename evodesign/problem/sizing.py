@@ -40,8 +40,8 @@ class SizingRounds(Protocol):
     def following(self, values: Sequence[float], before: Cases) -> Cases:
         """Those near the postures of another round, not checked."""
 
-    def checked(self, values: Sequence[float], before: Cases) -> DesignResult:
-        """The results near them; cases that have no posture there have none."""
+    def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
+        """The checked results near them; cases that have no posture there have none."""
 
 
 def sized_result(
@@ -91,8 +91,8 @@ def sized_result(
     ended, latest = given(sizing.sizes), asked[-1]
     reason = latest if isinstance(latest, str) else sizing.reason
     if sizing.status is not Status.SOLVED and all(each.solved for each in cases[-1]):
-        return rounds.checked(ended, _failed(cases[-1], sizing, reason))
-    result = rounds.checked(ended, cases[-1])
+        return rounds.result(ended, _failed(cases[-1], sizing, reason))
+    result = rounds.result(ended, cases[-1])
     if not all(each.solved for each in result.cases):
         return result
     final = latest.of_lift(result.cases) if isinstance(latest, Demand) else None
