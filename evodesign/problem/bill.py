@@ -56,7 +56,7 @@ def bill_of_materials(problem: DesignProblem, tree: Tree, cases: Sequence[CaseDe
     links, structure = _links(space, tree)
     for name, safety in _safety(problem.scene.robot, tree, cases if space.walls else ()).items():
         links[name] |= safety
-    total = float(sum(link.mass for link in tree.links))
+    total = float(tree.mass)
     mass = float(sum(each.mass for each in actuators.values()))
     split = {"actuators": mass, "structure": structure, "rest": total - mass - structure, "total": total}
     return {"joints": joints, "links": links, "mass_kg": split}

@@ -252,7 +252,7 @@ def shared_reach_height(result: DesignResult) -> float | None:
 
 def mass(result: DesignResult) -> float:
     """Mass of the robot [kg]."""
-    return float(sum(link.mass for link in result.tree.links))
+    return float(result.tree.mass)
 
 
 def mass_of_actuators(result: DesignResult) -> float:
