@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from evodesign.body.placement import (
+    IDENTITY,
     Matrix,
     Placement,
     Scalar,
@@ -48,6 +49,8 @@ class Inertia:
     def moved(self, outer_from_inner: Placement) -> Inertia:
         """The same body described in the outer frame."""
         rotation = outer_from_inner.rotation
+        if rotation == IDENTITY:
+            return Inertia(self.mass, outer_from_inner.apply(self.center), self.about_center)
         turned = multiply(multiply(rotation, self.about_center), transpose(rotation))
         return Inertia(self.mass, outer_from_inner.apply(self.center), turned)
 

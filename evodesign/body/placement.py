@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from typing import Any
 
 __all__ = [
+    "IDENTITY",
     "Matrix",
     "Placement",
     "Scalar",

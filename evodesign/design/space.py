@@ -136,15 +136,39 @@ class DesignSpace:
             values: one number or expression per parameter; of a margin, the rated torque [N m].
             growths: of the tree's links, if they are known already.
         """
+        return self.with_actuators(self.without_actuators(tree, values, growths), values)
+
+    def with_actuators(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
+        """The tree of a design that has no actuators yet, with them."""
+        return with_actuators(tree, self.actuators(values))
+
+    def without_actuators(
+        self, tree: Tree, values: Sequence[Scalar], growths: Mapping[str, Growth] | None = None
+    ) -> Tree:
+        """The same tree with joints that nothing drives."""
         by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
-        actuators: dict[str, Actuator] = {}
         for parameter, value in zip(self.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
-            if parameter.joints:
-                actuators |= dict.fromkeys(parameter.joints, parameter.actuator(value))
         tree = with_walls(tree, walls_of_links(self.walls, by_kind[ParameterKind.WALL]))
-        tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
-        return with_actuators(tree, actuators)
+        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
+
+    def actuators(self, values: Sequence[Scalar]) -> dict[str, Actuator]:
+        """The actuators of a design, by joint name; arguments as in `resized`."""
+        found: dict[str, Actuator] = {}
+        for parameter, value in zip(self.parameters, values, strict=True):
+            if parameter.joints:
+                found |= dict.fromkeys(parameter.joints, parameter.actuator(value))
+        return found
+
+    @property
+    def driven(self) -> tuple[str, ...]:
+        """Names of the joints whose actuators a design chooses."""
+        return tuple(joint for parameter in self.parameters for joint in parameter.joints)
+
+    def with_fixed_walls(self, tree: Tree) -> Tree:
+        """The tree with the walls that all designs have in common, which `resized` leaves as they are."""
+        fixed = [wall for wall in self.walls if wall.thickness is not None and wall.density is not None]
+        return with_walls(tree, walls_of_links(fixed, {}))
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The allocation parameters among a design's values, by their own names."""

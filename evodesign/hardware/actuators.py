@@ -79,6 +79,7 @@ class Actuator:
         speed: without load [rad/s].
         model: its name in the catalogue; empty for one of the law.
         holds: whether a posture in which more than the rated torque is asked for is none.
+        price: [EUR]; None where it is not known.
     """
 
     rated: Scalar
@@ -90,6 +91,7 @@ class Actuator:
     speed: Scalar
     model: str = ""
     holds: bool = True
+    price: float | None = None
 
     def loss(self, torque: Scalar) -> Scalar:
         """Copper loss [W] that holding a torque [N m] takes."""
@@ -113,6 +115,7 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
     phase_resistance_ohm: Figure | None = None
     rotor_inertia_kg_cm2: Figure | None = None
     no_load_speed_rpm: Figure | None = None
+    price_eur: Figure | None = None
 
     @property
     def motor_constant(self) -> float | None:
@@ -281,7 +284,7 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
         "speed": row.speed,
     }
     known: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
-    return replace(law.at(rated), model=row.model, **known)
+    return replace(law.at(rated), model=row.model, price=row.price_eur, **known)
 
 
 def actuator_among(models: Sequence[Actuator], rated: Scalar) -> Actuator:
@@ -301,7 +304,7 @@ def actuator_among(models: Sequence[Actuator], rated: Scalar) -> Actuator:
         return values[0] + sum(is_above * step for is_above, step in zip(above, steps, strict=True))
 
     names = ("peak", "mass", "motor_constant", "inertia", "stiffness", "speed")
-    return replace(models[0], rated=rated, model="", **{name: figure(name) for name in names})
+    return replace(models[0], rated=rated, model="", price=None, **{name: figure(name) for name in names})
 
 
 def mounted_solid(actuator: Actuator, link_from_joint: Placement) -> Solid:

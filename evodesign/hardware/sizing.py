@@ -33,7 +33,7 @@ TOLERANCE = 1e-4
 ROUNDS = 4
 """How often the demand is asked for."""
 
-PREDICTIONS, SETTLED = 200, 1e-9
+PREDICTIONS, SETTLED = 200, 1e-5
 """How often a prediction is asked for, and the change of a size that ends that."""
 
 LARGEST_SHARE = 1.0

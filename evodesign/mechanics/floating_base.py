@@ -11,7 +11,7 @@ Source: Sartore et al. 2022, Eq. 5; pinocchio `crba`, `nonLinearEffects`, `getFr
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
+from evodesign.body.shape import Solid
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.tree.model import Joint, JointKind, Tree
 
@@ -167,7 +168,22 @@ class FloatingBody:
             carrier, carrier_from_link = carriers[name]
             if carrier in changed:
                 model.appendBodyToJoint(carrier, body, carrier_from_link)
-        return replace(self, model=model, built=None)
+        made_of = replace(built, tree=tree, carriers=carriers, bodies=bodies)
+        return replace(self, model=model, built=made_of)
+
+    def carrying(self, solids: Iterable[tuple[str, Solid]]) -> FloatingBody:
+        """The same body with solids fixed to some links, such as actuators.
+
+        Args:
+            solids: numbers, in the frame of the link that is named.
+        """
+        built, model = self.built, pin.Model(self.model)
+        if built is None:
+            raise ValueError("a solid carries nothing")
+        for name, solid in solids:
+            carrier, carrier_from_link = built.carriers[name]
+            model.appendBodyToJoint(carrier, _body(solid.inertia), carrier_from_link)
+        return replace(self, model=model)
 
     @classmethod
     def of_solid(cls, inertia: Inertia, points: Mapping[str, Array]) -> FloatingBody:

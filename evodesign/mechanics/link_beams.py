@@ -41,7 +41,7 @@ from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["Beam", "Wrench", "beams_of", "hand_deflection", "least_safety_factor"]
+__all__ = ["Beam", "Wrench", "beams_of", "hand_deflection", "safety_factors"]
 
 Array = NDArray[np.float64]
 
@@ -169,10 +169,10 @@ def _origin(places: Mapping[str, Placement], link: str) -> Array:
     return np.array(places[link].translation, float)
 
 
-def least_safety_factor(
+def safety_factors(
     tree: Tree, base: Placement, joints: Mapping[str, float], wrenches: Sequence[Wrench]
-) -> float:
-    """The least safety factor of a tree's beams in a posture; infinite without beams.
+) -> dict[str, float]:
+    """The lesser safety factor of both ends of each of a tree's beams in a posture, by link.
 
     Args:
         tree: of numbers.
@@ -182,7 +182,7 @@ def least_safety_factor(
     """
     places = link_frames(tree, base, joints)
     transmitted = _Transmitted(tree, places, [*wrenches, *_weights(tree, places)])
-    factors = [np.inf]
+    factors: dict[str, float] = {}
     for beam in beams_of(tree, places):
         for end in beam.ends:
             force, moment = transmitted.beyond(beam, end)
@@ -190,8 +190,9 @@ def least_safety_factor(
             load = SectionLoad(
                 float(force @ along), (float(moment @ first), float(moment @ second)), float(moment @ along)
             )
-            factors.append(safety_factor(beam.section, load, beam.length, beam.material))
-    return float(min(factors))
+            found = float(safety_factor(beam.section, load, beam.length, beam.material))
+            factors[beam.link] = min(found, factors.get(beam.link, np.inf))
+    return factors
 
 
 def _weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:

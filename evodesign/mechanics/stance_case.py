@@ -1,12 +1,15 @@
-"""A robot that stands alone in a given posture: which torques its joints need.
+"""A robot that stands alone in a given posture, and what it carries there: which torques its joints need.
 
-Feet are flat on the ground; some joints move by as much as brings the centre of mass over the middle of the
-soles, which carry the weight in equal parts at their origins:
+Feet are flat on the ground and pass forces at the origins of their soles. Weights and loads L have a moment
+that such forces cannot carry: about the line between the soles on both feet, about every level line through
+the sole on one. Some joints move until there is none,
 
-    c_xy(q + d) = middle of the soles        tau = g_joint(q) - J_joint^T f,   f = weight / feet, upwards
+    0 = a . sum over weights and loads of (p(q + d) - middle of the soles) x F     for each such axis a
+    tau = g_joint(q) - J_joint^T L - J_feet^T f,       g_base - J_base^T L = J_feet,base^T f,   |f| least
 
-The offsets d are found by Gauss and Newton from zero, with differences. As many groups of joints as there are
-coordinates to bring over the soles: one for a symmetric posture on both feet, two on one foot.
+with as many groups of joints as there are axes; one foot may twist the ground, too. A hand that is to be at
+a height has a group of its own. The offsets d are found by Newton from zero, with differences. Axes of loads
+are those of the first sole: ahead, to the left, upwards.
 
 Source: statics, as everywhere; pinocchio's centre of mass, Jacobians and gravity torques.
 """
@@ -14,28 +17,51 @@ Source: statics, as everywhere; pinocchio's centre of mass, Jacobians and gravit
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from evodesign.body.placement import Vector
+from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
+from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
-__all__ = ["StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
+__all__ = ["RaisedHand", "StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
 
 Array = NDArray[np.float64]
 
 STEPS, DIFFERENCE, OVER = 30, 1e-6, 1e-10
-"""Most steps of Newton; step of its differences [rad]; distance [m] from the middle that counts as none."""
+"""Most steps of Newton; step of its differences [rad]; lever [m] of the moment that counts as none."""
 
 UNEVEN = 1e-3
 """Difference in height [m] of two soles that stand on the same ground."""
 
 FURTHEST = math.radians(40.0)
-"""Largest offset of a joint [rad]."""
+"""Largest offset of a joint that balances [rad]."""
+
+FEWER, FLAT, LONGEST = 0.1, 1e-12, 0.7
+"""Share of the lever that a step leaves with slopes good enough for the next; determinant [m/rad] below
+which joints balance nothing; longest step [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class RaisedHand:
+    """A hand that is brought to a height.
+
+    Args:
+        frame: of the hand.
+        height: above the first sole [m].
+        joints: that move by the same offset until it is there.
+        limits: least and largest position [rad] of each of these joints.
+    """
+
+    frame: str
+    height: float
+    joints: tuple[str, ...]
+    limits: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +74,9 @@ class StanceCase:
         soles: frames under the feet that carry.
         balance: groups of joints that move by the same offset each, until the robot is balanced.
         factor: how many times the torques of the case the peak torque must be.
+        loads: force [N] on frames of the robot, ahead, to the left and upwards.
+        friction: largest horizontal force of a foot, as a share of its vertical one.
+        raised: a hand at a height; None: where the joints put it.
     """
 
     name: str
@@ -55,6 +84,14 @@ class StanceCase:
     soles: tuple[str, ...]
     balance: tuple[tuple[str, ...], ...]
     factor: float
+    loads: tuple[tuple[str, Vector], ...] = ()
+    friction: float = math.inf
+    raised: RaisedHand | None = None
+
+    @property
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """The groups of joints that move, those that raise a hand last."""
+        return self.balance if self.raised is None else (*self.balance, self.raised.joints)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,125 +101,200 @@ class StanceTorques:
     Args:
         torques: [N m] of every joint that moves; none where the robot cannot stand so.
         offsets: of the groups of joints that balance [rad].
+        slopes: of what is balanced by the offsets, about [m/rad].
         reason: a sentence; empty where it stands.
     """
 
     torques: Mapping[str, float]
     offsets: tuple[float, ...] = ()
+    slopes: Array | None = None
     reason: str = ""
 
 
-def stance_torques(body: FloatingBody, case: StanceCase) -> StanceTorques:
+def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | None = None) -> StanceTorques:
     """The joint torques of a robot that stands as a case says.
 
     Args:
         body: of the robot, with a design's masses; configurations are given in the world's axes.
         case: posture and feet.
+        near: a similar robot, whose offsets are where they are sought first; zero if left out.
     """
-    offsets = np.zeros(len(case.balance))
-    for _ in range(STEPS):
-        away = _away(body, case, offsets)
-        if np.abs(away).max() < OVER:
-            break
-        slopes = np.column_stack(
-            [
-                (_away(body, case, offsets + unit) - away) / DIFFERENCE
-                for unit in DIFFERENCE * np.eye(len(offsets))
-            ]
-        )
-        offsets = offsets - np.linalg.lstsq(slopes, away, rcond=None)[0]
-        if not np.abs(offsets).max() < FURTHEST:
-            break
-    if not np.abs(_away(body, case, offsets)).max() < 1e3 * OVER:
-        reason = f"the robot cannot stand as in '{case.name}': its centre of mass is not over its soles"
-        return StanceTorques({}, reason=reason)
-    state = _level(body, case, offsets)
-    heights = [state.pose(sole)[1][2] for sole in case.soles]
-    if max(heights) - min(heights) > UNEVEN:
-        apart = max(heights) - min(heights)
-        reason = f"the robot cannot stand as in '{case.name}': one sole is {apart:.3f} m above the other"
-        return StanceTorques({}, reason=reason)
-    torques = _joint_rows(state, case, _mass(body))
-    return StanceTorques(dict(zip(body.joints, torques.tolist(), strict=True)), tuple(offsets.tolist()))
+    posture = _Stance(body, case)
+    offsets, slopes = posture.balanced(near)
+    if offsets is None and near is not None:
+        return stance_torques(body, case)
+    if offsets is None:
+        where = "" if case.raised is None else f", or its hand not at {case.raised.height:g} m"
+        return _fallen(case, f"its centre of mass is not over its soles{where}")
+    if (apart := posture.unevenness(offsets)) > UNEVEN:
+        return _fallen(case, f"one sole is {apart:.3f} m above the other")
+    if beyond := _beyond_limits(case, offsets):
+        return _fallen(case, beyond)
+    torques, feet = posture.held(offsets)
+    for sole, force in zip(case.soles, feet, strict=True):
+        if force[2] <= 0.0:
+            return _fallen(case, f"it tips, as {sole} would have to pull")
+        if math.hypot(force[0], force[1]) > case.friction * force[2]:
+            return _fallen(case, f"{sole} slips")
+    pairs = zip(body.joints, torques.tolist(), strict=True)
+    return StanceTorques(dict(pairs), tuple(offsets.tolist()), slopes)
 
 
-def stance_slopes(
-    body: FloatingBody, case: StanceCase, found: StanceTorques, places: Sequence[Sequence[str]]
-) -> Array:
-    """How the torques change with masses at some places, the robot balanced again.
+def _fallen(case: StanceCase, why: str) -> StanceTorques:
+    return StanceTorques({}, reason=f"the robot cannot stand as in '{case.name}': {why}")
+
+
+def _beyond_limits(case: StanceCase, offsets: Array) -> str:
+    """Which joint that raises a hand would be beyond its limits; empty where none is."""
+    if case.raised is None:
+        return ""
+    for joint, (lower, upper) in zip(case.raised.joints, case.raised.limits, strict=True):
+        position = case.joints.get(joint, 0.0) + float(offsets[-1])
+        if not lower <= position <= upper:
+            angle, height = f"{math.degrees(position):.0f} degrees", f"{case.raised.height:g} m"
+            return f"its hand at {height} needs {joint} at {angle}, beyond its limits"
+    return ""
+
+
+def stance_slopes(body: FloatingBody, case: StanceCase, found: StanceTorques, added: AddedMasses) -> Array:
+    """How the torques change with added masses [N m/kg], the robot balanced again; shape (joints, groups).
 
     Args:
         body: as in `stance_torques`.
         case: likewise.
         found: what became of it.
-        places: groups of frames, at whose origins a group's mass is each.
-    Returns:
-        [N m/kg], shape (moving joints, groups).
+        added: groups of masses.
     """
-    offsets, mass = np.array(found.offsets), _mass(body)
-    state, units = _level(body, case, offsets), DIFFERENCE * np.eye(len(offsets))
-    center = _center_of_mass(state)
-    added, moved = [], []
-    for frames in places:
-        rows = GRAVITY * np.sum([state.jacobian_in_world(frame)[2] for frame in frames], axis=0)
-        for sole in case.soles:
-            rows = rows - GRAVITY * len(frames) / len(case.soles) * state.jacobian_in_world(sole)[2]
-        added.append(rows[ROOT:])
-        away = np.sum([(state.pose(frame)[1] - center)[:2] for frame in frames], axis=0) / mass
-        moved.append(away if len(case.soles) == 1 else away[:1])
-    torques = _joint_rows(state, case, mass)
-    middle = _away(body, case, offsets)
-    turned, back = [], []
-    for unit in units:
-        other = _level(body, case, offsets + unit)
-        turned.append((_joint_rows(other, case, mass) - torques) / DIFFERENCE)
-        back.append((_away(body, case, offsets + unit) - middle) / DIFFERENCE)
-    again = -np.linalg.lstsq(np.column_stack(back), np.column_stack(moved), rcond=None)[0]
-    return np.asarray(np.column_stack(added) + np.column_stack(turned) @ again)
+    return _Stance(body, case).slopes(np.array(found.offsets), added)
 
 
-def _joint_rows(state: BodyState, case: StanceCase, mass: float) -> Array:
-    """The torques of a state whose soles carry a mass [kg] in equal parts [N m]."""
-    rows = np.array(state.bias)
-    for sole in case.soles:
-        rows -= GRAVITY * mass / len(case.soles) * state.jacobian_in_world(sole)[2]
-    return np.asarray(rows[ROOT:])
+class _Stance:
+    """The posture of a case for any offsets, in pinocchio's own terms."""
 
+    def __init__(self, body: FloatingBody, case: StanceCase) -> None:
+        self._body, self._model, self._data = body, body.model, body.workspace.data
+        body.workspace.holds = None
+        places = dict(zip(body.joints, body.places.tolist(), strict=True))
+        self._q = pin.neutral(self._model)
+        for joint, position in case.joints.items():
+            self._q[places[joint]] = position
+        self._groups = [[places[joint] for joint in group] for group in case.groups]
+        self._furthest = np.array([FURTHEST] * len(case.balance) + [math.pi] * (case.raised is not None))
+        frames = body.workspace.frames
+        self._soles = [frames[sole] for sole in case.soles]
+        self._loads = [(frames[frame], np.array(force)) for frame, force in case.loads]
+        self._raised = None if case.raised is None else (frames[case.raised.frame], case.raised.height)
+        self._weight = GRAVITY * pin.computeTotalMass(self._model)
 
-def _mass(body: FloatingBody) -> float:
-    return float(pin.computeTotalMass(body.model))
+    def balanced(self, near: StanceTorques | None) -> tuple[Array | None, Array | None]:
+        """The offsets [rad] of the groups, and slopes; None where there are none that are small."""
+        offsets, slopes, before = np.zeros(len(self._groups)), None, np.inf
+        if near is not None and near.offsets:
+            offsets, slopes = np.array(near.offsets), near.slopes
+        for _ in range(STEPS):
+            lever = self._lever(offsets)
+            size = max(abs(each) for each in lever.tolist())
+            if size < OVER:
+                return offsets, slopes
+            if slopes is None or size > FEWER * before:
+                slopes = self._slopes(offsets, lever)
+            before = size
+            if abs(float(np.linalg.det(slopes))) < FLAT:
+                break
+            offsets = offsets - np.clip(np.linalg.solve(slopes, lever), -LONGEST, LONGEST)
+            if not (np.abs(offsets) < self._furthest).all():
+                break
+        return None, None
 
+    def _slopes(self, offsets: Array, lever: Array) -> Array:
+        """D lever / d offsets [m/rad], by differences."""
+        units = DIFFERENCE * np.eye(len(offsets))
+        return np.column_stack([(self._lever(offsets + unit) - lever) / DIFFERENCE for unit in units])
 
-def _configuration(body: FloatingBody, case: StanceCase, offsets: Array, angles: Array) -> Configuration:
-    positions = {joint: case.joints.get(joint, 0.0) for joint in body.joints}
-    for joints, offset in zip(case.balance, offsets, strict=True):
-        for joint in joints:
-            positions[joint] += float(offset)
-    return Configuration(np.zeros(3), angles, positions)
+    def _moved(self, offsets: Array) -> Array:
+        q: Array = self._q.copy()
+        for group, offset in zip(self._groups, offsets.tolist(), strict=True):
+            q[group] += offset
+        return q
 
+    def _lever(self, offsets: Array) -> Array:
+        """The moment that the feet cannot carry, over the weight [m]: ahead, and on one foot to the left.
 
-def _level(body: FloatingBody, case: StanceCase, offsets: Array) -> BodyState:
-    """The state with the first sole level."""
-    still = np.zeros(body.size)
-    upright = body.at(_configuration(body, case, offsets, np.zeros(3)), still)
-    rotation, _ = upright.pose(case.soles[0])
-    angles = np.array(pin.rpy.matrixToRpy(rotation.T))
-    return body.at(_configuration(body, case, offsets, angles), still)
+        Without loads it is how far the centre of mass is from over the middle of the soles. Where a hand is
+        at a height, how far it is above comes last.
+        """
+        model, data = self._model, self._data
+        center = pin.centerOfMass(model, data, self._moved(offsets), False)
+        upright, middle, axes = self._ground()
+        lever: Array = (upright @ (center - middle))[:2]
+        for frame, force in self._loads:
+            x, y, z = upright @ (pin.updateFramePlacement(model, data, frame).translation - middle)
+            lever += np.array([z * force[0] - x * force[2], z * force[1] - y * force[2]]) / self._weight
+        left = lever @ axes
+        if self._raised is None:
+            return np.asarray(left)
+        frame, height = self._raised
+        above = upright[2] @ (pin.updateFramePlacement(model, data, frame).translation - middle) - height
+        return np.append(left, above)
 
+    def _ground(self) -> tuple[Array, Array, Array]:
+        """Axes of the first sole by rows, middle of the soles [m], and what the feet cannot carry.
 
-def _away(body: FloatingBody, case: StanceCase, offsets: Array) -> Array:
-    """How far the centre of mass is from over the middle of the soles, ahead and to the left [m].
+        That is the parts of a lever ahead and to the left, by columns; all of pinocchio's latest posture.
+        """
+        model, data = self._model, self._data
+        soles = [pin.updateFramePlacement(model, data, sole) for sole in self._soles]
+        upright, places = np.array(soles[0].rotation.T), [sole.translation for sole in soles]
+        if len(soles) == 1:
+            return upright, np.array(places[0]), np.eye(2)
+        x, y, _ = upright @ (places[0] - places[1])
+        return upright, 0.5 * (places[0] + places[1]), np.array([[y], [-x]]) / math.hypot(x, y)
 
-    On two feet only ahead: a symmetric robot has it between them.
-    """
-    state = _level(body, case, offsets)
-    center = _center_of_mass(state)
-    middle = np.mean([state.pose(sole)[1] for sole in case.soles], axis=0)
-    away = (center - middle)[:2]
-    return np.asarray(away if len(case.soles) == 1 else away[:1])
+    def unevenness(self, offsets: Array) -> float:
+        """How far soles are above each other, along the normal of the first one [m]."""
+        pin.forwardKinematics(self._model, self._data, self._moved(offsets))
+        soles = [pin.updateFramePlacement(self._model, self._data, sole) for sole in self._soles]
+        heights = [float(soles[0].rotation[:, 2] @ sole.translation) for sole in soles]
+        return max(heights) - min(heights)
 
+    def _upright(self, offsets: Array) -> Array:
+        """Pinocchio's coordinates, with the first sole level."""
+        model, data, q = self._model, self._data, self._moved(offsets)
+        pin.forwardKinematics(model, data, q)
+        upright = pin.updateFramePlacement(model, data, self._soles[0]).rotation.T
+        q[3:7] = pin.Quaternion(np.array(upright)).coeffs()
+        return q
 
-def _center_of_mass(state: BodyState) -> Array:
-    """In the world [m]."""
-    body = state.body
-    return np.array(pin.centerOfMass(body.model, body.workspace.data, state.coordinates, False))
+    def held(self, offsets: Array) -> tuple[Array, list[Array]]:
+        """Torques of the joints [N m], and the force of each foot [N]."""
+        model, data, q = self._model, self._data, self._upright(offsets)
+        rows = np.array(pin.computeGeneralizedGravity(model, data, q))
+        for frame, force in self._loads:
+            rows -= self._jacobian(q, frame)[:3].T @ force
+        feet = self._feet(q)
+        forces = np.linalg.lstsq(feet[:ROOT], rows[:ROOT], rcond=1e-10)[0]
+        torques = (rows - feet @ forces)[self._body.order][ROOT:]
+        return torques, [forces[3 * number : 3 * number + 3] for number in range(len(self._soles))]
+
+    def _feet(self, q: Array) -> Array:
+        """Transposed Jacobians of what feet pass: forces, and of a single foot the moment about z."""
+        feet = [self._jacobian(q, sole) for sole in self._soles]
+        passed = [foot[:3] for foot in feet] if len(feet) > 1 else [feet[0][[0, 1, 2, 5]]]
+        return np.vstack(passed).T
+
+    def slopes(self, offsets: Array, added: AddedMasses) -> Array:
+        """How torques change with added masses [N m/kg], the robot balanced again; shape (joints, groups)."""
+        q, (torques, _) = self._upright(offsets), self.held(offsets)
+        fixed = joint_slopes(added.rows(self._body, q), self._feet(q), self._body.order)
+        upright, middle, axes = self._ground()
+        places = added.groups @ (added.places(self._body) - middle) @ upright.T
+        moved = np.zeros((len(offsets), len(places)))
+        moved[: axes.shape[1]] = (places[:, :2] @ axes).T * GRAVITY / self._weight
+        units = DIFFERENCE * np.eye(len(offsets))
+        turned = [(self.held(offsets + unit)[0] - torques) / DIFFERENCE for unit in units]
+        again = np.linalg.solve(self._slopes(offsets, self._lever(offsets)), moved)
+        return np.asarray(fixed - np.column_stack(turned) @ again)
+
+    def _jacobian(self, q: Array, frame: int) -> Array:
+        axes = pin.LOCAL_WORLD_ALIGNED
+        return np.array(pin.computeFrameJacobian(self._model, self._data, q, frame, axes))

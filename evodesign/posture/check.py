@@ -25,7 +25,7 @@ from evodesign.posture.terms.registry import TERMS
 from evodesign.tree.equip import rated_torques
 from evodesign.tree.model import Tree
 
-__all__ = ["TOLERANCE", "AgentModel", "Checker", "sizes"]
+__all__ = ["TOLERANCE", "AgentModel", "Checker", "Unchecked", "sizes"]
 
 TOLERANCE = 1e-5
 """Largest residual of a posture that counts as solved, in SI units."""
@@ -51,16 +51,29 @@ class AgentModel:
     def resized(self, tree: Tree) -> AgentModel:
         """The same agent with the tree of another design, and the limits of its actuators."""
         agent, solid = self.agent, None if self.solid is None else self.solid.resized(tree)
-        rated = {joint: limit for joint, limit in rated_torques(tree).items() if joint in agent.joints}
-        if rated:
-            limits = agent.torque_limits if agent.limits_torques else {}
-            agent = replace(agent, torque_limits={**limits, **rated}, limits_torques=True)
-        return replace(self, agent=agent, body=self.body.resized(tree), solid=solid)
+        return replace(self, agent=_limited(agent, tree), body=self.body.resized(tree), solid=solid)
+
+    def driven(self, tree: Tree) -> AgentModel:
+        """The same agent with actuators.
+
+        Args:
+            tree: of the agent as it is, with actuators beside.
+        """
+        mounted = [(link.name, solid) for link in tree.links for solid in link.mounted]
+        return replace(self, agent=_limited(self.agent, tree), body=self.body.carrying(mounted))
 
     def at(self, posture: AgentPosture) -> BodyState:
         """Kinematics, Jacobians and gravity torques of a posture."""
         configuration = Configuration(posture.base_position, posture.base_angles, posture.joints)
         return self.body.at(configuration, np.zeros(self.body.size))
+
+
+def _limited(agent: Agent, tree: Tree) -> Agent:
+    rated = {joint: limit for joint, limit in rated_torques(tree).items() if joint in agent.joints}
+    if not rated:
+        return agent
+    limits = agent.torque_limits if agent.limits_torques else {}
+    return replace(agent, torque_limits={**limits, **rated}, limits_torques=True)
 
 
 class Checker:
@@ -139,6 +152,23 @@ class Checker:
                         yield residual.named(f"{name}.{residual.name}")
             else:
                 yield from term.residuals(system)
+
+
+class Unchecked(Checker):
+    """Takes every posture as it is, where another one is checked in its place."""
+
+    def __init__(self) -> None:
+        """Of no scene."""
+
+    def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
+        """Itself."""
+        return self
+
+    def task_residuals(
+        self, instants: Sequence[Instant], load_heights: Sequence[float]
+    ) -> tuple[Residual, ...]:
+        """None."""
+        return ()
 
 
 def sizes(residuals: Sequence[Residual]) -> dict[str, float]:

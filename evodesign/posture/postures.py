@@ -126,6 +126,28 @@ class PostureProblem:
             trials.append(whole.polish(design, task, best.instants, checker))
         return case_solution(self._setting.scene.case(task), trials)
 
+    def begun(
+        self,
+        design: Sequence[float],
+        task: Task,
+        checker: Checker,
+        neighbour: Neighbour | None = None,
+    ) -> CaseSolution:
+        """What the formulation that is tried first leads to; arguments as in `solve`."""
+        trial = next(self._trials(design, task, checker, neighbour))
+        return case_solution(self._setting.scene.case(task), [trial])
+
+    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+        """The robot's postures of another design near those of a solution, not checked; None if not found.
+
+        They ask of the robot's actuators what the design's own postures will, where these are near.
+        """
+        if solution.attempt is None:
+            return None
+        name = solution.attempt.formulation
+        formulation = self._formulation(name, solution.case.task, self._methods(name)[0])
+        return formulation.followed(design, solution)
+
     def derivative(
         self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:

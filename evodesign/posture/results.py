@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.method import MethodName
+from evodesign.nlp.solver import RawSolution
 from evodesign.records import Case, Status
 
 __all__ = ["AgentPosture", "Attempt", "CaseSolution", "Instant", "Neighbour"]
@@ -88,6 +89,10 @@ class Instant:
     postures: Mapping[str, AgentPosture]
     disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
 
+    def with_postures(self, postures: Mapping[str, AgentPosture]) -> Instant:
+        """The same with some agents standing otherwise; it has no disturbances."""
+        return replace(self, postures={**self.postures, **postures})
+
 
 @dataclass(frozen=True, slots=True)
 class CaseSolution:
@@ -101,6 +106,7 @@ class CaseSolution:
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         attempt: that led to the postures; None unless solved.
+        unchecked: the robot's solve that gave the instants, where nothing has been checked.
     """
 
     case: Case
@@ -110,6 +116,7 @@ class CaseSolution:
     residuals: Mapping[str, float] = field(default_factory=dict)
     attempts: tuple[Attempt, ...] = ()
     attempt: Attempt | None = None
+    unchecked: RawSolution | None = None
 
     @property
     def solved(self) -> bool:

@@ -1,9 +1,10 @@
 """The bill of materials of a design: what drives each joint and what asks most of it, and what links are of.
 
     {"joints": {joint: {"actuator": group, "model": name or null, "rated_torque_n_m", "peak_torque_n_m",
-                        "mass_kg", "asked_n_m", "asked_by": case, "share": of rated or peak torque,
-                        "loss_w": largest copper loss of the lift}},
-     "links": {link: {"material": name, "wall_m", "mass_kg": without actuators}},
+                        "mass_kg", "price_eur": or null, "asked_n_m", "asked_by": case,
+                        "share": of rated or peak torque, "loss_w": largest copper loss of the lift}},
+     "links": {link: {"material": name, "wall_m", "mass_kg": without actuators,
+                      "safety_factor": or null, "safety_case": case of the lift, or null}},
      "mass_kg": {"actuators", "structure", "rest", "total"}}
 
 What is asked by a load case is its factor times the torque, and its share that of peak torque; by a case of
@@ -12,17 +13,21 @@ the lift, of rated torque. Structure is the walls' own mass. A problem without a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.hardware.actuators import Actuator
 from evodesign.mechanics.scene import ROBOT, Agent
 from evodesign.mechanics.stance_case import StanceCase
-from evodesign.posture.check import AgentModel
+from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.hardware_objectives import StanceModel
-from evodesign.records import CaseDetail
+from evodesign.problem.hardware_objectives import StanceModel, link_safety
+from evodesign.records import AgentDetail, CaseDetail, LoadCaseDetail
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
@@ -49,23 +54,56 @@ def bill_of_materials(problem: DesignProblem, tree: Tree, cases: Sequence[CaseDe
         joint: {"actuator": groups[joint], **_row(joint, each, asked)} for joint, each in actuators.items()
     }
     links, structure = _links(space, tree)
-    total = float(sum(link.mass for link in tree.links))
+    for name, safety in _safety(problem.scene.robot, tree, cases if space.walls else ()).items():
+        links[name] |= safety
+    total = float(tree.mass)
     mass = float(sum(each.mass for each in actuators.values()))
     split = {"actuators": mass, "structure": structure, "rest": total - mass - structure, "total": total}
     return {"joints": joints, "links": links, "mass_kg": split}
 
 
 def _lifted(cases: Sequence[CaseDetail]) -> Iterator[Asked]:
+    for name, posture in _postures(cases):
+        yield name, dict(posture.torques), False
+
+
+def _postures(cases: Sequence[CaseDetail]) -> Iterator[tuple[str, AgentPosture]]:
+    """The robot in every case of the lift, disturbed or not, by what it is called."""
     for detail in cases:
+        name = ", ".join(part for part in (str(detail.case.task), detail.case.label) if part)
         for instant in detail.instants:
-            name = ", ".join(part for part in (str(detail.case.task), detail.case.label) if part)
-            yield name, dict(instant.agents[ROBOT].torques_n_m), False
+            own = instant.agents[ROBOT]
+            yield name, _posture(own, own)
             for disturbance, agents in instant.disturbed.items():
-                yield f"{name}, {disturbance}", dict(agents[ROBOT].torques_n_m), False
+                yield f"{name}, {disturbance}", _posture(own, agents[ROBOT])
+
+
+def _posture(own: AgentDetail, carried: AgentDetail | LoadCaseDetail) -> AgentPosture:
+    return AgentPosture(
+        base_position=np.array(own.base_position_m),
+        base_angles=np.array(own.base_rpy_rad),
+        joints=own.joints_rad,
+        torques=carried.torques_n_m,
+        hand_wrenches={side: np.array(wrench) for side, wrench in carried.hand_wrenches.items()},
+        foot_wrenches={side: np.array(wrench) for side, wrench in carried.foot_wrenches.items()},
+    )
+
+
+def _safety(robot: Agent, tree: Tree, cases: Sequence[CaseDetail]) -> dict[str, dict[str, Any]]:
+    """The least safety factor of each link that is a beam, and the case of the lift that governs it."""
+    least: dict[str, tuple[float, str]] = {}
+    for name, posture in _postures(cases):
+        for link, factor in link_safety(replace(robot, tree=tree), posture).items():
+            least[link] = min((factor, name), least.get(link, (math.inf, "")))
+    return {
+        link: {"safety_factor": factor, "safety_case": name}
+        for link, (factor, name) in least.items()
+        if factor < math.inf
+    }
 
 
 def _alone(robot: Agent, stances: Sequence[StanceCase], tree: Tree) -> Iterator[Asked]:
-    model = StanceModel(tuple(stances), AgentModel.of(robot, robot.tree))
+    model = StanceModel.of(tuple(stances), robot, tuple(actuators_of(tree)))
     for case, found in model.torques(tree) if stances else ():
         yield case.name, {joint: case.factor * torque for joint, torque in found.torques.items()}, True
 
@@ -83,6 +121,7 @@ def _row(joint: str, actuator: Actuator, asked: Sequence[Asked]) -> dict[str, An
         "rated_torque_n_m": float(actuator.rated),
         "peak_torque_n_m": float(actuator.peak),
         "mass_kg": float(actuator.mass),
+        "price_eur": actuator.price,
         "asked_n_m": most,
         "asked_by": by,
         "share": share,
@@ -102,5 +141,11 @@ def _links(space: DesignSpace, tree: Tree) -> tuple[dict[str, Any], float]:
             mass = float(sum(solid.mass for solid in solids))
             structure += mass - float(sum(solid.filling for solid in solids))
             thickness = float(solids[0].wall or 0.0)
-            rows[name] = {"material": material, "wall_m": thickness, "mass_kg": mass}
+            rows[name] = {
+                "material": material,
+                "wall_m": thickness,
+                "mass_kg": mass,
+                "safety_factor": None,
+                "safety_case": None,
+            }
     return rows, structure

@@ -29,7 +29,6 @@ from evodesign.problem.constraints import constraints_of, refuse_constraints
 from evodesign.problem.descriptors import search_descriptors
 from evodesign.problem.design_hardware import (
     actuator_parameters,
-    stance_cases,
     wall_parameters,
     walls_of,
 )
@@ -47,6 +46,7 @@ from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
+from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import (
@@ -243,7 +243,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         start=tuple(start.values()),
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
-        stances=stance_cases(tables, source, robot),
+        stances=standing_cases(tables, source, robot),
     )
 
 

@@ -27,7 +27,7 @@ from evodesign.records import Constraint, ProblemSource
 
 __all__ = ["constraint_key", "constraints_of", "refuse_constraints"]
 
-SUFFIXES: Mapping[str, str] = {"N m": "_n_m", "kg": "_kg", "m": "_m", "W": "_w", "mm": "_mm"}
+SUFFIXES: Mapping[str, str] = {"N m": "_n_m", "kg": "_kg", "m": "_m", "W": "_w", "mm": "_mm", "EUR": "_eur"}
 """How a key ends, by the unit of its quantity."""
 
 

@@ -7,7 +7,6 @@ named, or chosen by a density parameter of the same links. Every contradiction i
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
@@ -16,16 +15,14 @@ from evodesign.design.space import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
 from evodesign.errors import InputError, nearest_name
 from evodesign.hardware.actuators import Actuator, CatalogueRow, actuator_of_row, catalogue
-from evodesign.mechanics.scene import Agent
-from evodesign.mechanics.stance_case import StanceCase
 from evodesign.problem.agents import refuse_unknown
 from evodesign.problem.design_space import known_materials
-from evodesign.problem.design_table import ActuatorTable, Feet, WallTable
+from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
 
-__all__ = ["actuator_parameters", "stance_cases", "wall_parameters", "walls_of"]
+__all__ = ["actuator_parameters", "wall_parameters", "walls_of"]
 
 
 def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) -> list[DesignParameter]:
@@ -78,39 +75,6 @@ def _actuator(
     models = _models(table.models or (), f"{key}.models", source, known)
     ends = (models[0].rated, models[-1].rated)
     return DesignParameter(ParameterKind.ACTUATOR, table.name, (), *ends, joints=table.joints, models=models)
-
-
-def stance_cases(tables: ProblemFile, source: ProblemSource, robot: Agent) -> tuple[StanceCase, ...]:
-    """The postures in which the robot stands alone.
-
-    Raises:
-        InputError: a name twice, a joint that does not move or is beyond its limits, or other than one group
-            of joints to balance on both feet and two on one.
-    """
-    found: list[StanceCase] = []
-    for position, table in enumerate(tables.load_case):
-        key = f"load_case[{position}]"
-        if table.name in {case.name for case in found}:
-            raise InputError(source.path, f"{key}.name", "a unique name", f"'{table.name}' twice")
-        for joint, angle in table.joints_deg.items():
-            where = f"{key}.joints_deg.{joint}"
-            refuse_unknown(source, where, "moving joint", joint, robot.joints, robot.tree.name)
-            limits = robot.tree.joint_by_name[joint]
-            if not limits.lower <= math.radians(angle) <= limits.upper:
-                ends = (math.degrees(limits.lower), math.degrees(limits.upper))
-                raise InputError(source.path, where, f"{ends[0]:g} to {ends[1]:g} degrees", f"{angle:g}")
-        for joint in (joint for group in table.balance for joint in group):
-            refuse_unknown(source, f"{key}.balance", "moving joint", joint, robot.joints, robot.tree.name)
-        groups = 1 if table.feet is Feet.BOTH else 2
-        if len(table.balance) != groups:
-            wanted = (
-                f"{groups} group{'s' if groups > 1 else ''} of joints to balance with feet = '{table.feet}'"
-            )
-            raise InputError(source.path, f"{key}.balance", wanted, f"{len(table.balance)}")
-        soles = robot.soles.values() if table.feet is Feet.BOTH else (robot.soles[table.feet],)
-        angles = {joint: math.radians(angle) for joint, angle in table.joints_deg.items()}
-        found.append(StanceCase(table.name, angles, tuple(soles), table.balance, table.factor))
-    return tuple(found)
 
 
 def _rising(pair: tuple[float, float], key: str, source: ProblemSource) -> tuple[float, float]:

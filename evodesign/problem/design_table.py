@@ -87,12 +87,50 @@ class Feet(StrEnum):
     RIGHT = "right"
 
 
+class Hands(StrEnum):
+    """Which hands hold something."""
+
+    BOTH = "both"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class Pushed(StrEnum):
+    """Where a push meets the robot: hands alike, one hand, or its trunk."""
+
+    HANDS = "hands"
+    LEFT = "left"
+    RIGHT = "right"
+    TRUNK = "trunk"
+
+
+class HoldTable(Table, frozen=True):
+    """`hold` of a load case: a payload in hands, each with the same part of its weight.
+
+    With `height_m` the joints `raised_by` move by one offset until the first of the hands is there, above the
+    soles.
+    """
+
+    mass_kg: Positive
+    hand: Hands = Hands.BOTH
+    height_m: Positive | None = None
+    raised_by: tuple[Name, ...] = ()
+
+
+class PushTable(Table, frozen=True):
+    """`push` of a load case: a level force on the robot; 0 degrees is ahead, 90 to its left."""
+
+    force_n: Positive
+    at: Pushed = Pushed.HANDS
+    direction_deg: float = 180.0
+
+
 class LoadCaseTable(Table, frozen=True):
     """`[[load_case]]`: a posture in which the robot stands alone, for what it asks of actuators.
 
-    `joints_deg` gives the joints that are not at zero. `balance` names groups of joints that each move by one
-    offset until the robot is balanced: one group on both feet, two on one. The actuators' peak torque is
-    `factor` times the torques of the case.
+    It may `hold` a payload or be given a `push`, or both. `joints_deg` gives the joints that are not at zero.
+    `balance` names groups of joints that each move by one offset until the robot is balanced: one group on
+    both feet, two on one. The actuators' peak torque is `factor` times the torques of the case.
     """
 
     name: Name
@@ -100,6 +138,8 @@ class LoadCaseTable(Table, frozen=True):
     feet: Feet = Feet.BOTH
     joints_deg: dict[str, float] = msgspec.field(default_factory=dict)
     factor: Positive = 2.0
+    hold: HoldTable | None = None
+    push: PushTable | None = None
 
 
 class HardwareTable(Table, frozen=True):

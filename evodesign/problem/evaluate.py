@@ -15,24 +15,20 @@ import msgspec
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.pool.base import Limits
-from evodesign.posture.allocation import shared_scene
-from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.reach import Reach, common_reach
+from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant, Neighbour
+from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_solver import DesignSolver
 from evodesign.problem.gradients import assessed_gradients
-from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.inner import inner_problems
 from evodesign.problem.judge import is_judged
 from evodesign.problem.objectives import DesignResult, objective_values
 from evodesign.problem.sensitivities import Sensitivities
-from evodesign.problem.sizing import sized_result
 from evodesign.records import (
     AgentDetail,
     Assessed,
     Assessment,
-    Case,
     CaseDetail,
     CaseOutcome,
     Genome,
@@ -40,7 +36,6 @@ from evodesign.records import (
     LoadCaseDetail,
     ProblemSource,
     ReachOutcome,
-    Status,
     worst_status,
 )
 from evodesign.violations import missed_height, total_violation
@@ -65,62 +60,11 @@ class Evaluator:
         self.problem = problem
         self.known = known
         self.inner = inner_problems(problem, known)
-        self._growths = problem.space.growths(problem.scene.robot.tree)
-        self._robot = AgentModel.of(problem.scene.robot, problem.scene.robot.tree)
-        self._people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
+        self._solver = DesignSolver(problem, known, self.inner)
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
-        space = self.problem.space
-        if not space.margins:
-            return self._solve(values)
-        result = sized_result(space, values, self._solve)
-        reach = self._reach(result.values)
-        return replace(result, values=tuple(values), rated=tuple(result.values), reach=reach)
-
-    def _reach(self, values: Sequence[float]) -> Reach:
-        return common_reach([reach.solve(values) for reach in self.inner.reaches.values()])
-
-    def _solve(self, values: Sequence[float], before: DesignResult | None = None) -> DesignResult:
-        """Reach and postures for the values that programs are given; near those of an earlier round."""
-        problem = self.problem
-        tree = problem.space.resized(problem.scene.robot.tree, values, self._growths)
-        robot = self._robot.resized(tree)
-        check = Checker(problem.scene, robot, self._people[problem.scene.human.label])
-        reach = self._reach(values) if before is None else before.reach
-        cases: list[CaseSolution] = []
-        for number, case in enumerate(problem.cases):
-            scene = shared_scene(problem.scene_of(case), problem.space, values)
-            checker = check.elsewhere(scene, self._people[case.person])
-            if before is None:
-                neighbour = self._neighbour(cases, case)
-            else:
-                neighbour = Neighbour(before.cases[number], same_load=True)
-            cases.append(self._in_case(values, case, reach, checker, neighbour))
-        return DesignResult(
-            scenes=problem.scenes,
-            space=problem.space,
-            values=tuple(values),
-            tree=tree,
-            standing=StanceModel(problem.stances, self._robot, (tree, robot)),
-            reach=reach,
-            cases=tuple(cases),
-            paper=problem.joint,
-            people_highest=min(
-                (person.highest for person in self.known.person_reaches.values()), default=None
-            ),
-        )
-
-    def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
-        """The most similar case of the same task that was solved before: of the same load if there is one."""
-        joints, best = self.problem.scene_of(case).human.joints, None
-        for solution in before:
-            other = self.problem.scene_of(solution.case)
-            if solution.solved and solution.case.task == case.task and other.human.joints == joints:
-                same_load = solution.case.payload == case.payload
-                if best is None or same_load >= best.same_load:
-                    best = Neighbour(solution, same_load)
-        return best
+        return self._solver.solve(values)
 
     def assess(self, genome: Genome) -> Assessed:
         """The results of a genome, with its postures."""
@@ -185,22 +129,6 @@ class Evaluator:
             constraints=constrained or msgspec.UNSET,
             rated=rated_of(result) or msgspec.UNSET,
         )
-
-    def _in_case(
-        self,
-        values: Sequence[float],
-        case: Case,
-        reach: Reach,
-        checker: Checker,
-        neighbour: Neighbour | None,
-    ) -> CaseSolution:
-        distance = reach.beyond(case.task.heights)
-        if distance is None:
-            return CaseSolution(case, reach.status, reach.reason)
-        if distance > 0.0:
-            reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return CaseSolution(case, Status.INFEASIBLE, reason)
-        return self.inner.postures[case.pair].solve(values, case.task, checker, neighbour)
 
 
 def rated_of(result: DesignResult) -> dict[str, float]:

@@ -42,7 +42,7 @@ from evodesign.violations import HEIGHT
 
 __all__ = ["assessed_gradients"]
 
-OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass"})
+OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass", "cost"})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable

@@ -5,24 +5,25 @@
     hand_deflection  how far the hands give way under the load: bending, twist and windup [mm]
     least_safety_factor  of all links with walls and cases, against yield and buckling
     torque_margin    least rated torque over |tau| of all actuators and cases: 1 for one at its limit
+    cost             sum of the actuators' prices [EUR]
 
 A joint without an actuator takes no part. A scene's robot has the tree of the design here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
+from evodesign.hardware.actuators import catalogue
 from evodesign.hardware.structure import STRENGTHS
 from evodesign.mechanics import link_beams
-from evodesign.mechanics.scene import ROBOT, SIDES, Scene
+from evodesign.mechanics.floating_base import FloatingBody
+from evodesign.mechanics.scene import ROBOT, SIDES, Agent, Scene
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
-from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
@@ -34,9 +35,11 @@ __all__ = [
     "NEED_ACTUATORS",
     "StanceModel",
     "actuator_mass",
+    "cost",
     "hand_deflection",
     "holding_power",
     "least_safety_factor",
+    "link_safety",
     "power_by_torque",
     "refuse_without_hardware",
     "torque_share",
@@ -44,6 +47,9 @@ __all__ = [
 
 NEED_ACTUATORS = ("holding_power", "actuator_mass", "torque_margin", "hand_deflection")
 """How the names of quantities end that tell nothing where no design chooses actuators."""
+
+COST = "cost"
+"""The quantity that needs models whose prices are known."""
 
 NEED_WALLS = ("least_safety_factor",)
 """How the names of quantities end that tell nothing without walls."""
@@ -88,14 +94,18 @@ def hand_deflection(scene: Scene, postures: Postures) -> float:
 
 def least_safety_factor(scene: Scene, postures: Postures) -> float:
     """The least safety factor of the robot's links with walls; infinite without any."""
-    robot, posture = scene.robot, postures[ROBOT]
+    return min(link_safety(scene.robot, postures[ROBOT]).values(), default=np.inf)
+
+
+def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, float]:
+    """The safety factor of each of a robot's links that is a beam, by name; its tree is the design's."""
     base = _base(posture)
     places = link_frames(robot.tree, base, posture.joints)
     wrenches = [(robot.hands[side], w[:3], w[3:]) for side, w in posture.hand_wrenches.items()]
     for side, wrench in posture.foot_wrenches.items():
         turn = np.array(places[robot.soles[side]].rotation, float)
         wrenches.append((robot.soles[side], turn @ wrench[:3], turn @ wrench[3:]))
-    return link_beams.least_safety_factor(robot.tree, base, posture.joints, wrenches)
+    return link_beams.safety_factors(robot.tree, base, posture.joints, wrenches)
 
 
 def _base(posture: AgentPosture) -> Placement:
@@ -107,33 +117,49 @@ def actuator_mass(tree: Tree) -> float:
     return float(sum(each.mass for each in actuators_of(tree).values()))
 
 
+def cost(tree: Tree) -> float | None:
+    """Price of all actuators [EUR]; None where one has none."""
+    prices = [each.price for each in actuators_of(tree).values()]
+    known = [price for price in prices if price is not None]
+    return float(sum(known)) if prices and len(known) == len(prices) else None
+
+
 OF_BEAMS = ("hand_deflection", "least_safety_factor")
 """How the names of quantities end that need walls of known stiffness and strength."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class StanceModel:
-    """The robot in the problem's standing postures, whatever its design.
+    """The robot in the problem's standing postures, whatever its design; results of one design are kept.
 
     Args:
         cases: of the problem.
-        robot: as pinocchio sees it, of any design.
-        latest: the tree of a design, and the robot with it.
+        body: the robot with all joints that move or are driven, of any design.
+        latest: the tree of a design, and the body with it.
     """
 
-    cases: tuple[StanceCase, ...]
-    robot: AgentModel
-    latest: tuple[Tree, AgentModel] | None = None
+    def __init__(
+        self,
+        cases: tuple[StanceCase, ...],
+        body: FloatingBody,
+        latest: tuple[Tree, FloatingBody] | None = None,
+    ) -> None:
+        self.cases, self.body = cases, body
+        self._latest = latest
+        self._known: tuple[Tree, list[tuple[StanceCase, StanceTorques]]] | None = None
 
-    def with_tree(self, tree: Tree) -> AgentModel:
-        """The robot with the tree of a design."""
-        known = self.latest
-        return known[1] if known is not None and known[0] is tree else self.robot.resized(tree)
+    @classmethod
+    def of(cls, cases: tuple[StanceCase, ...], agent: Agent, driven: Sequence[str]) -> StanceModel:
+        """Of a robot some of whose joints are driven, by name; they count whether they move in the lift."""
+        joints = (*agent.joints, *(name for name in driven if name not in agent.joints))
+        return cls(cases, FloatingBody.of_tree(agent.tree, joints, np.eye(3)))
 
     def torques(self, tree: Tree) -> list[tuple[StanceCase, StanceTorques]]:
         """What became of each case with the tree of a design."""
-        body = self.with_tree(tree).body
-        return [(case, stance_torques(body, case)) for case in self.cases]
+        if self._known is None or self._known[0] is not tree:
+            known = self._latest
+            body = known[1] if known is not None and known[0] is tree else self.body.resized(tree)
+            self._known = tree, [(case, stance_torques(body, case)) for case in self.cases]
+        return self._known[1]
 
     def needed(self, tree: Tree) -> list[Mapping[str, float]] | str:
         """Factor x |tau| [N m] of each case by joint, which peak torques must be; or why one cannot be."""
@@ -172,11 +198,27 @@ def refuse_without_hardware(key: str, name: str, tables: ProblemFile, source: Pr
     Raises:
         InputError: naming the quantity.
     """
-    if name.endswith(NEED_ACTUATORS) and not tables.design.actuator:
+    if (name == COST or name.endswith(NEED_ACTUATORS)) and not tables.design.actuator:
         raise InputError(source.path, key, f"a [[design.actuator]] for '{name}'", "none")
+    if name == COST:
+        _refuse_without_prices(key, tables, source)
     if name.endswith(NEED_WALLS) and not tables.design.wall:
         raise InputError(source.path, key, f"a [[design.wall]] for '{name}'", "none")
     for position, wall in enumerate(tables.design.wall if name.endswith(OF_BEAMS) else ()):
         if wall.material is not None and wall.material not in STRENGTHS:
             wanted = f"one of {', '.join(STRENGTHS)}, as '{name}' is asked for"
             raise InputError(source.path, f"design.wall[{position}].material", wanted, f"'{wall.material}'")
+
+
+def _refuse_without_prices(key: str, tables: ProblemFile, source: ProblemSource) -> None:
+    """Refuse a cost where an actuator is no model, or a model has no price."""
+    known = {**catalogue(), **{row.model: row for row in tables.actuator}}
+    for position, table in enumerate(tables.design.actuator):
+        where = f"design.actuator[{position}]"
+        if table.models is None:
+            wanted = f"models with a price_eur in {where} for '{COST}'"
+            raise InputError(source.path, key, wanted, "sizes of the law, which has no prices")
+        for model in table.models:
+            if known[model].price_eur is None:
+                wanted = f"a price_eur of every model in {where} for '{COST}', in an [[actuator]] table"
+                raise InputError(source.path, key, wanted, f"none of '{model}'")

@@ -33,9 +33,11 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
+from evodesign.problem.demand import Demand
 from evodesign.problem.hardware_objectives import (
     StanceModel,
     actuator_mass,
+    cost,
     hand_deflection,
     holding_power,
     least_safety_factor,
@@ -82,6 +84,7 @@ class DesignResult:
         standing: what postures in which the robot stands alone ask of a tree's actuators.
         cases: one solution per undisturbed case of the problem, in its order.
         paper: the paper's tasks and their weights.
+        demand: on sized actuators; None without any, and where no posture was found.
     """
 
     scenes: tuple[Scene, ...]
@@ -94,6 +97,7 @@ class DesignResult:
     people_highest: float | None = None
     rated: tuple[float, ...] = ()
     standing: StanceModel | None = None
+    demand: Demand | None = None
 
     @property
     def program_values(self) -> Sequence[float]:
@@ -248,7 +252,7 @@ def shared_reach_height(result: DesignResult) -> float | None:
 
 def mass(result: DesignResult) -> float:
     """Mass of the robot [kg]."""
-    return float(sum(link.inertia.mass for link in result.tree.links))
+    return float(result.tree.mass)
 
 
 def mass_of_actuators(result: DesignResult) -> float:
@@ -315,6 +319,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
+    "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),

@@ -21,9 +21,10 @@ from evodesign.mechanics.scene import ROBOT
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit, LimitTable
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
+from evodesign.problem.demand import Demand
 from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.objectives import DesignResult
-from evodesign.problem.sizing import BOUNDS, Demand, demand_of
+from evodesign.problem.sizing import BOUNDS
 
 __all__ = ["along_design", "program_slopes", "reach_along_design"]
 
@@ -44,10 +45,9 @@ def program_slopes(
     """
     if not result.rated or result.standing is None:
         return None
-    as_given = replace(result, values=result.rated)
-    demand = demand_of(result.space, as_given)
-    if isinstance(demand, str):
-        return NotDifferentiable(demand)
+    as_given, demand = replace(result, values=result.rated), result.demand
+    if demand is None:
+        return NotDifferentiable("its actuators have no sizes")
     missing = [each for each in cases if isinstance(each, NotDifferentiable)]
     if missing:
         return missing[0]
@@ -79,7 +79,7 @@ def _slope(
     columns = np.array(demand.members[row])
     torques = np.abs(demand.torques[:, columns])
     case, column = np.unravel_index(int(np.argmax(torques)), torques.shape)
-    joint = result.robot.joints[int(columns[column])]
+    joint = demand.joints[int(columns[column])]
     sign = float(np.sign(demand.torques[case, columns[column]]))
     lifted = list(_places(result))
     if case < len(lifted):
@@ -100,7 +100,7 @@ def _stance_slope(result: DesignResult, model: StanceModel, case: int, joint: st
     """By differences: a standing posture is found in half a millisecond."""
     space, tree = result.space, result.robot.tree
     known = abs(float(model.torques(result.tree)[case][1].torques[joint]))
-    share = float(np.abs(demand.torques[case - len(model.cases), result.robot.joints.index(joint)])) / known
+    share = float(np.abs(demand.torques[case - len(model.cases), demand.joints.index(joint)])) / known
 
     def torque(position: int, step: float) -> float:
         values = list(result.values)

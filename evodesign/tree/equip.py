@@ -10,15 +10,16 @@ Thicknesses, densities and figures of actuators may be expressions.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from evodesign.body.placement import Scalar
+from evodesign.body.shape import Solid
 from evodesign.errors import ModelError
 from evodesign.hardware.actuators import Actuator, mounted_solid
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
-__all__ = ["WallOfLink", "actuators_of", "rated_torques", "with_actuators", "with_walls"]
+__all__ = ["WallOfLink", "actuators_of", "mounted_solids", "rated_torques", "with_actuators", "with_walls"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ def with_walls(tree: Tree, walls: Mapping[str, WallOfLink]) -> Tree:
     """The tree with some links hollow.
 
     Args:
-        tree: of numbers, as the file describes it.
+        tree: of numbers, as the file describes it; links that are hollow already stay as they are.
         walls: by link name.
     Raises:
         ModelError: a link without solids.
@@ -56,7 +57,7 @@ def with_walls(tree: Tree, walls: Mapping[str, WallOfLink]) -> Tree:
 
 
 def _hollow(link: Link, wall: WallOfLink | None) -> Link:
-    if wall is None:
+    if wall is None or link.solids[0].wall is not None:
         return link
     solids = tuple(
         replace(
@@ -87,7 +88,13 @@ def with_actuators(tree: Tree, actuators: Mapping[str, Actuator]) -> Tree:
             found = "no such joint" if joint is None else f"a {joint.kind} one"
             raise ModelError(tree.name, f"actuator of joint {name}", "a joint that turns", found)
     joints = tuple(_driven(joint, actuators.get(joint.name)) for joint in tree.joints)
-    links = tuple(_loaded(tree, link, actuators) for link in tree.links)
+    mounted: dict[str, list[Solid]] = {}
+    for link, solid in mounted_solids(tree, actuators):
+        mounted.setdefault(link, []).append(solid)
+    links = tuple(
+        replace(link, mounted=(*link.mounted, *mounted[link.name])) if link.name in mounted else link
+        for link in tree.links
+    )
     return tree.reshaped(links, joints)
 
 
@@ -97,12 +104,16 @@ def _driven(joint: Joint, actuator: Actuator | None) -> Joint:
     return replace(joint, actuator=actuator, effort=actuator.peak, velocity=actuator.speed)
 
 
-def _loaded(tree: Tree, link: Link, actuators: Mapping[str, Actuator]) -> Link:
-    beyond = [joint for joint in tree.child_joints[link.name] if joint.name in actuators]
-    if not beyond:
-        return link
-    solids = tuple(mounted_solid(actuators[joint.name], joint.parent_from_child) for joint in beyond)
-    return replace(link, mounted=(*link.mounted, *solids))
+def mounted_solids(tree: Tree, actuators: Mapping[str, Actuator]) -> Iterator[tuple[str, Solid]]:
+    """The balls of actuators, each with the link that holds it.
+
+    Args:
+        tree: in its final size.
+        actuators: by joint name.
+    """
+    for joint in tree.joints:
+        if joint.name in actuators:
+            yield joint.parent, mounted_solid(actuators[joint.name], joint.parent_from_child)
 
 
 def rated_torques(tree: Tree) -> dict[str, Scalar]:

@@ -199,6 +199,11 @@ class Tree:
         return {link.name: tuple(below.get(link.name, ())) for link in self.links}
 
     @cached_property
+    def mass(self) -> Scalar:
+        """Mass of all links [kg], with what is mounted on them."""
+        return sum(link.mass for link in self.links)
+
+    @cached_property
     def root(self) -> str:
         """Name of the link that no joint holds."""
         return _roots(self)[0]

@@ -10,6 +10,7 @@ import pinocchio as pin
 import pytest
 
 from evodesign.body.inertia import Inertia
+from evodesign.mechanics.added_mass import AddedMasses
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import FloatingBody
 from evodesign.mechanics.stance_case import StanceCase, stance_slopes, stance_torques
@@ -93,7 +94,7 @@ def test_slopes_by_added_masses_are_those_of_differences(problem: DesignProblem,
     frames = [["l_forearm", "r_forearm"], ["l_lower_leg", "r_lower_leg"], ["chest"]]
     for case in (SQUAT, ONE_LEG):
         body = body_of(problem, tree)
-        slopes = stance_slopes(body, case, stance_torques(body, case), frames)
+        slopes = stance_slopes(body, case, stance_torques(body, case), AddedMasses(body, frames))
         for column, group in enumerate(frames):
             ends = []
             for mass in (-0.01, 0.01):

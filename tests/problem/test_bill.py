@@ -67,6 +67,9 @@ def test_the_bill_adds_up_and_names_what_governs(
     assert by["elbow"].endswith(" m")
     wall = bill["links"]["l_forearm"]
     assert (wall["material"], wall["wall_m"]) == ("aluminium_6061", 0.002)
+    least = min(row["safety_factor"] for row in bill["links"].values() if row["safety_factor"])
+    assert least == pytest.approx(objective_kinds()["least_safety_factor"].value(result), rel=1e-12)
+    assert wall["safety_case"] in {str(solution.case.task) for solution in result.cases}
 
 
 def test_a_problem_without_hardware_has_no_bill(problem: DesignProblem) -> None:

@@ -49,7 +49,21 @@ DRIVEN = """
 [[design.actuator]]
 name = "knee"
 joints = ["l_knee", "r_knee"]
-rated_torque_n_m = [5.0, 50.0]
+models = ["weak", "strong"]
+
+[[actuator]]
+model = "weak"
+mass_kg = 0.5
+peak_torque_n_m = 30.0
+price_eur = 200.0
+source = "assumed"
+
+[[actuator]]
+model = "strong"
+mass_kg = 1.0
+peak_torque_n_m = 150.0
+price_eur = 400.0
+source = "assumed"
 
 [[design.wall]]
 name = "shank"

@@ -16,6 +16,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
+from evodesign.problem.hardware_objectives import cost
 from evodesign.problem.model_json import model_json
 from evodesign.problem.objectives import DesignResult, objective_kinds
 from evodesign.problem.sensitivities import Sensitivities
@@ -76,6 +77,22 @@ def test_models_are_choices_the_weakest_first_with_their_own_figures() -> None:
     chosen = actuators_of(problem.space.resized(tree, values))["l_shoulder"]
     assert (chosen.model, chosen.mass, chosen.peak) == ("own", 0.4, 30.0)
     assert chosen.motor_constant == actuator_law().motor_constant(12.0)
+
+
+PRICED = OWN.replace("[[actuator]]", "[[actuator]]\nprice_eur = 120.0") + OWN.replace(
+    "[[actuator]]", "[[actuator]]\nprice_eur = 300.0"
+).replace('"own"', '"stronger"').replace("12.0", "20.0")
+COST = "\n[constraints]\ncost_eur = { upper = 700.0 }\n"
+
+
+def test_prices_of_models_add_up_to_the_cost_of_a_design() -> None:
+    problem = small(SHOULDER + 'models = ["own", "stronger"]\n' + PRICED + COST)
+    tree = problem.scene.robot.tree
+    values = problem.space.unscaled(tree)[:-1]
+    for rated, price in ((12.0, 240.0), (20.0, 600.0)):
+        assert cost(problem.space.resized(tree, (*values, rated))) == price
+    assert (problem.constraints[-1].name, problem.constraints[-1].unit) == ("cost", "EUR")
+    assert cost(tree) is None
 
 
 def test_the_programs_know_each_models_figures() -> None:
@@ -159,6 +176,9 @@ def test_designs_name_torques_walls_and_models() -> None:
             "\n[constraints]\nholding_power_w = { upper = 5.0 }\n",
             ["a [[design.actuator]] for 'holding_power'"],
         ),
+        (COST, ["constraints.cost_eur", "a [[design.actuator]] for 'cost'"]),
+        (SHOULDER + SIZES + COST, ["models with a price_eur in design.actuator[0]", "which has no prices"]),
+        (SHOULDER + MODELS + OWN + COST, ["a price_eur of every model", "none of 'X6-60'"]),
     ],
 )
 def test_contradictions_are_refused_in_a_sentence(more: str, words: list[str]) -> None:

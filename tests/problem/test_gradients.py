@@ -23,8 +23,8 @@ from evodesign.runlog.run import digest, read_run
 from evodesign.session import search_outcome
 from evodesign.violations import bound_margin, height_margin, total_violation
 
-NEED_MORE = ("shared_reach_height", "least_safety_factor")
-"""Quantities that ask for people's reach, or for walls."""
+NEED_MORE = ("shared_reach_height", "least_safety_factor", "cost")
+"""Quantities that ask for people's reach, for walls, or for prices."""
 
 STEP = 1e-4
 """Of the differences, as a share of a parameter's range."""

@@ -65,7 +65,7 @@ def limited(result: DesignResult) -> DesignResult:
 
 def driven(result: DesignResult) -> DesignResult:
     """The result of a robot with actuators, which other quantities ask about."""
-    actuators = dict.fromkeys(result.robot.joints, actuator_law().at(20.0))
+    actuators = dict.fromkeys(result.robot.joints, replace(actuator_law().at(20.0), price=100.0))
     walled = with_walls(result.tree, {"l_forearm": WallOfLink(0.002, 2700.0, 0.3)})
     walls = (Wall("arm", ("l_forearm",), 0.002, "aluminium_6061", 2700.0, 0.3),)
     tree = with_actuators(walled, actuators)

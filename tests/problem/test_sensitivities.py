@@ -27,7 +27,7 @@ from evodesign.tree.kinematics import Pose, forward
 OBJECTIVES = {
     name: kind
     for name, kind in objective_kinds().items()
-    if name not in ("torque_margin", "least_safety_factor")
+    if name not in ("torque_margin", "least_safety_factor", "cost")
 }
 """Those that a robot without actuators has."""
 

@@ -18,7 +18,7 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.objectives import DesignResult, objective_kinds
 from evodesign.problem.sensitivities import Sensitivities
-from evodesign.problem.sizing import BOUNDS, demand_of
+from evodesign.problem.sizing import BOUNDS
 from evodesign.records import Hold, Objective, Sense, Status
 from evodesign.tree.equip import actuators_of, rated_torques
 
@@ -102,9 +102,8 @@ def test_predictions_are_first_order_in_the_masses_of_actuators(
 ) -> None:
     """Frozen postures: the torques of standing cases and arms by other actuators, solved anew."""
     assert result.standing is not None
-    given = replace(result, values=result.rated)
-    demand = demand_of(sized.space, given)
-    assert not isinstance(demand, str)
+    demand = result.demand
+    assert demand is not None
     sizes = dict(demand.sizes)
     sizes["margin.elbow"] *= 1.05
     values = list(result.rated)

@@ -97,9 +97,10 @@ def trees(draw, links):
 
 
 def assert_near(found, wanted):
-    np.testing.assert_allclose(
-        np.array(found, float), np.array(wanted, float), rtol=TOLERANCE, atol=TOLERANCE
-    )
+    """The same to rounding, of which zeros beside large figures have as much as these."""
+    numbers = np.array(wanted, float)
+    least = TOLERANCE * max(1.0, np.abs(numbers).max(initial=0.0))
+    np.testing.assert_allclose(np.array(found, float), numbers, rtol=TOLERANCE, atol=least)
 
 
 def assert_same_place(found: Placement, wanted: Placement):

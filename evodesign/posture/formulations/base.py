@@ -75,6 +75,9 @@ class Formulation(Protocol):
     ) -> Trial:
         """What the solution in a similar scene leads to, and the first starts of a portfolio."""
 
+    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+        """The robot's postures of another design near those of a solution, not checked; a person may stay."""
+
     def landscape(self, task: Task) -> Landscape:
         """The cost, of which a portfolio of starts is made."""
 

@@ -129,15 +129,33 @@ class DecoupledPostures:
     ) -> Trial:
         """What the robot's posture in a similar scene leads to: it is close; and the first starts.
 
-        With the same load the other person's V(X) is all that differs, and no other start is needed.
+        With the same load the other person's V(X) is all that differs, and no other start is needed. What
+        `followed` gave is only finished.
         """
         parameters = {"design": design, **self._beside(task)}
-        known = start_from(self._robot.program, self._forms, neighbour.solution.instants)
-        ends = [("neighbour", self._robot.near.solve(parameters, known))]
+        raw = neighbour.solution.unchecked
+        if raw is None:
+            known = start_from(self._robot.program, self._forms, neighbour.solution.instants)
+            raw = self._robot.near.solve(parameters, known)
+        ends = [("neighbour", raw)]
         if not neighbour.same_load:
             starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return self._trial(task, parameters, ends, checker)
+
+    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+        """The robot's postures of another design near those of a solution; the person stays."""
+        parameters = {"design": design, **self._beside(solution.case.task)}
+        known = start_from(self._robot.program, self._forms, solution.instants)
+        raw = self._robot.settled(parameters, self._robot.near.solve(parameters, known))
+        if raw.status is not Status.SOLVED:
+            return None
+        robots = instants_of(
+            layout_of(self._robot.program, ROBOT), self._forms[:1], self._setting.scene, raw.values
+        )
+        pairs = zip(solution.instants, robots, strict=True)
+        instants = tuple(old.with_postures(new.postures) for old, new in pairs)
+        return replace(solution, instants=instants, unchecked=raw)
 
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The robot's parameters beside the design."""

@@ -112,6 +112,16 @@ class JointPostures:
         others = named_starts(self._solver, portfolio, self._fixed)
         return self._trial(design, task, [("neighbour", known), *others], checker)
 
+    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+        """The postures of another design near those of a solution."""
+        task, solver = solution.case.task, self._solver
+        parameters = {"design": design, **self._beside(task)}
+        start = filled(self._start(solution.instants), solver.program)
+        raw = solver.settled(parameters, solver.near.solve(parameters, start))
+        if raw.status is not Status.SOLVED:
+            return None
+        return replace(solution, instants=self._instants(raw, task))
+
     def polish(
         self, design: Sequence[float], task: Task, known: Sequence[Instant], checker: Checker
     ) -> Trial:
@@ -143,6 +153,10 @@ class JointPostures:
         )
         return found_again(derivative, solution)
 
+    def _instants(self, raw: RawSolution, task: Task) -> tuple[Instant, ...]:
+        layout, scene = layout_of(self._solver.program), self._setting.scene
+        return instants_of(layout, self._forms, scene, raw.values, task.times)
+
     def _start(self, known: Sequence[Instant]) -> Start:
         return start_from(self._solver.program, self._forms, known)
 
@@ -169,8 +183,7 @@ class JointPostures:
             ]
 
         def finish(start: str, raw: RawSolution) -> Candidate:
-            layout, scene = layout_of(program), self._setting.scene
-            instants = instants_of(layout, self._forms, scene, raw.values, task.times)
+            instants = self._instants(raw, task)
             residuals = checker.task_residuals(instants, task.heights)
             return Candidate(checked(self.name, start, raw, residuals), instants, residuals)
 

@@ -12,11 +12,13 @@ from msgspec import Struct
 from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter
 
 __all__ = [
+    "ActuatorContent",
     "Bodies",
     "CauseContent",
     "Content",
     "DesignContent",
     "Facts",
+    "HardwareContent",
     "JointBody",
     "LinkBody",
     "LoadBody",
@@ -26,6 +28,7 @@ __all__ = [
     "ShapeBody",
     "SurfaceBody",
     "TreeBody",
+    "WallContent",
 ]
 
 
@@ -199,6 +202,50 @@ class ClearanceContent(Part, frozen=True):
     distance_m: float
 
 
+class ActuatorContent(Part, frozen=True):
+    """What drives a group of joints; `model` is empty for one of the law.
+
+    Attributes:
+        count: of joints.
+        mass_kg, price_eur: of one.
+        joint: of the group, that is used most.
+        asked_n_m, asked_by, share: of it, as in `problem.bill`.
+        loss_w: of all together, each at its most.
+    """
+
+    name: str
+    model: str
+    count: int
+    rated_torque_n_m: float
+    peak_torque_n_m: float
+    mass_kg: float
+    price_eur: float | None
+    joint: str
+    asked_n_m: float
+    asked_by: str
+    share: float
+    loss_w: float
+
+
+class WallContent(Part, frozen=True):
+    """What a hollow link is made of; no safety factor of one that is no beam."""
+
+    link: str
+    material: str | None
+    wall_m: float
+    mass_kg: float
+    safety_factor: float | None
+    safety_case: str | None
+
+
+class HardwareContent(Part, frozen=True):
+    """The bill of materials; masses of `actuators`, `structure`, `rest` and in `total`."""
+
+    actuators: tuple[ActuatorContent, ...]
+    walls: tuple[WallContent, ...]
+    mass_kg: dict[str, float]
+
+
 class DesignContent(Part, frozen=True):
     """A design that can be opened.
 
@@ -208,6 +255,7 @@ class DesignContent(Part, frozen=True):
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
+        hardware: bill of materials; None where the problem has no hardware, or postures are left out.
         slices: through a marked design, as in `analysis.importance_json`.
     """
 
@@ -217,6 +265,7 @@ class DesignContent(Part, frozen=True):
     links: dict[int, LinkBody] = {}
     joints: dict[int, JointBody] = {}
     gradients: dict[str, dict[str, float]] = {}
+    hardware: HardwareContent | None = None
     slices: list[dict[str, Any]] = []
 
 

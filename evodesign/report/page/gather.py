@@ -29,6 +29,7 @@ from evodesign.report.page.content import (
     Facts,
     Mark,
 )
+from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
@@ -220,7 +221,14 @@ def _design(
     nearest = tuple(
         ClearanceContent(first=each.first, second=each.second, distance_m=each.distance) for each in found
     )
-    return DesignContent(cases=cases, postures=detail.cases, clearances=nearest, links=links, joints=joints)
+    return DesignContent(
+        cases=cases,
+        postures=detail.cases,
+        clearances=nearest,
+        links=links,
+        joints=joints,
+        hardware=hardware_content(problem, robot, detail.cases),
+    )
 
 
 def with_gradients(content: Content, run: RunLog, jobs: int, progress: PrecomputeProgress) -> Content:

@@ -45,6 +45,7 @@ SCRIPTS = (
     "stage.js",
     "torques.js",
     "ingredients.js",
+    "hardware.js",
     "reach.js",
     "card.js",
     "head.js",

@@ -79,7 +79,7 @@ const whyNoPosture = (row) => {
   return "The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived.";
 };
 
-const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], gradients: {}, links: {}, joints: {} };
+const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], gradients: {}, links: {}, joints: {}, hardware: null };
 
 // What the card shows now: how to draw it again, and how to show another height or case.
 const shown = { redraw: () => {}, height: () => {} };
@@ -117,6 +117,7 @@ const drawWithPostures = (row, design) => {
     cases?.section,
     fold("Parameters", `${parameters.length}`, parameterTable(row)),
     torques.section,
+    ...hardwareSections(design),
     fold("Masses", `robot ${figure(mass)} kg`, massTable(design)),
     fold("Contact wrenches", "", wrenches),
     sensitivities(design),

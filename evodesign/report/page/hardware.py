@@ -1,0 +1,57 @@
+"""The bill of materials of a design in the page: actuators by group, links with walls, masses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from evodesign.problem.bill import bill_of_materials
+from evodesign.problem.build import DesignProblem
+from evodesign.records import CaseDetail
+from evodesign.report.page.content import ActuatorContent, HardwareContent, WallContent
+from evodesign.tree.model import Tree
+
+__all__ = ["hardware_content"]
+
+
+def hardware_content(
+    problem: DesignProblem, tree: Tree, cases: Sequence[CaseDetail]
+) -> HardwareContent | None:
+    """What a design is built of; None for a problem without hardware.
+
+    Args:
+        problem: whose design it is.
+        tree: of the design, numbers.
+        cases: its postures.
+    """
+    bill = bill_of_materials(problem, tree, cases)
+    if not bill:
+        return None
+    groups: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for joint, row in bill["joints"].items():
+        groups.setdefault(row["actuator"], {})[joint] = row
+    return HardwareContent(
+        actuators=tuple(_actuator(name, rows) for name, rows in groups.items()),
+        walls=tuple(WallContent(link=link, **row) for link, row in bill["links"].items()),
+        mass_kg=bill["mass_kg"],
+    )
+
+
+def _actuator(name: str, rows: Mapping[str, Mapping[str, Any]]) -> ActuatorContent:
+    """A group of joints with the same actuator, told by the joint that is used most."""
+    joint = max(rows, key=lambda each: rows[each]["share"])
+    row = rows[joint]
+    return ActuatorContent(
+        name=name,
+        model=row["model"] or "",
+        count=len(rows),
+        rated_torque_n_m=row["rated_torque_n_m"],
+        peak_torque_n_m=row["peak_torque_n_m"],
+        mass_kg=row["mass_kg"],
+        price_eur=row["price_eur"],
+        joint=joint,
+        asked_n_m=row["asked_n_m"],
+        asked_by=row["asked_by"],
+        share=row["share"],
+        loss_w=sum(each["loss_w"] for each in rows.values()),
+    )
