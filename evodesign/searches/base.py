@@ -21,6 +21,8 @@ from evodesign.records import Genome
 __all__ = [
     "GRADIENT_SEARCHES",
     "JOINT_STARTS",
+    "POPULATIONS",
+    "USUAL_POPULATION",
     "AsynchronousSearch",
     "Gradient",
     "ObjectivePart",
@@ -37,6 +39,13 @@ JOINT_STARTS = "joint-starts"
 
 GRADIENT_SEARCHES = frozenset({"surrogate"})
 """Names of the searches that use gradients where evaluations have them."""
+
+
+POPULATIONS = {"surrogate": 8}
+"""Evaluations of a generation where none are given, by the name of the search."""
+
+USUAL_POPULATION = 48
+"""Of every other search."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ from evodesign.searches.surrogate.feasibility import Feasibility, margins_of_vio
 from evodesign.searches.surrogate.global_model import GlobalModel
 from evodesign.searches.surrogate.knowledge import Knowledge
 from evodesign.searches.surrogate.local_residual import LocalResidual
+from evodesign.searches.surrogate.proposal import _Batch
 from evodesign.searches.surrogate.selection import chosen
 
 DIMENSION = 4
@@ -234,6 +235,18 @@ def test_objectives_are_learnt_by_their_parts():
     told = [whole(genome).objectives for genome in points]
     assert model.expected()(np.array(points)) == pytest.approx(np.array(told), abs=1e-5)
     assert np.abs(model.expected()(asked) - expected).mean() < 0.05
+
+
+def test_one_of_four_from_a_sample_lies_far_from_what_is_known():
+    """Of the members within the reference it is the farthest, in lengths over which outputs change."""
+    feasibility, generator = Feasibility(None, None, 0.0), np.random.default_rng(8)
+    batch = _Batch(settings(), feasibility, np.empty((0, 6)), np.empty((0, 2)), np.ones(2), generator)
+    points = np.array([[0.1] * 6, [0.5] * 6, [0.9] * 6, [0.1] * 5 + [0.8]])
+    batch._members = Members(points, np.array([[0.5, 0.5], [0.5, 0.5], [0.5, 1.5], [0.5, 0.5]]), np.zeros(4))
+    known, lengths = np.zeros((1, 6)), np.array([1.0] * 5 + [0.1])
+    batch.take_farthest(known, lengths)
+    batch.take_farthest(known, lengths)
+    assert [point[-1] for point in batch._found] == [0.8, 0.5]
 
 
 def test_what_lies_beyond_a_given_reference_is_left_alone():
