@@ -19,7 +19,6 @@ from evodesign.searches.surrogate.feasibility import Feasibility, margins_of_vio
 from evodesign.searches.surrogate.global_model import GlobalModel
 from evodesign.searches.surrogate.knowledge import Knowledge
 from evodesign.searches.surrogate.local_residual import LocalResidual
-from evodesign.searches.surrogate.proposal import _Batch
 from evodesign.searches.surrogate.selection import chosen
 
 DIMENSION = 4
@@ -135,6 +134,25 @@ def test_an_objective_is_the_mean_of_its_parts():
     assert found.expected()(points) == pytest.approx(model(designs).expected()(points), abs=1e-9)
 
 
+def test_another_value_of_a_part_that_has_had_one_only_is_not_ruled_out():
+    designs, far = known(30, gradients=False), np.random.default_rng(3).random((50, DIMENSION))
+    still = np.stack([designs.targets[:, 0], np.full(30, 2.0)], axis=1)
+    generator, halves = np.random.default_rng(2), np.full((2, 1), 0.5)
+    model = Approximation(
+        Known(designs.points, still, designs.gradients), CONTINUOUS, generator, means=halves
+    )
+    mean, scale = model._moments()
+    assert scale[1] == pytest.approx(0.2)
+    beyond = 0.1 * 4.0 * scale[1]
+    low, high = still[:, 0].min(), still[:, 0].max()
+    margin = 0.1 * max(high - low, 4.0 * 0.1 * abs(mean[0]))
+    found = np.stack([model.drawn(generator)(far)[:, 0] for _ in range(40)])
+    assert found.max() <= 0.5 * (high + margin + 2.0 + beyond) + 1e-9
+    assert found.min() >= 0.5 * (low - margin + 2.0 - beyond) - 1e-9
+    apart = model._together(model._fitted(), [model._fitted()[0].drawn(generator)], far)[:, 1]
+    assert np.ptp(apart) > 1e-3
+
+
 def test_margins_of_violations_are_negative_inside():
     assert margins_of_violations(np.array([0.0, 2.0, 4.0]))[:, 0].tolist() == [-3.0, 2.0, 4.0]
 
@@ -235,18 +253,6 @@ def test_objectives_are_learnt_by_their_parts():
     told = [whole(genome).objectives for genome in points]
     assert model.expected()(np.array(points)) == pytest.approx(np.array(told), abs=1e-5)
     assert np.abs(model.expected()(asked) - expected).mean() < 0.05
-
-
-def test_one_of_four_from_a_sample_lies_far_from_what_is_known():
-    """Of the members within the reference it is the farthest, in lengths over which outputs change."""
-    feasibility, generator = Feasibility(None, None, 0.0), np.random.default_rng(8)
-    batch = _Batch(settings(), feasibility, np.empty((0, 6)), np.empty((0, 2)), np.ones(2), generator)
-    points = np.array([[0.1] * 6, [0.5] * 6, [0.9] * 6, [0.1] * 5 + [0.8]])
-    batch._members = Members(points, np.array([[0.5, 0.5], [0.5, 0.5], [0.5, 1.5], [0.5, 0.5]]), np.zeros(4))
-    known, lengths = np.zeros((1, 6)), np.array([1.0] * 5 + [0.1])
-    batch.take_farthest(known, lengths)
-    batch.take_farthest(known, lengths)
-    assert [point[-1] for point in batch._found] == [0.8, 0.5]
 
 
 def test_what_lies_beyond_a_given_reference_is_left_alone():

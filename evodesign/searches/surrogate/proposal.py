@@ -2,10 +2,8 @@
 
 Half of a batch comes from Thompson samples of the global model, four from each, the other half from its
 mean with the local residual: the first explore, the second refine. Each part is the best of a small
-evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`); but the last of four
-from a sample is the member of its evolution farthest from all that is known, for a model that has never seen
-another kind of posture cannot expect one. Designs on their way count as if they were what the model expects.
-A genome that is known already is moved a little.
+evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). Designs on their
+way count as if they were what the model expects. A genome that is known already is moved a little.
 """
 
 from __future__ import annotations
@@ -21,7 +19,6 @@ from evodesign.searches.surrogate.approximation import Function
 from evodesign.searches.surrogate.evolution import MEMBERS, Judged, Members, evolved
 from evodesign.searches.surrogate.feasibility import Feasibility
 from evodesign.searches.surrogate.knowledge import Knowledge
-from evodesign.searches.surrogate.local_residual import squared_distances
 from evodesign.searches.surrogate.selection import FRONT, chosen
 
 __all__ = ["proposals"]
@@ -72,11 +69,7 @@ def proposals(
     drawn = (count + len(knowledge) % 2) // 2
     for first in range(0, drawn, OF_ONE_SAMPLE):
         generations = FIRST_GENERATIONS if first == 0 else GENERATIONS
-        wanted = min(OF_ONE_SAMPLE, drawn - first)
-        farthest = wanted == OF_ONE_SAMPLE
-        batch.take(model.drawn(generator), wanted - farthest, generations)
-        if farthest:
-            batch.take_farthest(knowledge.points, model.lengths)
+        batch.take(model.drawn(generator), min(OF_ONE_SAMPLE, drawn - first), generations)
     batch.take(expected, count - drawn, GENERATIONS if drawn else FIRST_GENERATIONS)
     return batch.genomes(knowledge.points)
 
@@ -100,8 +93,7 @@ class _Batch:
             self._range = np.maximum(reference - self._ideal, LEAST * np.maximum(np.abs(reference), 1.0))
         order = generator.permutation(len(points))
         self._ends, self._front = points[order], self._scaled(values)[order][: FRONT.get(settings.objectives)]
-        empty = np.empty((0, settings.dimension))
-        self._members = Members(empty, np.empty((0, settings.objectives)), np.empty(0))
+        self._population = np.empty((0, settings.dimension))
         self._found: list[Array] = []
 
     def _scaled(self, values: Array) -> Array:
@@ -118,29 +110,12 @@ class _Batch:
             return
         counts, generator = self._settings.counts, self._generator
         anywhere = snapped(generator.random((ANYWHERE, self._settings.dimension)), counts)
-        start = np.vstack([self._ends[:MEMBERS], self._members.points, anywhere])
-        members = self._members = evolved(self._judged(function), start, generations, counts, generator)
+        start = np.vstack([self._ends[:MEMBERS], self._population, anywhere])
+        members = evolved(self._judged(function), start, generations, counts, generator)
+        self._population = members.points
         for place in chosen(_without(members, self._found), self._front, count, generator):
-            self._add(members, place)
-
-    def take_farthest(self, known: Array, lengths: Array) -> None:
-        """Add the member of the latest evolution, within the reference, that is farthest from known points.
-
-        Args:
-            known: points [points x dimension].
-            lengths: over which outputs change, by coordinate.
-        """
-        members = _without(self._members, self._found)
-        inside = (members.infeasibility == 0.0) & (members.objectives < 1.0).all(axis=1)
-        members = members.part(np.flatnonzero(inside))
-        if len(members.points):
-            taken = np.vstack([known, *self._found]) / lengths
-            distances = squared_distances(members.points / lengths, taken).min(axis=1)
-            self._add(members, int(np.argmax(distances)))
-
-    def _add(self, members: Members, place: int) -> None:
-        self._found.append(members.points[place])
-        self._front = np.vstack([self._front, members.objectives[place]])
+            self._found.append(members.points[place])
+            self._front = np.vstack([self._front, members.objectives[place]])
 
     def _judged(self, function: Function | None) -> Judged:
         def judged(points: Array) -> tuple[Array, Array]:
