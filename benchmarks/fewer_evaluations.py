@@ -5,7 +5,7 @@ height of 1.48 m, which a fifth of all designs cannot reach. Hypervolumes are me
 feasible values of quasi-random sampling, made worse by a tenth of its range; the surrogate search is not
 told. Results go to benchmarks/results/fewer_evaluations.json and are printed as a Markdown table.
 
-    python -m benchmarks.fewer_evaluations [--evaluations 480] [--seeds 11 12 13]
+    python -m benchmarks.fewer_evaluations [--evaluations 240] [--seeds 11 12 13]
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ ALGORITHMS = ("random", "cma-es", "surrogate")
 def main() -> None:
     """Search both problems, write and print."""
     parser = argparse.ArgumentParser(description="Evaluations until a search has what CMA-ES has.")
-    parser.add_argument("--evaluations", type=int, default=480)
+    parser.add_argument("--evaluations", type=int, default=240)
     parser.add_argument("--seeds", type=int, nargs="*", default=[11, 12, 13])
     options = parser.parse_args()
     rows: dict[str, list[dict[str, float]]] = {}

@@ -155,7 +155,8 @@ def table(rows: list[dict[str, object]]) -> str:
         cells = []
         for budget in budgets:
             found = [row["shares"][str(budget)] for row in own if str(budget) in row["shares"]]
-            cells.append(f"{median(found):.1f} ({min(found):.1f} to {max(found):.1f})" if found else "")
+            several = f" ({min(found):.1f} to {max(found):.1f})" if len(found) > 1 else ""
+            cells.append(f"{median(found):.1f}{several}" if found else "")
         times = [f"{median(row[key] for row in own):.1f}" for key in ("proposing_ms", "evaluating_ms")]
         lines.append(f"| {name} | {len(own)} | " + " | ".join([*cells, *times]) + " |")
     return "\n".join(lines)
