@@ -26,6 +26,7 @@ __all__ = [
     "Assessment",
     "Case",
     "CaseDetail",
+    "CaseGradient",
     "CaseOutcome",
     "Constraint",
     "Descriptor",
@@ -247,7 +248,20 @@ NO_SECONDS = 0.0
 """One object, by whose identity msgspec leaves a default out of what is written."""
 
 
-class Gradients(Record, frozen=True):
+class CaseGradient(Record, frozen=True, omit_defaults=True):
+    """A quantity in one case, in its unit, and how it moves with the genome.
+
+    Attributes:
+        value: of the quantity.
+        slopes: as in `Gradients.values`, in the order of the continuous parameters; None where the
+            posture has no derivative.
+    """
+
+    value: float
+    slopes: tuple[float, ...] | None = None
+
+
+class Gradients(Record, frozen=True, omit_defaults=True):
     """How quantities of a design move with its genome.
 
     Attributes:
@@ -255,10 +269,12 @@ class Gradients(Record, frozen=True):
             heights are missed) and by parameter, the derivative in the quantity's unit per unit of the
             genome's coordinate. Discrete parameters have none.
         absent: by quantity, why its gradient does not exist.
+        cases: by objective that is the mean over a few cases, what it is the mean of.
     """
 
     values: dict[str, dict[str, float]]
     absent: dict[str, str]
+    cases: dict[str, tuple[CaseGradient, ...]] = msgspec.field(default_factory=dict)
 
 
 class Assessment(Record, frozen=True):

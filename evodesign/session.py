@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,9 +24,11 @@ from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import (
     Assessed,
     Assessment,
+    CaseGradient,
     Detail,
     Evaluation,
     Genome,
+    Gradients,
     Parameter,
     RunHeader,
     Sense,
@@ -35,7 +37,7 @@ from evodesign.records import (
     design_of,
 )
 from evodesign.runlog.session_log import Observer, SessionLog
-from evodesign.searches.base import Gradient, Outcome
+from evodesign.searches.base import Gradient, ObjectivePart, Outcome
 from evodesign.violations import HEIGHT, bound_margin, height_margin
 
 __all__ = [
@@ -157,14 +159,19 @@ def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
     assessment = evaluation.assessment
     values = minimised(header.objectives, assessment)
     names = [parameter.name for parameter in header.parameters]
-    rows = {} if assessment.gradients is msgspec.UNSET else assessment.gradients.values
+    continuous = [parameter.name for parameter in header.parameters if not parameter.choices]
+    gradients = Gradients({}, {}) if assessment.gradients is msgspec.UNSET else assessment.gradients
+
+    def by_coordinate(row: Mapping[str, float] | None, factor: float) -> Gradient | None:
+        """Derivatives by parameter, times a factor; None if there are none."""
+        return None if row is None else tuple(factor * row[n] if n in row else None for n in names)
 
     def gradient(quantity: str, factor: float) -> Gradient | None:
-        """By coordinate, times a factor; None if it does not exist."""
-        row = rows.get(quantity)
-        if row is None:
-            return None
-        return tuple(factor * row[name] if name in row else None for name in names)
+        return by_coordinate(gradients.values.get(quantity), factor)
+
+    def part(case: CaseGradient, factor: float) -> ObjectivePart:
+        row = None if case.slopes is None else dict(zip(continuous, case.slopes, strict=True))
+        return ObjectivePart(factor * case.value, by_coordinate(row, factor))
 
     signs = [(each.name, -1.0 if each.sense is Sense.MAXIMISE else 1.0) for each in header.objectives]
     margins = [(HEIGHT, height_margin(assessment.reach, assessment.cases), 1.0)]
@@ -179,6 +186,9 @@ def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
         margins=tuple(margin for _, margin, _ in margins),
         margin_gradients=tuple(gradient(name, factor) for name, _, factor in margins),
         descriptors=described(header, evaluation),
+        parts=tuple(
+            tuple(part(each, sign) for each in gradients.cases.get(name, ())) for name, sign in signs
+        ),
     )
 
 

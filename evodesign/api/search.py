@@ -57,7 +57,7 @@ def search(
     Args:
         problem: opened, a problem file, or the name of one that comes with evodesign.
         run: directory of the new run; left out, `runs/NAME-TIME`.
-        algorithm: nsga2, cma-es, random, or any other in the registry of searches.
+        algorithm: surrogate, nsga2, cma-es, random, or any other in the registry of searches.
         evaluations: of the run in total.
         population: evaluations of a generation.
         seed: of the search.

@@ -86,7 +86,7 @@ Algorithm = Annotated[
     str | None,
     typer.Option(
         metavar="NAME",
-        help="nsga2, cma-es, surrogate, map-elites or random.",
+        help="surrogate, nsga2, cma-es, map-elites or random.",
         show_default="as in the problem",
     ),
 ]

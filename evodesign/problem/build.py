@@ -60,7 +60,7 @@ from evodesign.records import (
     Sense,
     Task,
 )
-from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS
+from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS, POPULATIONS, USUAL_POPULATION
 from evodesign.tree.model import Tree
 
 __all__ = ["DesignProblem", "build_problem"]
@@ -155,12 +155,16 @@ class DesignProblem:
         if algorithm == JOINT_STARTS:
             refuse_constraints(self.constraints, self.source)
             refuse_choices(self.space, self.source)
+        if population is None:
+            population = (
+                POPULATIONS.get(algorithm, USUAL_POPULATION) if table.population is None else table.population
+            )
         gradients = algorithm in GRADIENT_SEARCHES if table.gradients is None else table.gradients
         return SearchSettings(
             algorithm=algorithm,
             dimension=len(self.space.parameters),
             objectives=len(self.objectives),
-            population=table.population if population is None else population,
+            population=population,
             seed=table.seed if seed is None else seed,
             start=self.joint_start if algorithm == JOINT_STARTS else self.start,
             asynchronous=table.asynchronous if asynchronous is None else asynchronous,

@@ -265,13 +265,15 @@ class DescriptorTable(Table, frozen=True):
 class SearchTable(Table, frozen=True):
     """`[search]`: how the design space is searched; `start` names a file of designs to begin with.
 
-    `gradients` says whether every evaluation comes with its gradients; left out, as the algorithm wants it.
-    `reference` names values of objectives beyond which a design counts for nothing to a search that measures
-    hypervolumes against a point (`surrogate`). Descriptors tell kinds of designs apart for `map-elites`.
+    `population` left out is what suits the algorithm: 8 for `surrogate`, which learns once a generation, 48
+    for the others. `gradients` says whether every evaluation comes with its gradients; left out, as the
+    algorithm wants it. `reference` names values of objectives beyond which a design counts for nothing to a
+    search that measures hypervolumes against a point (`surrogate`). Descriptors tell kinds of designs apart
+    for `map-elites`.
     """
 
-    algorithm: Name = "nsga2"
-    population: Annotated[int, Meta(ge=2, le=100_000)] = 48
+    algorithm: Name = "surrogate"
+    population: Annotated[int, Meta(ge=2, le=100_000)] | None = None
     evaluations: Annotated[int, Meta(ge=1)] = 1920
     seed: Annotated[int, Meta(ge=0)] = 1
     hours: Positive | None = None

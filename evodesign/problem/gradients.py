@@ -37,10 +37,13 @@ from evodesign.problem.objectives import (
 )
 from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
 from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
-from evodesign.records import Case, Gradients
+from evodesign.records import Case, CaseGradient, Gradients
 from evodesign.violations import HEIGHT
 
 __all__ = ["assessed_gradients"]
+
+MOST_CASES = 8
+"""Cases of which each is logged for itself; a mean over more is logged alone."""
 
 OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass", "cost"})
 """Objectives that depend on the robot's bodies alone."""
@@ -63,18 +66,32 @@ def assessed_gradients(
     names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
     found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
     records = problem.space.records
-    spans = [(p.name, p.slope_at(value)) for p, value in zip(records, values, strict=True) if not p.choices]
-    places = [place for place, p in enumerate(records) if not p.choices]
+    spans = {
+        place: (p.name, p.slope_at(value))
+        for place, (p, value) in enumerate(zip(records, values, strict=True))
+        if not p.choices
+    }
+
+    def slopes(gradient: Array) -> dict[str, float]:
+        return {parameter: float(gradient[place]) * span for place, (parameter, span) in spans.items()}
+
+    def in_case(value: float, gradient: Found) -> CaseGradient:
+        if isinstance(gradient, NotDifferentiable):
+            return CaseGradient(value)
+        return CaseGradient(value, tuple(slopes(gradient).values()))
+
     return Gradients(
         values={
-            name: {
-                parameter: float(gradient[place]) * span
-                for place, (parameter, span) in zip(places, spans, strict=True)
-            }
+            name: slopes(gradient)
             for name, gradient in found.items()
             if not isinstance(gradient, NotDifferentiable)
         },
         absent={name: each.reason for name, each in found.items() if isinstance(each, NotDifferentiable)},
+        cases={
+            objective.name: tuple(in_case(*each) for each in cases)
+            for objective in problem.objectives
+            if 1 < len(cases := design.in_cases(objective.name)) <= MOST_CASES
+        },
     )
 
 
@@ -90,6 +107,7 @@ class _Design:
     ) -> None:
         self._problem, self._sensitivities = problem, sensitivities
         self._values, self._result = values, result
+        self._known: dict[str, list[tuple[float, Found]]] = {}
 
     @cached_property
     def _as_given(self) -> list[PostureDerivative | NotDifferentiable]:
@@ -125,7 +143,9 @@ class _Design:
         way, quantity = split_name(name)
         known = QUANTITIES.get(quantity)
         if known is not None and known.by_torque is not None:
-            return self._over_cases(known, known.by_torque, way)
+            values, gradients = zip(*self._by_case(quantity, known, known.by_torque), strict=True)
+            absent = [each for each in gradients if isinstance(each, NotDifferentiable)]
+            return absent[0] if absent else np.asarray(_weights(values, way) @ np.array(gradients))
         if name == REACH:
             return _slope(self._highest)
         if name == SHARED_REACH:
@@ -148,20 +168,31 @@ class _Design:
         found = _slope(self._highest)
         return found if isinstance(found, NotDifferentiable) else -found
 
-    def _over_cases(self, quantity: CaseQuantity, by_torque: ByTorque, way: str) -> Found:
-        """By the chain rule in every case, weighted as the value is."""
-        values, gradients = [], []
+    def in_cases(self, name: str) -> list[tuple[float, Found]]:
+        """Value and gradient in every case of a quantity that is their mean; none of any other quantity."""
+        way, quantity = split_name(name)
+        known = QUANTITIES.get(quantity)
+        if way or known is None or known.by_torque is None or objective_value(name, self._result) is None:
+            return []
+        return self._by_case(quantity, known, known.by_torque)
+
+    def _by_case(self, name: str, quantity: CaseQuantity, by_torque: ByTorque) -> list[tuple[float, Found]]:
+        """By the chain rule, in every case and under every disturbance; worked out once."""
+        if name in self._known:
+            return self._known[name]
+        found = self._known[name] = []
         for solution, derivative in zip(self._result.cases, self._cases, strict=True):
-            if isinstance(derivative, NotDifferentiable):
-                return derivative
             scene = self._result.scene_of(solution.case)
             for number, instant in enumerate(solution.instants):
                 for load_case, postures in enumerate((instant.postures, *instant.disturbed.values())):
-                    values.append(quantity.value(scene, postures))
+                    value = quantity.value(scene, postures)
+                    if isinstance(derivative, NotDifferentiable):
+                        found.append((value, derivative))
+                        continue
                     weights = by_torque(scene, postures)
                     own = self._by_actuators(quantity, solution.case, postures)
-                    gradients.append(derivative.along_torques(number, load_case, weights) + own)
-        return np.asarray(_weights(values, way) @ np.array(gradients))
+                    found.append((value, derivative.along_torques(number, load_case, weights) + own))
+        return found
 
     def _by_actuators(
         self, quantity: CaseQuantity, case: Case, postures: Mapping[str, AgentPosture]

@@ -18,7 +18,17 @@ from typing import Protocol
 
 from evodesign.records import Genome
 
-__all__ = ["GRADIENT_SEARCHES", "JOINT_STARTS", "AsynchronousSearch", "Gradient", "Outcome", "Search"]
+__all__ = [
+    "GRADIENT_SEARCHES",
+    "JOINT_STARTS",
+    "POPULATIONS",
+    "USUAL_POPULATION",
+    "AsynchronousSearch",
+    "Gradient",
+    "ObjectivePart",
+    "Outcome",
+    "Search",
+]
 
 Gradient = tuple[float | None, ...]
 """Derivatives by coordinate of the genome; None for a discrete one."""
@@ -29,6 +39,21 @@ JOINT_STARTS = "joint-starts"
 
 GRADIENT_SEARCHES = frozenset({"surrogate"})
 """Names of the searches that use gradients where evaluations have them."""
+
+
+POPULATIONS = {"surrogate": 8}
+"""Evaluations of a generation where none are given, by the name of the search."""
+
+USUAL_POPULATION = 48
+"""Of every other search."""
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectivePart:
+    """One of the values whose mean an objective is, and its derivatives; None where these are unknown."""
+
+    value: float
+    gradient: Gradient | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +68,8 @@ class Outcome:
             is unknown. None at all where only the violation is told.
         margin_gradients: of each margin, as of objectives.
         descriptors: in the settings' order, None for one that does not exist; none where none are named.
+        parts: of each objective, those whose mean it is, as many in every outcome; none for one that is no
+            such mean. None at all where nothing is known of them.
     """
 
     objectives: tuple[float, ...] | None
@@ -51,6 +78,7 @@ class Outcome:
     margins: tuple[float | None, ...] = ()
     margin_gradients: tuple[Gradient | None, ...] = ()
     descriptors: tuple[float | None, ...] = ()
+    parts: tuple[tuple[ObjectivePart, ...], ...] = ()
 
     @property
     def feasible(self) -> bool:

@@ -138,7 +138,7 @@ def test_progress_is_a_line_per_generation_on_standard_error(
     evodesign.search("icub-lifting", tmp_path / "run", **sizes, pool="serial", progress=True)
     printed = capsys.readouterr()
     lines = printed.err.splitlines()
-    assert lines[0] == "icub-lifting: nsga2, population 4, seed 3, 8 evaluations"
+    assert lines[0] == "icub-lifting: surrogate, population 4, seed 3, 8 evaluations"
     assert [line.split(",")[0] for line in lines[1:]] == [
         "generation 0: 4/8 evaluations",
         "generation 1: 8/8 evaluations",

@@ -106,7 +106,7 @@ def crowd(percentiles: str, sex: str = "both") -> str:
             "[robot.torque_limits_n_m]\nl_kne = 50.0\n[human]",
             ["robot.torque_limits_n_m", "did you mean 'l_knee'?"],
         ),
-        (PROBLEM, '"nsga2"', '"nsga"', ["algorithm", "did you mean 'nsga2'?"]),
+        (PROBLEM, '"surrogate"', '"surogate"', ["algorithm", "did you mean 'surrogate'?"]),
         ("../populations/icub.toml", "shank = 1.6", "shank = 9.6", ["icub.toml", "long_legs", "9.6"]),
         ("../populations/icub.toml", "shank = 1.6", "shnk = 1.6", ["icub.toml", "did you mean 'shank'?"]),
         (ROBOT, "<robot", "robot", ["icub_shapes.urdf", "XML"]),

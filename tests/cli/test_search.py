@@ -41,7 +41,8 @@ def remembered(run: Path) -> list[bytes]:
 
 
 def bare(evaluation: Evaluation) -> bytes:
-    return msgspec.json.encode(msgspec.structs.replace(evaluation, seconds=0.0, worker=""))
+    bare = msgspec.structs.replace(evaluation, seconds=0.0, worker="", gradient_seconds=0.0)
+    return msgspec.json.encode(bare)
 
 
 @pytest.fixture(scope="module")

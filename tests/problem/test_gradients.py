@@ -17,11 +17,13 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.objectives import objective_kinds
-from evodesign.records import Assessment, Constraint, Genome, Objective, Sense
+from evodesign.records import Assessment, Constraint, Genome, Gradients, Objective, Sense
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import digest, read_run
 from evodesign.session import search_outcome
 from evodesign.violations import bound_margin, height_margin, total_violation
+
+TORQUES = ("robot_torque", "human_torque")
 
 NEED_MORE = ("shared_reach_height", "least_safety_factor", "cost")
 """Quantities that ask for people's reach, for walls, or for prices."""
@@ -38,7 +40,16 @@ def drawn(count: int, dimension: int, seed: int) -> list[Genome]:
 
 def quantities(assessment: Assessment) -> dict[str, float]:
     margin = height_margin(assessment.reach, assessment.cases)
-    return {**assessment.objectives, **({} if margin is None else {"height": margin})}
+    norms = [(case.robot_torque_norm, case.human_torque_norm) for case in assessment.cases]
+    cases = {(name, k): pair[place] for k, pair in enumerate(norms) for place, name in enumerate(TORQUES)}
+    return {**assessment.objectives, **cases, **({} if margin is None else {"height": margin})}
+
+
+def slopes(gradients: Gradients) -> dict[object, list[float]]:
+    """Of quantities, and of those in single cases by name and number."""
+    whole = {name: list(row.values()) for name, row in gradients.values.items()}
+    cases = {(name, k): case for name, cases in gradients.cases.items() for k, case in enumerate(cases)}
+    return whole | {key: list(case.slopes) for key, case in cases.items() if case.slopes is not None}
 
 
 def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genome]) -> list[dict[str, float]]:
@@ -64,14 +75,14 @@ def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genom
         middle, *sides = found[5 * number : 5 * number + 5]
         values = [quantities(side) for side in sides]
         error = {}
-        for name, row in middle.gradients.values.items():
-            if not all(name in each for each in values):
+        for name, row in slopes(middle.gradients).items():
+            if not all(each.get(name) is not None for each in values):
                 continue
             far, near = (
                 (values[k][name] - values[k + 1][name]) / (2.0 * STEP / (1 + k // 2)) for k in (0, 2)
             )
-            slope = float(np.dot(list(row.values()), direction))
-            size = max(float(np.abs(list(row.values())).max()), 1e-2 * abs(quantities(middle)[name]))
+            slope = float(np.dot(row, direction))
+            size = max(float(np.abs(row).max()), 1e-2 * abs(quantities(middle)[name]))
             if abs(far - near) < 1e-4 * size:
                 error[name] = abs((4.0 * near - far) / 3.0 - slope) / size
         errors.append(error)
@@ -149,6 +160,11 @@ def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
         outcome = search_outcome(whole.header, evaluation)
         reach = whole.header.objectives[-1]
         assert (reach.name, reach.sense) == ("reach_height", Sense.MAXIMISE)
+        robot, human, none = outcome.parts
+        assert (len(robot), len(human), none) == (len(problem.cases), len(problem.cases), ())
+        assert np.mean([part.value for part in robot]) == pytest.approx(outcome.objectives[0], rel=1e-12)
+        means = np.mean([part.gradient for part in human], axis=0)
+        assert means == pytest.approx(outcome.gradients[1], rel=1e-9, abs=1e-12)
         assert outcome.gradients[-1] == tuple(-slope for slope in gradients.values["reach_height"].values())
 
 

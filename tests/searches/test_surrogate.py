@@ -4,13 +4,14 @@ import hashlib
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import moocore
 import numpy as np
 import pytest
 
 from evodesign.records import SearchSettings
-from evodesign.searches.base import Outcome
+from evodesign.searches.base import ObjectivePart, Outcome
 from evodesign.searches.registry import make_search
 from evodesign.searches.surrogate.approximation import KEPT, Approximation, Known
 from evodesign.searches.surrogate.evolution import Members
@@ -107,11 +108,49 @@ def test_adding_designs_equals_beginning_with_them_but_for_their_scaling():
 
 
 def test_draws_agree_where_designs_are_and_differ_elsewhere():
-    found, generator = model(known(60)), np.random.default_rng(4)
+    found, generator = model(known(20, gradients=False)), np.random.default_rng(4)
     draws = [found.drawn(generator) for _ in range(8)]
-    near, far = known(60).points, np.full((1, DIMENSION), 3.0)
-    assert np.std([draw(near) for draw in draws], axis=0).mean() < 0.1
-    assert np.std([draw(far) for draw in draws], axis=0).mean() > 0.3
+    near, far = known(20).points, generator.random((50, DIMENSION))
+    known_well, unknown = (np.std([draw(each) for draw in draws], axis=0).mean() for each in (near, far))
+    assert known_well < 0.1 * found._known.targets.std()
+    assert unknown > 3.0 * known_well
+
+
+def test_no_output_is_expected_much_beyond_what_is_known_of_it():
+    designs, far = known(20), np.full((1, DIMENSION), 30.0)
+    low, high = designs.targets.min(axis=0), designs.targets.max(axis=0)
+    found = model(designs)
+    for function, share in ((found.expected(), 0.05), (found.drawn(np.random.default_rng(4)), 0.1)):
+        beyond = share * (high - low)
+        assert ((function(far) >= low - beyond - 1e-9) & (function(far) <= high + beyond + 1e-9)).all()
+    assert found.smooth()(far).max() > 2.0 * high.max()
+
+
+def test_an_objective_is_the_mean_of_its_parts():
+    designs, points = known(30), np.random.default_rng(3).random((5, DIMENSION))
+    means = np.array([[1.0, 0.0], [0.0, 0.5], [0.0, 0.5]])
+    several = Known(designs.points, *(each[:, [0, 1, 1]] for each in (designs.targets, designs.gradients)))
+    found = Approximation(several, CONTINUOUS, np.random.default_rng(2), means=means)
+    assert found.expected()(points) == pytest.approx(model(designs).expected()(points), abs=1e-9)
+
+
+def test_another_value_of_a_part_that_has_had_one_only_is_not_ruled_out():
+    designs, far = known(30, gradients=False), np.random.default_rng(3).random((50, DIMENSION))
+    still = np.stack([designs.targets[:, 0], np.full(30, 2.0)], axis=1)
+    generator, halves = np.random.default_rng(2), np.full((2, 1), 0.5)
+    model = Approximation(
+        Known(designs.points, still, designs.gradients), CONTINUOUS, generator, means=halves
+    )
+    mean, scale = model._moments()
+    assert scale[1] == pytest.approx(0.2)
+    beyond = 0.1 * 4.0 * scale[1]
+    low, high = still[:, 0].min(), still[:, 0].max()
+    margin = 0.1 * max(high - low, 4.0 * 0.1 * abs(mean[0]))
+    found = np.stack([model.drawn(generator)(far)[:, 0] for _ in range(40)])
+    assert found.max() <= 0.5 * (high + margin + 2.0 + beyond) + 1e-9
+    assert found.min() >= 0.5 * (low - margin + 2.0 - beyond) - 1e-9
+    apart = model._together(model._fitted(), [model._fitted()[0].drawn(generator)], far)[:, 1]
+    assert np.ptp(apart) > 1e-3
 
 
 def test_margins_of_violations_are_negative_inside():
@@ -187,6 +226,33 @@ def test_a_gradient_that_is_missing_is_no_zero():
     zeros = searched(make_search(settings()), 6, flat)
     volumes = [moocore.hypervolume(np.array(each), ref=(1.0, 1.0)) for each in (gaps, zeros)]
     assert volumes[0] > volumes[1]
+
+
+def test_objectives_are_learnt_by_their_parts():
+    """The first is the mean of two that are cut off at other places; parts that are missing do no harm."""
+
+    def whole(genome):
+        point = np.array(genome)
+        near, far = 4.0 * point.mean(), 4.0 * (1.0 - point.mean())
+        values = [min(max(near - 1.0, 0.0), 1.0), max(far - 2.5, 0.0)]
+        rows = [4.0 / 6.0 * (0.0 < values[0] < 1.0), -4.0 / 6.0 * (values[1] > 0.0)]
+        parts = tuple(ObjectivePart(value, (row,) * 6) for value, row in zip(values, rows, strict=True))
+        other = ((point - 0.5) ** 2).sum()
+        gradients = ((sum(rows) / 2.0,) * 6, tuple(2.0 * (point - 0.5)))
+        return Outcome((sum(values) / 2.0, other), 0.0, gradients=gradients, parts=(parts, ()))
+
+    knowledge, generator = Knowledge(settings()), np.random.default_rng(7)
+    points = generator.random((40, 6)).tolist()
+    for place, genome in enumerate(points):
+        outcome = whole(genome)
+        knowledge.add(tuple(genome), replace(outcome, parts=()) if place % 10 == 9 else outcome)
+    model = knowledge.modelled(generator)
+    asked = generator.random((50, 6))
+    expected = np.array([whole(genome).objectives for genome in asked.tolist()])
+    assert model._known.targets.shape == (40, 3)
+    told = [whole(genome).objectives for genome in points]
+    assert model.expected()(np.array(points)) == pytest.approx(np.array(told), abs=1e-5)
+    assert np.abs(model.expected()(asked) - expected).mean() < 0.05
 
 
 def test_what_lies_beyond_a_given_reference_is_left_alone():

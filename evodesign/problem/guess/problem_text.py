@@ -159,8 +159,7 @@ def _others(plan: BodyPlan, load: LoadGuess) -> Sequence[str]:
         'maximise = ["reach_height"]',
         "",
         "[search]",
-        'algorithm = "nsga2"',
-        "population = 24",
+        'algorithm = "surrogate"',
         "evaluations = 480",
         "seed = 1",
     )

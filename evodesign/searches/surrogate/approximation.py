@@ -9,6 +9,12 @@ Coordinates along which outputs change much get short lengths,
 
 the largest over the outputs. Where gradients are unknown, those of a first model with equal lengths serve.
 
+An objective that is a mean over cases is modelled case by case, and only then averaged: in single cases
+another posture may become the best, or a limit be reached, where a mean of all is hard to follow. No output
+is expected much beyond what is known of it: by more than a twentieth of its range, in a sample a tenth.
+Where a case has had one value only, such as that of a person who pushes as hard as may be, another is not
+ruled out: its scale is a tenth of its mean at least.
+
 Features are drawn anew when 64 designs have come since, so that the search does not lean on one draw, from
 at most a thousand designs: so the time of a proposal is bounded, however many there are.
 """
@@ -42,6 +48,8 @@ FEWEST_FIRST, FIRST_PER_DIMENSION = 8, 1.5
 
 QUANTILE, OUTLIER = 0.98, 3.0
 LENGTH, SHARE, POWER = 2.5, 0.05, -0.6
+EXPECTED_BEYOND, DRAWN_BEYOND = 0.05, 0.1
+LEAST_SCALE, SCALES_OF_A_RANGE = 0.1, 4.0
 ALMOST = 1e-12
 
 
@@ -73,6 +81,7 @@ class Approximation:
         generator: draws its features.
         scale: by which the lengths are multiplied.
         features: of each model; None for as many as suit the dimension.
+        means: what is made of the outputs [outputs x objectives]; None for the outputs themselves.
     """
 
     def __init__(
@@ -82,7 +91,9 @@ class Approximation:
         generator: np.random.Generator,
         scale: float = 1.0,
         features: int | None = None,
+        means: Array | None = None,
     ) -> None:
+        self._means = np.eye(known.targets.shape[1]) if means is None else means
         first = known.targets[: max(FEWEST_FIRST, int(FIRST_PER_DIMENSION * known.points.shape[1]))]
         low, middle, high = (np.quantile(first, share, axis=0) for share in (0.0, 0.5, 1.0))
         tailed = (high > SPAN * low) & (high - middle > TAIL * (middle - low))
@@ -128,13 +139,15 @@ class Approximation:
             slopes[:, group] -= model.slopes(points)
         residual = LocalResidual(points, self.lengths / self.lengths.min(), missed, slopes)
         weights = [model.weights for model in fitted]
-        return lambda places: self._natural(self._together(fitted, weights, places) + residual(places))
+        bounded = self._bounded(EXPECTED_BEYOND)
+        return lambda places: bounded(self._together(fitted, weights, places) + residual(places))
 
     def drawn(self, generator: np.random.Generator) -> Function:
         """A Thompson sample: a function that may be the true one, for all that is known."""
         fitted = self._fitted()
         weights = [model.drawn(generator) for model in fitted]
-        return lambda places: self._natural(self._together(fitted, weights, places))
+        bounded = self._bounded(DRAWN_BEYOND)
+        return lambda places: bounded(self._together(fitted, weights, places))
 
     def smooth(self) -> Function:
         """The mean of the global model alone."""
@@ -153,6 +166,12 @@ class Approximation:
 
         return at
 
+    def _bounded(self, beyond: float) -> Function:
+        """Makes objectives of outputs, which it keeps within the range that is known, and a share beyond."""
+        low, high = self._known.targets.min(axis=0), self._known.targets.max(axis=0)
+        margin = beyond * np.maximum(high - low, SCALES_OF_A_RANGE * self._least_scales())
+        return lambda outputs: self._natural(np.clip(outputs, low - margin, high + margin)) @ self._means
+
     def _fitted(self) -> list[FittedModel]:
         mean, deviation = self._moments()
         return [
@@ -161,9 +180,14 @@ class Approximation:
         ]
 
     def _moments(self) -> tuple[Array, Array]:
-        """Mean and standard deviation of every output."""
+        """Mean of every output, and the scale it is measured by: its standard deviation, or the least one."""
         targets = self._known.targets
-        return targets.mean(axis=0), targets.std(axis=0) + ALMOST
+        return targets.mean(axis=0), np.maximum(targets.std(axis=0) + ALMOST, self._least_scales())
+
+    def _least_scales(self) -> Array:
+        """Zero but for the parts of means."""
+        parts = (self._means.max(axis=1) < 1.0) & ~self._logarithmic
+        return np.where(parts, LEAST_SCALE * np.abs(self._known.targets.mean(axis=0)), 0.0)
 
     def _together(self, fitted: list[FittedModel], weights: list[Array], places: Array) -> Array:
         found = np.empty((len(places), len(self._logarithmic)))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.records import Genome, SearchSettings
-from evodesign.searches.base import Gradient, Outcome
+from evodesign.searches.base import Gradient, ObjectivePart, Outcome
 from evodesign.searches.ranking import usable
 from evodesign.searches.surrogate.approximation import (
     FEWEST_FIRST,
@@ -60,6 +60,7 @@ class Knowledge:
         self._known: list[int] = []
         self._violated = False
         self._front: tuple[int, Array, Array] | None = None
+        self._parts: tuple[int, ...] = ()
         self._model, self._margins, self._failures = (_Maintained(self._discrete) for _ in range(3))
 
     def __len__(self) -> int:
@@ -73,6 +74,8 @@ class Knowledge:
             self._known.append(len(self))
             self._violated |= violation > 0.0
         if values is not None:
+            if not self._feasible:
+                self._parts = tuple(map(len, outcome.parts)) or (0,) * len(values)
             self._feasible.append(len(self))
             self._objectives.append(values)
         self._genomes.append(genome)
@@ -114,16 +117,35 @@ class Knowledge:
         Args:
             generator: draws features when they are drawn anew.
         """
-        return self._model.of(len(self._feasible), self._reported, self._kept, generator)
+        counts = [max(count, 1) for count in self._parts]
+        means = np.repeat(np.eye(len(counts)), counts, axis=0) / counts
+        return self._model.of(len(self._feasible), self._reported, self._kept, generator, means)
 
     def _reported(self, which: NDArray[np.intp]) -> Known:
         """Some of the feasible designs."""
         places = [self._feasible[place] for place in which]
-        rows = [self._outcomes[place].gradients for place in places]
-        gradients = self._gradients(rows, self._settings.objectives)
-        return Known(self.points[places], self._objectives.array[which], gradients)
+        rows = [self._parts_of(self._outcomes[place]) for place in places]
+        targets = np.array([[part.value for part in row] for row in rows])
+        gradients = self._gradients([[part.gradient for part in row] for row in rows], targets.shape[1])
+        return Known(self.points[places], targets, gradients)
 
-    def _gradients(self, rows: Sequence[tuple[Gradient | None, ...]], outputs: int) -> Array:
+    def _parts_of(self, outcome: Outcome) -> list[ObjectivePart]:
+        """What is modelled of an outcome: parts of objectives as the first feasible one has, or the whole.
+
+        An objective whose parts are not known counts as if they were equal, without gradients.
+        """
+        found = []
+        for place, (value, count) in enumerate(zip(usable(outcome) or (), self._parts, strict=True)):
+            parts = outcome.parts[place] if outcome.parts else ()
+            if not count:
+                found.append(ObjectivePart(value, outcome.gradients[place] if outcome.gradients else None))
+            elif len(parts) == count:
+                found += parts
+            else:
+                found += [ObjectivePart(value, None)] * count
+        return found
+
+    def _gradients(self, rows: Sequence[Sequence[Gradient | None]], outputs: int) -> Array:
         """[designs x outputs x dimension], nan where unknown."""
         found = np.full((len(rows), outputs, self._settings.dimension), np.nan)
         for place, row in enumerate(rows):
@@ -237,6 +259,7 @@ class _Maintained:
         reported: Callable[[NDArray[np.intp]], Known],
         kept: Callable[[], NDArray[np.intp]],
         generator: np.random.Generator,
+        means: Array | None = None,
     ) -> Approximation | None:
         """The model of so many designs; None of too few.
 
@@ -245,13 +268,14 @@ class _Maintained:
             reported: gives some of them.
             kept: gives the places of those that stay where there are more than may be.
             generator: draws features when they are drawn anew.
+            means: what is made of the modelled outputs; None for the outputs themselves.
         """
         if count < FEWEST:
             return None
         model = self._model
         if model is None or count >= self._made_at + min(REDRAWN, self._made_at):
             known = reported(kept() if count > KEPT else np.arange(count))
-            model = Approximation(known, self._discrete, generator)
+            model = Approximation(known, self._discrete, generator, means=means)
             self._made_at = count
         elif count > self._count:
             model.add(reported(np.arange(self._count, count)))
