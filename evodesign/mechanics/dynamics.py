@@ -209,9 +209,9 @@ def needed_wrench(
         return ca.DM.zeros(3), ca.DM.zeros(3)
     center = root_from_link @ vector(inertia.center)
     force = inertia.mass * motion.at(center)
-    about_center = root_from_link @ _columns(inertia.about_center) @ root_from_link.T
-    spin = about_center @ motion.spin_up + ca.cross(motion.turning, about_center @ motion.turning)
-    return force, spin + ca.cross(center, force)
+    about_center, turning = _columns(inertia.about_center), root_from_link.T @ motion.turning
+    own = about_center @ (root_from_link.T @ motion.spin_up) + ca.cross(turning, about_center @ turning)
+    return force, root_from_link @ own + ca.cross(center, force)
 
 
 def _spatial_inertia(inertia: Inertia, pose: Pose) -> Expression:

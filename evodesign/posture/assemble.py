@@ -46,6 +46,7 @@ __all__ = [
     "CaseSymbols",
     "Embodied",
     "FreeHands",
+    "MOVING_PARTS",
     "LoadCase",
     "PostureMotion",
     "Slot",
@@ -55,6 +56,9 @@ __all__ = [
 
 
 EVERYTHING = Enforced()
+
+MOVING_PARTS = ("base_position", "base_angles", "joints")
+"""The parts of a posture that move in a motion."""
 
 
 @dataclass(frozen=True, slots=True)
