@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from evodesign.errors import InputError
+from evodesign.errors import InputError, nearest_name
 from evodesign.motion.spline import RestingSpline
 from evodesign.posture.check import AgentMotion, SceneMotion
 from evodesign.posture.results import Instant
 from evodesign.posture.symmetry import Form
 
-__all__ = ["Lift", "LiftCourse", "LoadProfile", "minimum_jerk"]
+__all__ = ["Lift", "LiftCourse", "LoadProfile", "minimum_jerk", "profile_named"]
 
 Array = NDArray[np.float64]
 FEWEST_KNOTS = 4
@@ -34,6 +34,18 @@ class LoadProfile(StrEnum):
 
     MINIMUM_JERK = "minimum_jerk"
     FREE = "free"
+
+
+def profile_named(name: str) -> LoadProfile:
+    """The profile of a name.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name not in list(LoadProfile):
+        wanted = f"one of {', '.join(LoadProfile)}"
+        raise InputError("lift", "profile", wanted, f"'{name}'{nearest_name(name, list(LoadProfile))}")
+    return LoadProfile(name)
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,6 +41,7 @@ from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
+from evodesign.tree.model import Tree
 
 __all__ = ["FastestJoint", "KnotBlocks", "fastest_joints", "undisturbed"]
 
@@ -64,9 +65,9 @@ def undisturbed(scene: Scene) -> Scene:
     return replace(scene, disturbances=Disturbances())
 
 
-def fastest_joints(form: Form, part: object) -> FastestJoint:
+def fastest_joints(form: Form, part: Tree) -> FastestJoint:
     """The largest speed of each of the form's joints [rad/s]; of a design's actuators where it has them."""
-    joints = {joint.name: joint.velocity for joint in part.joints}  # type: ignore[attr-defined]
+    joints = {joint.name: joint.velocity for joint in part.joints}
     return {name: _known(joints[name]) for name in form.joints}
 
 

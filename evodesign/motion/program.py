@@ -79,7 +79,7 @@ class LiftProgram:
         return RepeatedProgram("lift", parts, self._options)
 
     def _stacked(self, splines: Sequence[tuple[Array, str]], *, carried: bool) -> sparse.csc_matrix:
-        """What blocks see: splines, then torques and wrenches, then places; one repetition after the other."""
+        """What blocks see: splines, torques and wrenches, places; one repetition after the other."""
         rows = []
         for number in range(len(splines[0][0])):
             for image, kind in splines:
@@ -169,13 +169,13 @@ class LiftProgram:
     @staticmethod
     def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:
         key, size, scale = variable.key, len(variable.lower), variable.scale  # type: ignore[attr-defined]
-        return parts[key.party][key.part][:size] / scale
+        return np.asarray(parts[key.party][key.part][:size] / scale)
 
     def _places_of(self, moving: Array, height: float, shared: Array) -> Array:
         """Where the soles of a posture are: what they are off from nowhere."""
         nowhere = np.zeros(self._places)
         found = np.asarray(self._blocks.closure(moving, height, nowhere, shared)[0]).ravel()
-        return found[self._sole_rows]
+        return np.asarray(found[self._sole_rows])
 
     @cached_property
     def _sole_rows(self) -> Array:
@@ -233,7 +233,9 @@ class LiftProgram:
         return found
 
 
-def _bounded_step(jacobian: Array, open_by: Array, at_low: Array, at_high: Array) -> Array:
+def _bounded_step(
+    jacobian: Array, open_by: Array, at_low: NDArray[np.bool_], at_high: NDArray[np.bool_]
+) -> Array:
     """The smallest change that closes, of those that do not leave bounds which are met."""
     free = np.ones(jacobian.shape[1], bool)
     for _ in range(4):

@@ -3,7 +3,7 @@
 With K knots a step apart, K coefficients c_1 .. c_K of B-splines say the whole motion; the ones beyond the
 ends mirror those within (c_0 = c_2), so that the speed vanishes at both ends. At a knot
 
-    x = (c_0 + 4 c_1 + c_2) / 6      dx/dt = (c_2 - c_0) / (2 step)      d2x/dt2 = (c_0 - 2 c_1 + c_2) / step^2
+    x = (c_0 + 4 c_1 + c_2) / 6    dx/dt = (c_2 - c_0) / (2 step)    d2x/dt2 = (c_0 - 2 c_1 + c_2) / step^2
 
 Everywhere the spline is a weighted mean of four coefficients, so bounds of coefficients are bounds of it.
 

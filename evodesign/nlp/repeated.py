@@ -28,7 +28,7 @@ from evodesign.nlp.ipopt import casadi_options
 from evodesign.nlp.method import Ending, SolverOptions
 from evodesign.nlp.program import Array, Expression
 
-__all__ = ["Block", "RepeatedProgram", "Repeated"]
+__all__ = ["Block", "Repeated", "RepeatedProgram"]
 
 
 @dataclass(frozen=True, slots=True)

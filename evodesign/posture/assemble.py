@@ -42,11 +42,11 @@ from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
 __all__ = [
+    "MOVING_PARTS",
     "Assembly",
     "CaseSymbols",
     "Embodied",
     "FreeHands",
-    "MOVING_PARTS",
     "LoadCase",
     "PostureMotion",
     "Slot",

@@ -42,12 +42,14 @@ class AgentModel:
         agent: with the limits of a design's actuators.
         body: its links.
         solid: its bodies; None where they may pass through anything.
+        tree: of numbers, a design's.
         rotors: inertia of its actuators [kg m^2], by joint.
     """
 
     agent: Agent
     body: FloatingBody
     solid: CheckedBodies | None
+    tree: Tree
     rotors: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
@@ -55,7 +57,7 @@ class AgentModel:
         """The agent with a tree of numbers (a design's)."""
         rules = agent.collisions
         solid = None if rules is None else CheckedBodies.of(tree, rules.checked)
-        return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)), solid)
+        return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)), solid, tree)
 
     def resized(self, tree: Tree) -> AgentModel:
         """The same agent with the tree of another design, and the limits of its actuators."""
@@ -65,7 +67,7 @@ class AgentModel:
             limits = agent.torque_limits if agent.limits_torques else {}
             agent = replace(agent, torque_limits={**limits, **rated}, limits_torques=True)
         rotors = {name: float(each.inertia) for name, each in actuators_of(tree).items()}
-        return replace(self, agent=agent, body=self.body.resized(tree), solid=solid, rotors=rotors)
+        return replace(self, agent=agent, body=self.body.resized(tree), solid=solid, tree=tree, rotors=rotors)
 
     def at(self, posture: AgentPosture, motion: AgentMotion | None = None) -> BodyState:
         """Kinematics, Jacobians and gravity torques of a posture, and what its motion takes beside them."""
