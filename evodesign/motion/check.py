@@ -1,10 +1,12 @@
 """The independent check of a lift: pinocchio on whole trees, at every knot and between knots.
 
-Every term of a hold finds its residuals anew (`posture.check`), with pinocchio's inverse dynamics (RNEA) where a
-hold has gravity alone. At knots they are as small as those of a hold. Between knots, where splines of torques
-and wrenches are compared with what the motion takes there, they keep within a share of the largest ones.
+Every term of a hold finds its residuals anew (`posture.check`), with pinocchio's inverse dynamics (RNEA)
+where a hold has gravity alone. At knots they are as small as those of a hold. Between knots, where splines
+of torques and wrenches are compared with what the motion takes there, they keep within a share of the
+largest ones.
 
-New for a motion: joints within their speed; feet that stay; rest at both ends; and a balance of energy,
+New for a motion: joints within their speed; feet that stay, and rigid hands that do not turn; rest at both
+ends; and a balance of energy,
 
     work of the joint torques = change of the potential and kinetic energy of robot, person and load
 """
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.integrate import simpson
 
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.mechanics.scene import SIDES, Grasp, Scene
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import fastest_joints
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, SceneMotion
@@ -35,8 +37,11 @@ Array = NDArray[np.float64]
 BETWEEN = 4
 """Points between two knots at which a lift is looked at."""
 
-PLACES = {"m": 3e-3, "m or rad": 3e-3, "rad": 5e-3, "1": 5e-3, "m/s": 3e-3, "rad/s": 5e-2}
+PLACES = {"m": 3e-3, "m or rad": 5e-3, "rad": 5e-3, "1": 5e-3, "m/s": 3e-3, "rad/s": 5e-2}
 """What residuals between knots may be, by unit, that are no forces."""
+
+LEAST_ENERGY = 1.0
+"""Energy [J] of lifts that hardly change it, to which their work is compared."""
 
 SHARE = 0.03
 """What residuals of forces and torques between knots may be, as a share of the largest ones."""
@@ -109,13 +114,15 @@ class LiftChecker:
             )
             for model in self._models
         }
+        work = {name: float(simpson(power, x=times)) for name, power in powers.items()}
+        begin, end = (self._energy(instants[place], motions[place], course) for place in (0, -1))
+        energy = end - begin
         return CheckedLift(
             knots=_largest(at_knots),
             between=_largest(between),
-            wrong=_wrong(at_knots, between, instants),
-            work={name: float(simpson(power, x=times)) for name, power in powers.items()},
-            energy=self._energy(instants[-1], motions[-1], course)
-            - self._energy(instants[0], motions[0], course),
+            wrong=_wrong(at_knots, between, instants) or _unbalanced(sum(work.values()), energy),
+            work=work,
+            energy=energy,
             powers=powers,
         )
 
@@ -132,16 +139,23 @@ class LiftChecker:
         return found
 
     def _add_slips(self, instants: Sequence[Instant], found: Sequence[list[Residual]]) -> None:
-        """By how much soles are not where they were at the beginning."""
+        """By how much soles are not where they were at the beginning, and rigid hands turned."""
         for model in self._models:
             agent, first = model.agent, None
             for instant, residuals in zip(instants, found, strict=True):
                 state = model.at(instant.postures[agent.name])
                 poses = [state.pose(agent.soles[side]) for side in SIDES]
-                here = np.array([np.r_[origin[:2], turn[1, 0]] for turn, origin in poses])
+                here = np.concatenate([np.r_[origin[:2], turn[1, 0]] for turn, origin in poses])
+                if self._scene.payload.grasp is Grasp.RIGID:
+                    turns = [state.pose(agent.hands[side])[0].ravel() for side in SIDES]
+                    here = np.concatenate([here, *turns])
                 first = here if first is None else first
                 slip = float(np.abs(here - first).max())
-                residuals.append(Residual(f"{agent.name}.slip", slip, "m or rad", "the place of a foot"))
+                residuals.append(
+                    Residual(
+                        f"{agent.name}.slip", slip, "m or rad", "the place of a foot or the turn of a hand"
+                    )
+                )
 
     def _energy(self, instant: Instant, motion: SceneMotion, course: LiftCourse) -> float:
         """Potential and kinetic energy of robot and person, and of the load, up to a constant [J]."""
@@ -166,6 +180,13 @@ def _rest(motion: SceneMotion) -> list[Residual]:
 def _power(joints: Sequence[str], posture: AgentPosture, rates: Array) -> float:
     """Of an agent's joint torques [W]."""
     return float(sum(posture.torques[name] * rate for name, rate in zip(joints, rates[6:], strict=True)))
+
+
+def _unbalanced(work: float, energy: float) -> str:
+    """A sentence where work is done on nothing."""
+    if abs(work - energy) <= SHARE * max(abs(energy), LEAST_ENERGY):
+        return ""
+    return f"the check found that joints do {work:.4g} J of work for {energy:.4g} J of energy"
 
 
 def _largest(found: Sequence[Sequence[Residual]]) -> dict[str, float]:

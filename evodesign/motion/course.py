@@ -1,7 +1,7 @@
 """A lift in time: what is asked for, and the motion that a solve gives.
 
-Along a minimum-jerk profile the load's height is h(s) = a + (b - a) (10 s^3 - 15 s^4 + 6 s^5), with s the share
-of the time that has passed: it is at rest, and its acceleration vanishes, at both ends.
+Along a minimum-jerk profile the load's height is h(s) = a + (b - a) (10 s^3 - 15 s^4 + 6 s^5), with s the
+share of the time that has passed: it is at rest, and its acceleration vanishes, at both ends.
 
 Source: Flash and Hogan 1985 (minimum jerk).
 """

@@ -1,14 +1,15 @@
 """What is said of a lift at one knot, and between two: blocks over the terms of a hold.
 
-At a knot robot, person and load are in balance with their inertial forces, and every term of a hold is said as
-it is there (`posture.terms`). Three things are new: joints keep within their speed, feet stay in their place,
-and accelerations are slightly disliked. Half-way between knots hands and feet are nearly in their places;
-without that the best motion bends an elbow the other way between two knots that are exact.
+At a knot robot, person and load are in balance with their inertial forces, and every term of a hold is said
+as it is there (`posture.terms`). Four things are new: joints keep within their speed; feet stay in their
+place; hands that hold rigidly do not turn, for else their moments would do work on nothing; accelerations
+are slightly disliked. Half-way between knots hands and feet are nearly in their places; without that the
+best motion bends an elbow the other way between two knots that are exact.
 
 A block's symbols are, in the program's units, step the time between knots:
 
-    posture, step * its rate, step^2 * their change, load height, step^2 * its change, torques and wrenches,
-    places of the feet
+    posture, step * its rate, step^2 * its change, load height, step^2 * its change, torques and wrenches,
+    places of the feet, turns of rigid hands
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.disturbance import Disturbances
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
 from evodesign.nlp.program import Expression, Variable
 from evodesign.nlp.repeated import Block
 from evodesign.posture.allocation import shared_scene, shared_weights
@@ -86,6 +87,7 @@ class Symbols:
         height: of the load [m].
         lifted: its acceleration [m/s^2].
         places: of the soles: x, y [m] and the sine of their turn, by agent and side.
+        grips: of hands that hold rigidly: how they are turned against where a start has them, likewise.
     """
 
     moving: tuple[Variable, ...]
@@ -95,6 +97,7 @@ class Symbols:
     height: Expression
     lifted: Expression
     places: Mapping[tuple[str, str], Expression]
+    grips: Mapping[tuple[str, str], Expression]
 
 
 class KnotBlocks:
@@ -119,6 +122,9 @@ class KnotBlocks:
         self._parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
         self._rates = {form.agent.name: _derivatives(form, "rate") for form in forms}
         self._changes = {form.agent.name: _derivatives(form, "change") for form in forms}
+        rigid = scene.payload.grasp is Grasp.RIGID
+        hands = [(form.agent.name, side) for form in forms for side in form.sides if rigid]
+        self._turns = {key: ca.SX.sym(f"{'.'.join(key)}_turn", 3, 3) for key in hands}
         self._height, self._lifted = ca.SX.sym("height"), ca.SX.sym("lifted")
 
     @cached_property
@@ -146,6 +152,7 @@ class KnotBlocks:
                 for form in self.forms
                 for side in form.sides
             },
+            grips={key: ca.SX.sym(f"{'.'.join(key)}_grip", 3) for key in self._turns},
         )
 
     @cached_property
@@ -155,13 +162,14 @@ class KnotBlocks:
 
     @property
     def shared(self) -> Expression:
-        """Design, step [s], the load's mass [kg], and the share of inertia that counts: 1, or 0 for none."""
-        return ca.vertcat(self.design, self._step, self._mass, self._inertia)
+        """Design, step [s], the load's mass [kg], the share of inertia that counts, and a start's hands."""
+        turns = [ca.vec(turn) for turn in self._turns.values()]
+        return ca.vertcat(self.design, self._step, self._mass, self._inertia, *turns)
 
     @cached_property
     def knot(self) -> Block:
         """What is said at a knot; its own number is its weight in the cost."""
-        seen, assembly, weight = self.symbols, self._assembly, ca.SX.sym("weight")
+        _seen, assembly, weight = self.symbols, self._assembly, ca.SX.sym("weight")
         by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
         held = assembly.undisturbed
         rows, low, high = [], [], []
@@ -171,7 +179,7 @@ class KnotBlocks:
             high += [each.upper] * each.expression.numel()
         for body in held.bodies.values():
             speeds = self._speeds(body)
-            placed = ca.vertcat(*[offset[[0, 1, 5]] for offset in self._soles(body)])
+            placed = ca.vertcat(*[offset[[0, 1, 5]] for offset in self._soles(body)], *self._grips(body))
             rows += [speeds, placed]
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
@@ -188,6 +196,7 @@ class KnotBlocks:
             rows += [row.expression / HAND_CLOSURE for row in GRASP.rows(body)]
             for offset in self._soles(body):
                 rows += [offset[:3] / SOLE_CLOSURE, offset[3:] / SLANT_CLOSURE]
+            rows += [turned / SLANT_CLOSURE for turned in self._grips(body)]
         closed = CLOSURE_UNIT * ca.vertcat(*rows)
         column = ca.vertcat(self._posture, self._height, self._places)
         (closed,) = self._in_units([closed], column)
@@ -203,7 +212,7 @@ class KnotBlocks:
         rows = []
         for body in self._assembly.undisturbed.bodies.values():
             rows += [row.expression for row in GRASP.rows(body)]
-            rows += self._soles(body)
+            rows += [*self._soles(body), *self._grips(body)]
         (open_by,) = self._in_units([ca.vertcat(*rows)], ca.vertcat(self._posture))
         arguments = [self._posture, self._height, self._places, self.shared]
         outputs = [open_by, ca.jacobian(open_by, self._posture)]
@@ -216,7 +225,16 @@ class KnotBlocks:
 
     @property
     def _places(self) -> Expression:
-        return ca.vertcat(*self.symbols.places.values())
+        return ca.vertcat(*self.symbols.places.values(), *self.symbols.grips.values())
+
+    @cached_property
+    def hands(self) -> ca.Function:
+        """How hands that hold rigidly are turned, as `shared` has them, from posture and design."""
+        bodies = self._assembly.undisturbed.bodies
+        turns = [bodies[name].poses[bodies[name].agent.hands[side]].rotation for name, side in self._turns]
+        column = ca.vertcat(ca.SX(0, 1), *[ca.vec(turn) for turn in turns])
+        (found,) = self._in_units([column], self._posture)
+        return ca.Function("hands", [self._posture, self.design], [found], {"cse": True})
 
     @cached_property
     def _stepped(self) -> tuple[Expression, Expression, Expression]:
@@ -261,6 +279,13 @@ class KnotBlocks:
             sole, place = body.poses[body.agent.soles[side]], self.symbols.places[body.agent.name, side]
             where = sole.position - ca.vertcat(place[:2], 0.0)
             yield ca.vertcat(where, sole.rotation[:2, 2], sole.rotation[1, 0] - place[2])
+
+    def _grips(self, body: Body) -> Iterator[Expression]:
+        """By how much each rigid hand turns from its grip: axis times sine of the angle."""
+        for side in body.form.sides if self._turns else ():
+            key = body.agent.name, side
+            turn = self._turns[key].T @ body.poses[body.agent.hands[side]].rotation
+            yield ca.inv_skew(turn - turn.T) / 2.0 - self.symbols.grips[key]
 
     def _smoothness(self, form: Form) -> Expression:
         changes = self._changes[form.agent.name]["joints"] / SPEEDING_UP

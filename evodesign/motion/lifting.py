@@ -1,7 +1,7 @@
-"""Lifts of any design of a scene: found from its holds at both ends, checked, and told why where there is none.
+"""Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
-Solves begin at the hold at either end, followed along the lift with the feet in place, so that a result depends
-on problem and design alone; the cheapest that the check agrees with counts. Holds of several heights joined
+Solves begin at the hold at either end, followed along the lift with the feet in place, so that a result
+depends on problem and design alone; the cheapest that the check agrees with counts. Holds of several heights joined
 together do not do for a start: their elbows bend in different ways.
 """
 
@@ -148,20 +148,19 @@ class LiftProblem:
         self, design: Sequence[float], lift: Lift, ends: Mapping[str, CaseSolution], checker: LiftChecker
     ) -> LiftSolution:
         program, mass = self._program(lift.knots), self._scene.payload.mass
-        shared = np.array([*design, lift.step, mass, 1.0])
         begins = {"beginning": 0, "end": lift.knots - 1}
         starts = {
-            name: program.followed(lift, ends[name].postures, knot, shared) for name, knot in begins.items()
+            name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
         }
         solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
         attempts = tuple(_attempt(name, ending, seconds) for name, ending, seconds in solves)
-        endings = [ending for _, ending, _ in solves if status_of(ending.word) is Status.SOLVED]
-        if not endings:
+        solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
+        if not solved:
             return self._none(design, lift, starts, attempts)
-        best = min(endings, key=lambda ending: ending.cost)
+        name, best, _ = min(solved, key=lambda end: end[1].cost)
         course = program.course(lift, best.symbols)
         checked = checker.check(course)
-        slow, _ = program.solve(lift, LiftStart(best.symbols, 0.0), design, mass, 0.0)
+        slow, _ = program.solve(lift, replace(starts[name], symbols=best.symbols), design, mass, 0.0)
         return LiftSolution(
             lift=lift,
             status=Status.NUMERICAL_FAILURE if checked.wrong else Status.SOLVED,

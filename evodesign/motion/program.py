@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 FARTHEST, LOWEST, HIGHEST = 3.0, 0.05, 3.0
 """How far from the load a foot may stand, and between which heights a load may be [m]."""
 
+TURN = 0.8
+"""Sine of the angle by which rigid hands may be turned otherwise than in the start."""
+
 TRIES, CLOSED, LONGEST_STEP = 60, 1e-9, 0.3
 """Of closing hands and feet: iterations, what counts as closed [m], largest change [rad]."""
 
@@ -34,10 +37,12 @@ class LiftStart:
 
     Args:
         symbols: of the program.
+        hands: how rigid hands are turned in it, entries of rotations; none for other grasps.
         open_by: by how much hands or feet are out of place at the worst knot [m].
     """
 
     symbols: Array
+    hands: Array
     open_by: float
 
 
@@ -57,7 +62,8 @@ class LiftProgram:
         self._blocks, self._knots, self._options = blocks, knots, options
         self._postures = int(blocks.free.sum())
         self._others = sum(len(v.lower) for v in blocks.symbols.others)
-        self._places = 3 * len(blocks.symbols.places)
+        self._soles, self._grips = len(blocks.symbols.places), len(blocks.symbols.grips)
+        self._places = 3 * (self._soles + self._grips)
         ends = np.cumsum([0, knots * self._postures, knots, knots * self._others, self._places])
         self._first = dict(zip(("postures", "load", "others", "places"), ends.tolist(), strict=False))
         self._size = int(ends[-1])
@@ -108,7 +114,7 @@ class LiftProgram:
             mass: of the load [kg].
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
         """
-        shared = np.array([*design, lift.step, mass, inertia])
+        shared = np.array([*design, lift.step, mass, inertia, *start.hands])
         weights = np.full((self._knots, 1), 1.0 / (self._knots - 1))
         weights[[0, -1]] /= 2.0
         low, high = self._bounds(lift)
@@ -126,7 +132,8 @@ class LiftProgram:
             height = RestingSpline(self._knots).through(lift.heights)
             if lift.profile is LoadProfile.FREE:
                 height = self._free_heights(lift, sign)
-            places = np.tile([sign * FARTHEST, sign * FARTHEST, sign], self._places // 3)
+            soles = [sign * FARTHEST, sign * FARTHEST, sign] * self._soles
+            places = np.array(soles + [sign * TURN] * 3 * self._grips)
             postures = np.tile(np.concatenate(moving)[free], self._knots)
             sides.append(
                 np.concatenate([postures, height, np.tile(np.concatenate(others), self._knots), places])
@@ -141,7 +148,7 @@ class LiftProgram:
         return heights
 
     def followed(
-        self, lift: Lift, postures: Mapping[str, AgentPosture], begin: int, shared: Array
+        self, lift: Lift, postures: Mapping[str, AgentPosture], begin: int, design: Sequence[float]
     ) -> LiftStart:
         """A start: a hold's posture, followed along the lift with the feet in place, by least-norm steps.
 
@@ -149,7 +156,7 @@ class LiftProgram:
             lift: with as many knots.
             postures: of the hold, by agent name.
             begin: the knot at whose height it is, the first or the last.
-            shared: design, step [s], mass [kg] and share of inertia.
+            design: one number per parameter.
         """
         seen, free = self._blocks.symbols, self._blocks.free
         parts = {form.agent.name: form.parts(postures[form.agent.name]) for form in self._blocks.forms}
@@ -157,6 +164,8 @@ class LiftProgram:
         others = np.concatenate([self._known(parts, v) for v in seen.others])
         closure, path = self._blocks.closure, np.empty((self._knots, self._postures))
         order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
+        hands = np.asarray(self._blocks.hands(moving, design)).ravel()
+        shared = np.array([*design, lift.step, 0.0, 0.0, *hands])  # of which a place does not ask the rest
         places, worst = self._places_of(moving, lift.heights[begin], shared), 0.0
         for knot in order:
             moving, open_by = self._closed(closure, moving, lift.heights[knot], places, shared)
@@ -164,7 +173,7 @@ class LiftProgram:
         coefficients = RestingSpline(self._knots).through(path)
         load = RestingSpline(self._knots).through(lift.heights)
         symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
-        return LiftStart(np.concatenate(symbols), worst)
+        return LiftStart(np.concatenate(symbols), hands, worst)
 
     @staticmethod
     def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:
@@ -175,7 +184,7 @@ class LiftProgram:
         """Where the soles of a posture are: what they are off from nowhere."""
         nowhere = np.zeros(self._places)
         found = np.asarray(self._blocks.closure(moving, height, nowhere, shared)[0]).ravel()
-        return np.asarray(found[self._sole_rows])
+        return np.concatenate([found[self._sole_rows], np.zeros(3 * self._grips)])
 
     @cached_property
     def _sole_rows(self) -> Array:
@@ -187,6 +196,7 @@ class LiftProgram:
             for _ in form.sides:
                 rows += [first, first + 1, first + 5]
                 first += 6
+            first += 3 * len(form.sides) if self._grips else 0
         return np.array(rows)
 
     def _closed(

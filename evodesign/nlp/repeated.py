@@ -90,10 +90,8 @@ class RepeatedProgram:
         counts = [part.times * part.block.rows.numel() for part in parts]
         self.rows = sum(counts)
         self.variables = int(parts[0].image.shape[1])
-        self._limits = tuple(
-            np.concatenate([np.tile(limit(part.block), part.times) for part in parts])
-            for limit in (lambda block: block.lower, lambda block: block.upper)
-        )
+        least = np.concatenate([np.tile(part.block.lower, part.times) for part in parts])
+        self._limits = least, np.concatenate([np.tile(part.block.upper, part.times) for part in parts])
         self._counts = counts
 
     def solve(
