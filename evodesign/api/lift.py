@@ -38,9 +38,9 @@ def lift(
     Raises:
         InputError: a design or a lift that there is not.
     Example:
-        >>> (lifted,) = evodesign.lift(problem, from_m=0.8, to_m=1.0, knots=6).values()
-        >>> lifted.status, lifted.efforts["robot"].peak_torque
-        ('solved', ...)
+        >>> lifts = evodesign.lift(problem, from_m=0.9, to_m=2.5)
+        >>> lifts["tall", ""].reason
+        'the load cannot be held at the end of the lift: ...'
     """
     asked = Lift(from_m, to_m, seconds, profile_named(profile), knots)
     given: Any = design if len(design) else {}

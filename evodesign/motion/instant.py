@@ -184,9 +184,9 @@ class KnotBlocks:
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
         cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
-        column, own = self._column(), ca.vertcat(weight)
+        column, own, compiled = self._column(), ca.vertcat(weight), self._setting.options.compiled
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
-        return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))
+        return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high), compiled)
 
     @cached_property
     def between(self) -> Block:

@@ -1,8 +1,8 @@
 """Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
 Solves begin at the hold at either end, followed along the lift with the feet in place, so that a result
-depends on problem and design alone; the cheapest that the check agrees with counts. Holds of several heights joined
-together do not do for a start: their elbows bend in different ways.
+depends on problem and design alone; the cheaper one counts. Holds of several heights joined together do not
+do for a start: their elbows bend in different ways.
 """
 
 from __future__ import annotations

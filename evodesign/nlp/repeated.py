@@ -28,10 +28,10 @@ from evodesign.nlp.ipopt import casadi_options
 from evodesign.nlp.method import Ending, SolverOptions
 from evodesign.nlp.program import Array, Expression
 
-__all__ = ["Block", "Repeated", "RepeatedProgram"]
+__all__ = ["Block", "BlockDerivatives", "Repeated", "RepeatedProgram"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Block:
     """What one repetition says; all expressions are SX.
 
@@ -43,6 +43,7 @@ class Block:
         cost: f.
         rows: g, a column.
         lower, upper: limits of the rows.
+        compiled: whether its derivatives run as machine code.
     """
 
     name: str
@@ -53,6 +54,12 @@ class Block:
     rows: Expression
     lower: Array
     upper: Array
+    compiled: bool = False
+
+    @cached_property
+    def derivatives(self) -> BlockDerivatives:
+        """Made once, for any number of repetitions."""
+        return BlockDerivatives(self)
 
     @property
     def arguments(self) -> list[Expression]:
@@ -86,7 +93,6 @@ class RepeatedProgram:
 
     def __init__(self, name: str, parts: Sequence[Repeated], options: SolverOptions) -> None:
         self._name, self._parts, self._options = name, tuple(parts), options
-        self._blocks = [_Functions(part.block, compiled=options.compiled) for part in parts]
         counts = [part.times * part.block.rows.numel() for part in parts]
         self.rows = sum(counts)
         self.variables = int(parts[0].image.shape[1])
@@ -142,8 +148,9 @@ class RepeatedProgram:
         hessian: Expression = 0.0
         slope: Expression = 0.0
         rows, jacobians = [], []
-        for part, made, own, multiplier in zip(self._parts, self._blocks, owns, per_block, strict=True):
+        for part, own, multiplier in zip(self._parts, owns, per_block, strict=True):
             image, block, times = ca.MX(ca.DM(part.image)), part.block, part.times
+            made = block.derivatives
             seen = ca.reshape(image @ x, block.symbols.numel(), times)
             mine = ca.reshape(own, block.own.numel(), times)
             weights = ca.reshape(multiplier, block.rows.numel(), times)
@@ -192,7 +199,7 @@ class RepeatedProgram:
         return ca.nlpsol(self._name, "ipopt", functions["nlp"], options)
 
 
-class _Functions:
+class BlockDerivatives:
     """A block's derivatives.
 
     Attributes:
@@ -203,7 +210,7 @@ class _Functions:
         order: which entry of the triangle each entry of the Hessian is.
     """
 
-    def __init__(self, block: Block, *, compiled: bool) -> None:
+    def __init__(self, block: Block) -> None:
         factor, weights = ca.SX.sym("lam_f"), ca.SX.sym("lam_g", block.rows.numel())
         jacobian = ca.jacobian(block.rows, block.symbols)
         lagrangian = factor * block.cost + ca.dot(weights, block.rows)
@@ -213,7 +220,7 @@ class _Functions:
         self.hessian, self.order = places.sparsity(), [int(place) - 1 for place in places.nonzeros()]
         gradient = ca.densify(ca.gradient(block.cost, block.symbols))
         firsts = [ca.SX(block.cost), gradient, ca.densify(block.rows), _entries(jacobian)]
-        made = compiled_function if compiled else (lambda function: function)
+        made = compiled_function if block.compiled else (lambda function: function)
         once = {"cse": True}
         self.first = made(ca.Function(f"{block.name}_first", block.arguments, firsts, once))
         self.second = made(
