@@ -5,6 +5,7 @@
     run.front[0].export("best")                         URDF, MJCF, postures, replay of a design
     run = evodesign.open_run("runs/first")              front, table, designs, postures of any run
     problem = evodesign.open_problem("problem.toml")    designs evaluated one at a time
+    evodesign.lift(problem, from_m=0.8, to_m=1.2)       the load lifted in time
     evodesign.as_pymoo_problem(problem)                 for pymoo's algorithms
 
 What a name needs is loaded when it is used: opening a run loads no solver.
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     __version__: str
     from evodesign.api.design import Design
+    from evodesign.api.lift import lift
     from evodesign.api.problem import Problem, open_problem, problems
     from evodesign.api.pymoo_problem import as_pymoo_problem
     from evodesign.api.run import Run, open_run
@@ -26,6 +28,7 @@ HOMES = {
     "Problem": "evodesign.api.problem",
     "Run": "evodesign.api.run",
     "as_pymoo_problem": "evodesign.api.pymoo_problem",
+    "lift": "evodesign.api.lift",
     "open_problem": "evodesign.api.problem",
     "open_run": "evodesign.api.run",
     "problems": "evodesign.api.problem",
@@ -40,6 +43,7 @@ __all__ = [
     "Run",
     "__version__",
     "as_pymoo_problem",
+    "lift",
     "open_problem",
     "open_run",
     "problems",

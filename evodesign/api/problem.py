@@ -17,6 +17,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
+from evodesign.problem.lifts import Lifts
 from evodesign.problem.notes import notes
 from evodesign.problem.shipped import shipped_problems
 from evodesign.problem.source import read_source, source_of
@@ -138,6 +139,11 @@ class Problem:
     def _evaluator(self) -> Evaluator:
         with make_pool("joblib" if self._jobs > 1 else "serial", self._jobs) as pool:
             return Evaluator(self.built, cached_precomputed(self.built, pool))
+
+    @cached_property
+    def lifts(self) -> Lifts:
+        """Lifts of designs, for `evodesign.lift`."""
+        return Lifts(self._evaluator)
 
     def __reduce__(self) -> tuple[type[Problem], tuple[ProblemSource]]:
         return Problem, (self.source,)

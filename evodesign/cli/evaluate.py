@@ -13,7 +13,7 @@ from evodesign.errors import InputError, nearest_name
 if TYPE_CHECKING:
     from evodesign.problem.build import DesignProblem
 
-__all__ = ["evaluate"]
+__all__ = ["chosen_design", "evaluate"]
 
 UNSCALED = "unscaled"
 
@@ -46,7 +46,7 @@ def evaluate(
 
     built = build_problem(read_source(problem, symmetry))
     show_notes(notes(built))
-    chosen, values = _chosen(built, design, name)
+    chosen, values = chosen_design(built, design, name)
     with precompute_progress() as progress:
         evaluator = evaluator_of(built, jobs, progress)
     result = evaluator.solve(values)
@@ -60,7 +60,9 @@ def evaluate(
     show_notes(overlaps(solved_distances(result).items()))
 
 
-def _chosen(problem: DesignProblem, file: Path | None, name: str | None) -> tuple[str, tuple[float, ...]]:
+def chosen_design(
+    problem: DesignProblem, file: Path | None, name: str | None
+) -> tuple[str, tuple[float, ...]]:
     """Name and parameter values of the design that the options ask for."""
     from evodesign.problem.designs import read_designs
     from evodesign.problem.named_files import read_text

@@ -24,6 +24,7 @@ from evodesign.cli.export import export
 from evodesign.cli.families import families
 from evodesign.cli.front import front
 from evodesign.cli.init import init
+from evodesign.cli.lift import lift
 from evodesign.cli.matters import matters
 from evodesign.cli.merge import merge
 from evodesign.cli.options import BAD_INPUT
@@ -58,6 +59,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "matters": matters,
     "families": families,
     "evaluate": evaluate,
+    "lift": lift,
     "polish": polish,
     "check": check,
     "problems": problems,

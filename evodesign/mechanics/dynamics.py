@@ -32,7 +32,16 @@ from evodesign.body.placement import Matrix
 from evodesign.tree.kinematics import Expression, Pose, forward, vector
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["ROOT_ROWS", "bias", "inverse_dynamics", "mass_matrix"]
+__all__ = [
+    "ROOT_ROWS",
+    "LinkMotion",
+    "bias",
+    "has_mass",
+    "inverse_dynamics",
+    "link_motions",
+    "mass_matrix",
+    "needed_wrench",
+]
 
 
 ROOT_ROWS = 6
@@ -55,9 +64,7 @@ def mass_matrix(tree: Tree, joints: Sequence[str], positions: Mapping[str, Expre
     """
     poses = forward(tree, _root_pose(), positions)
     composite = {
-        link.name: _spatial_inertia(link.inertia, poses[link.name])
-        if _has_mass(link.inertia)
-        else ca.DM(6, 6)
+        link.name: _spatial_inertia(link.inertia, poses[link.name]) if has_mass(link.inertia) else ca.DM(6, 6)
         for link in tree.links
     }
     for joint in reversed(tree.joints):
@@ -124,13 +131,10 @@ def inverse_dynamics(
     poses = forward(tree, _root_pose(), positions)
     rates = {name: velocity[ROOT_ROWS + number] for number, name in enumerate(joints)}
     changes = {name: acceleration[ROOT_ROWS + number] for number, name in enumerate(joints)}
-    motions = {tree.root: _root_motion(velocity, acceleration, gravity)}
-    for joint in tree.joints:
-        rate, change = rates.get(joint.name, 0.0), changes.get(joint.name, 0.0)
-        motions[joint.child] = _child_motion(motions[joint.parent], joint, poses, rate, change)
+    motions = link_motions(tree, poses, _root_motion(velocity, acceleration, gravity), rates, changes)
     forces, moments = {}, {}
     for link in tree.links:
-        forces[link.name], moments[link.name] = _needed(
+        forces[link.name], moments[link.name] = needed_wrench(
             link.inertia, poses[link.name].rotation, motions[link.name]
         )
     held: dict[str, Expression] = {}
@@ -144,13 +148,14 @@ def inverse_dynamics(
 
 
 @dataclass(frozen=True, slots=True)
-class _Motion:
-    """How a link moves, in the root link's axes.
+class LinkMotion:
+    """How a link moves, in the axes in which the tree's poses are given.
 
     Args:
         turning: angular velocity [rad/s].
         spin_up: angular acceleration [rad/s^2].
-        acceleration: of the link's origin, less gravity (the paper's proper acceleration) [m/s^2].
+        acceleration: of the link's origin, in inverse dynamics less gravity (the paper's proper
+            acceleration) [m/s^2].
     """
 
     turning: Expression
@@ -158,38 +163,55 @@ class _Motion:
     acceleration: Expression
 
     def at(self, lever: Expression) -> Expression:
-        """Proper acceleration of a point of the link, at a lever from its origin [m]."""
+        """Acceleration of a point of the link, at a lever from its origin [m]."""
         swing = ca.cross(self.spin_up, lever) + ca.cross(self.turning, ca.cross(self.turning, lever))
         return self.acceleration + swing
 
 
-def _root_motion(velocity: Expression, acceleration: Expression, gravity: Expression) -> _Motion:
+def _root_motion(velocity: Expression, acceleration: Expression, gravity: Expression) -> LinkMotion:
     turning = velocity[ANGULAR]
     of_origin = acceleration[LINEAR] + ca.cross(turning, velocity[LINEAR])
-    return _Motion(turning, acceleration[ANGULAR], of_origin - gravity)
+    return LinkMotion(turning, acceleration[ANGULAR], of_origin - gravity)
+
+
+def link_motions(
+    tree: Tree,
+    poses: Mapping[str, Pose],
+    root: LinkMotion,
+    rates: Mapping[str, Expression],
+    changes: Mapping[str, Expression],
+) -> dict[str, LinkMotion]:
+    """Motions of all links, from the root outwards."""
+    motions = {tree.root: root}
+    for joint in tree.joints:
+        rate, change = rates.get(joint.name, 0.0), changes.get(joint.name, 0.0)
+        motions[joint.child] = _child_motion(motions[joint.parent], joint, poses, rate, change)
+    return motions
 
 
 def _child_motion(
-    parent: _Motion, joint: Joint, poses: Mapping[str, Pose], rate: Expression, change: Expression
-) -> _Motion:
+    parent: LinkMotion, joint: Joint, poses: Mapping[str, Pose], rate: Expression, change: Expression
+) -> LinkMotion:
     start = parent.at(poses[joint.child].position - poses[joint.parent].position)
     axis = _axis(joint, poses)
     if _slides(joint):
         sliding = axis * change + 2.0 * ca.cross(parent.turning, axis * rate)
-        return _Motion(parent.turning, parent.spin_up, start + sliding)
+        return LinkMotion(parent.turning, parent.spin_up, start + sliding)
     spin_up = parent.spin_up + axis * change + ca.cross(parent.turning, axis * rate)
-    return _Motion(parent.turning + axis * rate, spin_up, start)
+    return LinkMotion(parent.turning + axis * rate, spin_up, start)
 
 
-def _needed(inertia: Inertia, root_from_link: Expression, motion: _Motion) -> tuple[Expression, Expression]:
+def needed_wrench(
+    inertia: Inertia, root_from_link: Expression, motion: LinkMotion
+) -> tuple[Expression, Expression]:
     """Force, and moment about the link's origin, that one link's motion takes (Newton and Euler)."""
-    if not _has_mass(inertia):
+    if not has_mass(inertia):
         return ca.DM.zeros(3), ca.DM.zeros(3)
     center = root_from_link @ vector(inertia.center)
     force = inertia.mass * motion.at(center)
-    about_center = root_from_link @ _columns(inertia.about_center) @ root_from_link.T
-    spin = about_center @ motion.spin_up + ca.cross(motion.turning, about_center @ motion.turning)
-    return force, spin + ca.cross(center, force)
+    about_center, turning = _columns(inertia.about_center), root_from_link.T @ motion.turning
+    own = about_center @ (root_from_link.T @ motion.spin_up) + ca.cross(turning, about_center @ turning)
+    return force, root_from_link @ own + ca.cross(center, force)
 
 
 def _spatial_inertia(inertia: Inertia, pose: Pose) -> Expression:
@@ -241,7 +263,8 @@ def _slides(joint: Joint) -> bool:
     return joint.kind is JointKind.PRISMATIC
 
 
-def _has_mass(inertia: Inertia) -> bool:
+def has_mass(inertia: Inertia) -> bool:
+    """Whether a body has a mass, or may have one in a design."""
     return not (isinstance(inertia.mass, int | float) and inertia.mass == 0.0)
 
 

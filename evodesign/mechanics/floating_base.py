@@ -211,9 +211,15 @@ class FloatingBody:
         workspace = _Workspace(model)
         return cls(model, tuple(joints), order, places, world_from_given, workspace, built)
 
-    def at(self, configuration: Configuration, velocity: Array) -> BodyState:
+    def at(
+        self, configuration: Configuration, velocity: Array, acceleration: Array | None = None
+    ) -> BodyState:
         """The body at a configuration, moving with a velocity of shape (6 + joints,).
 
+        Args:
+            configuration: in the given axes.
+            velocity: of the root link in its own axes, then of the joints.
+            acceleration: its derivative, shape (6 + joints,); None: the velocity does not change.
         Raises:
             ValueError: the configuration places other joints than those that move.
         """
@@ -221,8 +227,11 @@ class FloatingBody:
         q, v = self._coordinates(configuration), np.empty(model.nv)
         v[self.order] = velocity
         self.workspace.holds = None
-        bias = np.array(pin.nonLinearEffects(model, data, q, v))[self.order]
-        return BodyState(self, q, v, bias)
+        if acceleration is None:
+            return BodyState(self, q, v, np.array(pin.nonLinearEffects(model, data, q, v))[self.order])
+        dv = np.empty(model.nv)
+        dv[self.order] = acceleration
+        return BodyState(self, q, v, np.array(pin.rnea(model, data, q, v, dv))[self.order])
 
     def _coordinates(self, configuration: Configuration) -> Array:
         """The configuration vector of pinocchio, in the world."""
@@ -269,7 +278,7 @@ class BodyState:
         body: the body.
         coordinates: pinocchio's configuration vector.
         speeds: pinocchio's velocity vector.
-        bias: Coriolis, centrifugal and gravity terms h, shape (v,).
+        bias: Coriolis, centrifugal and gravity terms h, shape (v,), and M dnu/dt where it accelerates.
     """
 
     body: FloatingBody

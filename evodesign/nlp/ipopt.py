@@ -11,7 +11,7 @@ from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_funct
 from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, MethodName, SolverOptions
 from evodesign.nlp.program import Array, Program
 
-__all__ = ["Ipopt"]
+__all__ = ["Ipopt", "casadi_options"]
 
 
 class Ipopt:
@@ -35,7 +35,7 @@ class Ipopt:
     def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
         """Solve from a start, in the program's own units."""
         if options not in self._solvers:
-            self._solvers[options] = ca.nlpsol(self._name, "ipopt", self._oracle, _casadi_options(options))
+            self._solvers[options] = ca.nlpsol(self._name, "ipopt", self._oracle, casadi_options(options))
         solver = self._solvers[options]
         (lower, upper), (least, most) = self._bounds, self._limits
         result = solver(x0=start, p=parameters, lbx=lower, ubx=upper, lbg=least, ubg=most)
@@ -51,7 +51,8 @@ class Ipopt:
         )
 
 
-def _casadi_options(options: SolverOptions) -> dict[str, Any]:
+def casadi_options(options: SolverOptions) -> dict[str, Any]:
+    """The options as CasADi takes them."""
     return {
         "print_time": False,
         "error_on_fail": False,

@@ -18,7 +18,16 @@ from evodesign.nlp.native.library import method_library, native_method
 from evodesign.nlp.program import Array, Program, Start
 from evodesign.records import Status
 
-__all__ = ["Multipliers", "RawSolution", "Solver", "SolverCache", "SolverOptions", "available", "has_any"]
+__all__ = [
+    "Multipliers",
+    "RawSolution",
+    "Solver",
+    "SolverCache",
+    "SolverOptions",
+    "available",
+    "has_any",
+    "status_of",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +143,7 @@ class Solver:
         return RawSolution(
             start=start,
             values={**self.program.unpacked(ending.symbols), **self.program.held(start)},
-            status=_STATUS.get(ending.word, Status.NUMERICAL_FAILURE),
+            status=status_of(ending.word),
             reason=ending.word,
             iterations=ending.iterations,
             seconds=time.perf_counter() - began,
@@ -217,6 +226,11 @@ class Solver:
         again = self.solve(parameters, {**raw.values, **on})
         iterations, seconds = again.iterations + raw.iterations, again.seconds + raw.seconds
         return replace(again, start=raw.start, iterations=iterations, seconds=seconds)
+
+
+def status_of(word: str) -> Status:
+    """What a method's word for the end of a solve means."""
+    return _STATUS.get(word, Status.NUMERICAL_FAILURE)
 
 
 def has_any(names: Collection[str], start: Start) -> bool:

@@ -9,13 +9,15 @@ variable's key (`Slot`) says where it belongs.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from evodesign.mechanics.balance import AppliedWrench
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
+from evodesign.mechanics.inertial_forces import euler_motion, inertial_wrenches
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.limit_groups import Enforced
@@ -35,15 +37,18 @@ from evodesign.posture.terms.base import (
 from evodesign.posture.terms.collisions import PARTING, directed
 from evodesign.posture.terms.grasp import hand_unknowns, moment_cost
 from evodesign.posture.terms.torque import effort
+from evodesign.tree.equip import actuators_of
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
 __all__ = [
+    "MOVING_PARTS",
     "Assembly",
     "CaseSymbols",
     "Embodied",
     "FreeHands",
     "LoadCase",
+    "PostureMotion",
     "Slot",
     "assemble",
     "free_hands_beside",
@@ -51,6 +56,9 @@ __all__ = [
 
 
 EVERYTHING = Enforced()
+
+MOVING_PARTS = ("base_position", "base_angles", "joints")
+"""The parts of a posture that move in a motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,16 +101,33 @@ def free_hands_beside(form: Form) -> FreeHands:
 
 
 @dataclass(frozen=True, slots=True)
+class PostureMotion:
+    """How an agent moves: time derivatives of the parts of its posture; numbers or expressions.
+
+    Args:
+        rates: of `base_position`, `base_angles` and `joints` [m/s, rad/s].
+        changes: of these rates [m/s^2, rad/s^2].
+    """
+
+    rates: Mapping[str, Expression]
+    changes: Mapping[str, Expression]
+
+
+@dataclass(frozen=True, slots=True)
 class CaseSymbols:
     """A case as a program is given it: numbers or expressions.
 
     Args:
         scene: person, load and disturbances, ground and stance.
         load_heights: of the load's centre at each instant [m].
+        motions: how agents move at every instant, by name; those left out stand still.
+        load_acceleration: of the load, upwards [m/s^2].
     """
 
     scene: Scene
     load_heights: tuple[Expression, ...]
+    motions: Mapping[str, PostureMotion] = field(default_factory=dict)
+    load_acceleration: Expression = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,7 +275,7 @@ class _Assembler:
             block = f"{prefix}{party.name}"
             if not again:
                 values |= self._held_values(party, block)
-                postures[party.name] = _Posture.of(party, values)
+                postures[party.name] = _Posture.of(party, values, self._case.motions.get(party.name))
             body = postures[party.name].body(party, self._case, instant, values, disturbance)
             bodies[party.name] = body
             if not again and directed(party.form):
@@ -263,7 +288,8 @@ class _Assembler:
         for name, body in bodies.items():
             rows = [row for term in self._body_terms for row in term.rows(body)]
             self._add(rows, f"{prefix}{name}.", again=again)
-        coupled = Coupled(scene, bodies, hands, self._symmetric, disturbance)
+        accelerated = self._case.load_acceleration
+        coupled = Coupled(scene, bodies, hands, self._symmetric, disturbance, accelerated)
         rows = [row for term in self._system_terms for row in term.rows(coupled)]
         self._add(rows, prefix, again=again)
         everyone: list[tuple[Sequence[Any], Any]] = [
@@ -332,13 +358,31 @@ class _Posture:
     part: Tree
     doubled: frozenset[str]
     poses: Mapping[str, Pose]
+    inertial: Sequence[AppliedWrench] = ()
+    reflected: Mapping[str, Expression] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, party: Embodied, values: Mapping[str, Expression]) -> _Posture:
+    def of(cls, party: Embodied, values: Mapping[str, Expression], motion: PostureMotion | None) -> _Posture:
         part, doubled = party.form.part(party.tree)
         positions = {name: values["joints"][i] for i, name in enumerate(party.form.joints)}
         base = Pose(euler_rotation(values["base_angles"]), values["base_position"])
-        return cls(values, part, doubled, forward(part, base, positions))
+        poses = forward(part, base, positions)
+        if motion is None:
+            return cls(values, part, doubled, poses)
+        rates, changes = (
+            {name: found["joints"][i] for i, name in enumerate(party.form.joints)}
+            for found in (motion.rates, motion.changes)
+        )
+        root = euler_motion(
+            values["base_angles"],
+            motion.rates["base_angles"],
+            motion.changes["base_angles"],
+            motion.changes["base_position"],
+        )
+        inertial = tuple(inertial_wrenches(part, poses, root, rates, changes))
+        rotors = {name: each.inertia for name, each in actuators_of(part).items() if name in changes}
+        reflected = {name: inertia * changes[name] for name, inertia in rotors.items()}
+        return cls(values, part, doubled, poses, inertial, reflected)
 
     def body(
         self,
@@ -358,4 +402,6 @@ class _Posture:
             poses=self.poses,
             values={**self.values, **values},
             disturbance=disturbance,
+            inertial=self.inertial,
+            reflected=self.reflected,
         )

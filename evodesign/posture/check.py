@@ -10,22 +10,32 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+import pinocchio as pin
 
 from evodesign.body.placement import Vector
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.mechanics.disturbance import Disturbance
-from evodesign.mechanics.floating_base import BodyState, Configuration, FloatingBody
+from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import Agent, Scene
-from evodesign.posture.results import AgentPosture, Instant
+from evodesign.posture.results import AgentPosture, Array, Instant
 from evodesign.posture.terms.base import UNDISTURBED, BodyTerm, MeasuredBody, MeasuredSystem, Residual
 from evodesign.posture.terms.registry import TERMS
-from evodesign.tree.equip import rated_torques
+from evodesign.tree.equip import actuators_of, rated_torques
 from evodesign.tree.model import Tree
 
-__all__ = ["TOLERANCE", "AgentModel", "Checker", "Unchecked", "sizes"]
+__all__ = [
+    "AT_REST",
+    "TOLERANCE",
+    "AgentModel",
+    "AgentMotion",
+    "Checker",
+    "SceneMotion",
+    "Unchecked",
+    "sizes",
+]
 
 TOLERANCE = 1e-5
 """Largest residual of a posture that counts as solved, in SI units."""
@@ -35,23 +45,40 @@ Postures = Mapping[str, AgentPosture]
 
 @dataclass(frozen=True, slots=True)
 class AgentModel:
-    """An agent as pinocchio sees it, in its own frame."""
+    """An agent as pinocchio sees it, in its own frame.
+
+    Args:
+        agent: with the limits of a design's actuators.
+        body: its links.
+        solid: its bodies; None where they may pass through anything.
+        tree: of numbers, a design's.
+        rotors: inertia of its actuators [kg m^2], by joint.
+    """
 
     agent: Agent
     body: FloatingBody
     solid: CheckedBodies | None
+    tree: Tree
+    rotors: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, agent: Agent, tree: Tree) -> AgentModel:
         """The agent with a tree of numbers (a design's)."""
         rules = agent.collisions
         solid = None if rules is None else CheckedBodies.of(tree, rules.checked)
-        return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)), solid)
+        return cls(agent, FloatingBody.of_tree(tree, agent.joints, np.eye(3)), solid, tree)
 
     def resized(self, tree: Tree) -> AgentModel:
         """The same agent with the tree of another design, and the limits of its actuators."""
         agent, solid = self.agent, None if self.solid is None else self.solid.resized(tree)
-        return replace(self, agent=_limited(agent, tree), body=self.body.resized(tree), solid=solid)
+        return replace(
+            self,
+            agent=_limited(agent, tree),
+            body=self.body.resized(tree),
+            solid=solid,
+            tree=tree,
+            rotors=_rotors(tree),
+        )
 
     def driven(self, tree: Tree) -> AgentModel:
         """The same agent with actuators.
@@ -60,15 +87,73 @@ class AgentModel:
             tree: of the agent as it is, with actuators beside.
         """
         mounted = [(link.name, solid) for link in tree.links for solid in link.mounted]
-        return replace(self, agent=_limited(self.agent, tree), body=self.body.carrying(mounted))
+        body = self.body.carrying(mounted)
+        return replace(self, agent=_limited(self.agent, tree), body=body, tree=tree, rotors=_rotors(tree))
 
-    def at(self, posture: AgentPosture) -> BodyState:
-        """Kinematics, Jacobians and gravity torques of a posture."""
+    def at(self, posture: AgentPosture, motion: AgentMotion | None = None) -> BodyState:
+        """Kinematics, Jacobians and gravity torques of a posture, and what its motion takes beside them."""
         configuration = Configuration(posture.base_position, posture.base_angles, posture.joints)
-        return self.body.at(configuration, np.zeros(self.body.size))
+        if motion is None:
+            return self.body.at(configuration, np.zeros(self.body.size))
+        state = self.body.at(configuration, *motion.velocities(posture.base_angles))
+        bias = state.bias.copy()
+        for place, name in enumerate(self.agent.joints, ROOT):
+            bias[place] += self.rotors.get(name, 0.0) * motion.changes[place]
+        return replace(state, bias=bias)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AgentMotion:
+    """How an agent moves: time derivatives of its base's position and angles, and of its joints.
+
+    Args:
+        rates: [m/s, rad/s], shape (6 + joints,), joints in the agent's order.
+        changes: of the rates, likewise.
+    """
+
+    rates: Array
+    changes: Array
+
+    def velocities(self, angles: Array) -> tuple[Array, Array]:
+        """Velocity and acceleration as pinocchio has them: the base's in the base link's own axes.
+
+        Args:
+            angles: roll, pitch, yaw of the base [rad].
+        """
+        turn = pin.rpy.rpyToMatrix(*angles).T
+        by_rate = pin.rpy.computeRpyJacobian(angles, pin.LOCAL)
+        drift = pin.rpy.computeRpyJacobianTimeDerivative(angles, self.rates[3:6], pin.LOCAL)
+        linear, angular = turn @ self.rates[:3], by_rate @ self.rates[3:6]
+        speeding = turn @ self.changes[:3] - np.cross(angular, linear)
+        turning = by_rate @ self.changes[3:6] + drift @ self.rates[3:6]
+        velocity = np.concatenate([linear, angular, self.rates[ROOT:]])
+        return velocity, np.concatenate([speeding, turning, self.changes[ROOT:]])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneMotion:
+    """How everything moves at an instant.
+
+    Args:
+        agents: by name.
+        load_acceleration: of the load, upwards [m/s^2].
+    """
+
+    agents: Mapping[str, AgentMotion] = field(default_factory=dict)
+    load_acceleration: float = 0.0
+
+
+AT_REST = SceneMotion()
+"""Nothing moves."""
+
+
+def _rotors(tree: Tree) -> dict[str, float]:
+    """Inertia that each actuator's rotor has at its joint [kg m^2]."""
+    return {name: float(each.inertia) for name, each in actuators_of(tree).items()}
 
 
 def _limited(agent: Agent, tree: Tree) -> Agent:
+    """The agent with the limits of a tree's actuators."""
     rated = {joint: limit for joint, limit in rated_torques(tree).items() if joint in agent.joints}
     if not rated:
         return agent
@@ -98,19 +183,22 @@ class Checker:
             self._solids[key] = SceneBodies(solids, self._scene.payload.size) if solids else None
         return self._solids[key]
 
-    def residuals(self, instant: Instant, load_height: float) -> tuple[Residual, ...]:
+    def residuals(
+        self, instant: Instant, load_height: float, motion: SceneMotion = AT_REST
+    ) -> tuple[Residual, ...]:
         """What each term finds violated, SI units; zero or rounding for a posture that holds.
 
         Args:
             instant: postures, and what is carried in them under each of the scene's disturbances.
             load_height: of the load's centre [m].
+            motion: of agents and load.
         """
-        found = [*self._load_case(UNDISTURBED, instant.postures, instant.postures, load_height)]
+        found = [*self._load_case(UNDISTURBED, instant.postures, instant.postures, load_height, motion)]
         for disturbance in self._scene.disturbances.cases:
             own = instant.disturbed[disturbance.name]
             found += [
                 residual.named(f"{disturbance.name}: {residual.name}")
-                for residual in self._load_case(disturbance, instant.postures, own, load_height)
+                for residual in self._load_case(disturbance, instant.postures, own, load_height, motion)
                 if not residual.posture_only
             ]
         return tuple(found)
@@ -127,14 +215,19 @@ class Checker:
         return tuple(found)
 
     def _load_case(
-        self, disturbance: Disturbance, undisturbed: Postures, postures: Postures, load_height: float
+        self,
+        disturbance: Disturbance,
+        undisturbed: Postures,
+        postures: Postures,
+        load_height: float,
+        motion: SceneMotion,
     ) -> Iterator[Residual]:
         bodies = {
             model.agent.name: MeasuredBody(
                 agent=model.agent,
                 posture=postures[model.agent.name],
                 undisturbed=undisturbed[model.agent.name],
-                state=model.at(postures[model.agent.name]),
+                state=model.at(postures[model.agent.name], motion.agents.get(model.agent.name)),
                 scene=self._scene,
                 load_height=load_height,
                 disturbance=disturbance,
@@ -144,7 +237,8 @@ class Checker:
         payload = self._scene.payload
         if disturbance is not UNDISTURBED:
             payload = payload.disturbed(disturbance)
-        system = MeasuredSystem(self._scene, payload, bodies, disturbance, self._bodies())
+        accelerated = motion.load_acceleration
+        system = MeasuredSystem(self._scene, payload, bodies, disturbance, self._bodies(), accelerated)
         for term in TERMS.values():
             if isinstance(term, BodyTerm):
                 for name, body in bodies.items():

@@ -71,19 +71,23 @@ class Form:
         """The whole posture from a solution's values (names without the agent's)."""
         hands = {side: padded(values[f"{side}_hand"]) for side in self.sides}
         feet = {side: values[f"{side}_foot"] for side in self.sides}
-        joints = dict(zip(self.joints, values["joints"].tolist(), strict=True))
-        torques = dict(zip(self.joints, values["torques"].tolist(), strict=True))
         if self.mirror is not None:
             hands["right"], feet["right"] = hands["left"] * WRENCH, feet["left"] * WRENCH
-            joints, torques = (_both_sides(known, self.agent, self.mirror) for known in (joints, torques))
         return AgentPosture(
             base_position=values["base_position"],
             base_angles=values["base_angles"],
-            joints={name: joints[name] for name in self.agent.joints},
-            torques={name: torques[name] for name in self.agent.joints},
+            joints=self.whole_joints(values["joints"]),
+            torques=self.whole_joints(values["torques"]),
             hand_wrenches=hands,
             foot_wrenches=feet,
         )
+
+    def whole_joints(self, values: Array) -> dict[str, float]:
+        """Positions, speeds or torques of all the agent's joints, in its order, from those of the form's."""
+        known = dict(zip(self.joints, values.tolist(), strict=True))
+        if self.mirror is not None:
+            known = _both_sides(known, self.agent, self.mirror)
+        return {name: known[name] for name in self.agent.joints}
 
     def folded(self, by_joint: Mapping[str, float]) -> Array:
         """Weights of the whole agent's torques as weights of those that are variables, one per joint.

@@ -132,6 +132,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "matters": (("matters", "run"), ("matters", "many", "--design", 3)),
     "families": (("families", "run"), ("families", "many", "--by", "arm.0 + arm.1", "--cells", 5)),
     "evaluate": (("evaluate", "small.toml"),),
+    "lift": (("lift", "small.toml", "--from", 0.9, "--to", 2.5),),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (
         ("check", "small.toml"),

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.collision.scene_bodies import SceneBodies
+from evodesign.mechanics.balance import AppliedWrench
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import BodyState
 from evodesign.mechanics.scene import Agent, Payload, Scene
@@ -167,6 +168,8 @@ class Body:
         poses: of the part's links.
         values: of the unknowns of all terms, SI units, by part.
         disturbance: of the load case; one of nothing where it is undisturbed.
+        inertial: what the links' inertia does to an agent that moves.
+        reflected: torque [N m] that turning the rotor of a joint's actuator takes, by joint.
     """
 
     form: Form
@@ -177,6 +180,8 @@ class Body:
     poses: Mapping[str, Pose]
     values: Mapping[str, Expression]
     disturbance: Disturbance = UNDISTURBED
+    inertial: Sequence[AppliedWrench] = ()
+    reflected: Mapping[str, Expression] = field(default_factory=dict)
 
     @property
     def agent(self) -> Agent:
@@ -218,6 +223,7 @@ class Coupled:
             the agents' frames.
         symmetric: whether right hands mirror left ones.
         disturbance: of the load case.
+        load_acceleration: of the load, upwards [m/s^2].
     """
 
     scene: Scene
@@ -225,6 +231,7 @@ class Coupled:
     hands: Mapping[str, Mapping[str, Expression]]
     symmetric: bool
     disturbance: Disturbance
+    load_acceleration: Expression = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,6 +272,7 @@ class MeasuredSystem:
         bodies: both agents, by name.
         disturbance: of the load case.
         solids: their bodies; None where they may pass through anything.
+        load_acceleration: of the load, upwards [m/s^2].
     """
 
     scene: Scene
@@ -272,6 +280,7 @@ class MeasuredSystem:
     bodies: Mapping[str, MeasuredBody]
     disturbance: Disturbance
     solids: SceneBodies | None
+    load_acceleration: float = 0.0
 
 
 def no_unknowns(form: Form, scene: Scene) -> Iterable[Unknown]:

@@ -12,6 +12,8 @@ which is the robot's push where nothing else pushes the load. Where the robot's 
 carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best posture
 lifts the partner by the load with hundreds of newtons.
 
+A load that is lifted is as much heavier as its acceleration asks for: m (g + a).
+
 Source: Sartore et al. 2022, Eq. 8, third row at rest.
 """
 
@@ -64,7 +66,7 @@ def rows(coupled: Coupled) -> Iterator[Row]:
     """Balance of the load, the bound on the internal force, and the robot's share where it is bounded."""
     scene, disturbance = coupled.scene, coupled.disturbance
     scene = scene if disturbance is UNDISTURBED else _disturbed(scene, disturbance)
-    weight = ca.vertcat(0.0, 0.0, -GRAVITY * scene.payload.mass)
+    weight = ca.vertcat(0.0, 0.0, -(GRAVITY + coupled.load_acceleration) * scene.payload.mass)
     force = weight
     if disturbance is not UNDISTURBED:
         force = weight + vector(disturbance.push_on(PushedAt.LOAD))
@@ -123,7 +125,7 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     """Balance of the load, of which a push meets the box's centre, and bounds on hands and their shares."""
     scene, payload = system.scene, system.payload
     outside = np.array(system.disturbance.push_on(PushedAt.LOAD))
-    weight = np.array([0.0, 0.0, -GRAVITY * payload.mass])
+    weight = np.array([0.0, 0.0, -(GRAVITY + system.load_acceleration) * payload.mass])
     force, moment = weight + outside, pin.skew(np.array(payload.center_of_mass)) @ weight
     passed, carried = 0.0, 0.0
     along_x = {agent.name: 0.0 for agent in (scene.robot, scene.human)}

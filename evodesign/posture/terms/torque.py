@@ -63,8 +63,9 @@ def effort(body: Body) -> Expression:
 def rows(body: Body) -> Iterator[Row]:
     """Torques that are those of statics, and a base on which force and moment vanish."""
     form = body.form
-    balance = cut(body.part, body.poses, [*_contacts(body), *_push(body)], body.doubled)
-    statics = ca.vertcat(*[balance.torques[joint] for joint in form.joints])
+    applied = [*_contacts(body), *_push(body), *body.inertial]
+    balance = cut(body.part, body.poses, applied, body.doubled)
+    statics = ca.vertcat(*[balance.torques[name] + body.reflected.get(name, 0.0) for name in form.joints])
     force, moment = balance.force / FORCE_UNIT, balance.moment / TORQUE_UNIT
     if form.mirror is not None:  # the other rows vanish by symmetry
         force, moment = force[[0, 2]], moment[1]

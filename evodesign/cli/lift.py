@@ -1,0 +1,65 @@
+"""`lift`: a design lifts the load with a person, in time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from evodesign.cli.evaluate import chosen_design
+from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, SymmetryName
+
+__all__ = ["lift"]
+
+
+def lift(
+    problem: ProblemPath,
+    begin: Annotated[float, typer.Option("--from", metavar="M", help="Height of the load at the start [m].")],
+    end: Annotated[float, typer.Option("--to", metavar="M", help="Height at the end [m].")],
+    design: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="File of named designs.", show_default="the unscaled robot"),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Which design of the file.", show_default="the file's only one"),
+    ] = None,
+    seconds: Annotated[float, typer.Option(metavar="S", help="Time that the lift takes [s].")] = 1.5,
+    profile: Annotated[
+        str, typer.Option(metavar="NAME", help="Height in time: minimum_jerk or free.")
+    ] = "minimum_jerk",
+    knots: Annotated[int, typer.Option(metavar="N", help="Knots of the motion.")] = 12,
+    csv: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write joints and torques over time.")
+    ] = None,
+    symmetry: SymmetryName = None,
+    jobs: Jobs = CORES,
+    json: Json = False,
+) -> None:
+    """A design and a person lift the load: torques over time, energy, power, residuals."""
+    from evodesign.cli.output import console, print_json, show_notes, write_text
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.cli.tables.lift import lift_tables
+    from evodesign.motion.course import Lift, profile_named
+    from evodesign.problem.build import build_problem
+    from evodesign.problem.factory import evaluator_of
+    from evodesign.problem.lift_json import lift_csv, lift_json
+    from evodesign.problem.lifts import Lifts
+    from evodesign.problem.notes import notes
+    from evodesign.problem.source import read_source
+
+    asked = Lift(begin, end, seconds, profile_named(profile), knots)
+    built = build_problem(read_source(problem, symmetry))
+    show_notes(notes(built))
+    chosen, values = chosen_design(built, design, name)
+    with precompute_progress() as progress:
+        evaluator = evaluator_of(built, jobs, progress)
+    solutions = Lifts(evaluator).solve(values, asked)
+    if csv is not None:
+        write_text(csv, lift_csv(solutions), "--csv")
+    if json:
+        print_json(lift_json(solutions))
+        return
+    for table in lift_tables(f"{built.name}: {chosen}", solutions):
+        console().print(table)

@@ -1,0 +1,297 @@
+"""What is said of a lift at one knot, and between two: blocks over the terms of a hold.
+
+At a knot robot, person and load are in balance with their inertial forces, and every term of a hold is said
+as it is there (`posture.terms`). Four things are new: joints keep within their speed; feet stay in their
+place; hands that hold rigidly do not turn, for else their moments would do work on nothing; accelerations
+are slightly disliked. Half-way between knots hands and feet are nearly in their places; without that the
+best motion bends an elbow the other way between two knots that are exact.
+
+A block's symbols are, in the program's units, step the time between knots:
+
+    posture, step * its rate, step^2 * its change, load height, step^2 * its change, torques and wrenches,
+    places of the feet, turns of rigid hands
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from evodesign.mechanics.disturbance import Disturbances
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.nlp.program import Expression, Variable
+from evodesign.nlp.repeated import Block
+from evodesign.posture.allocation import shared_scene, shared_weights
+from evodesign.posture.assemble import (
+    MOVING_PARTS,
+    Assembly,
+    CaseSymbols,
+    Embodied,
+    PostureMotion,
+    assemble,
+    total,
+)
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.symmetry import Form
+from evodesign.posture.terms.base import Body
+from evodesign.posture.terms.grasp import GRASP
+from evodesign.posture.terms.load import any_load
+from evodesign.posture.terms.registry import TERMS
+from evodesign.tree.model import Tree
+
+__all__ = ["FastestJoint", "KnotBlocks", "fastest_joints", "undisturbed"]
+
+SPEED = 6.0
+"""Largest speed of a joint whose file or actuator says none [rad/s]."""
+
+SMOOTHING, SPEEDING_UP = 1e-2, 10.0
+"""Weight of the squared accelerations of joints, and their unit [rad/s^2]."""
+
+HAND_CLOSURE, SOLE_CLOSURE, SLANT_CLOSURE = 2e-3, 1e-3, 5e-3
+"""By how much hands [m] and soles [m, 1] may be out of place half-way between knots."""
+
+CLOSURE_UNIT = 0.1
+"""Of the rows between knots, in which their bounds are of the size of other rows."""
+
+FastestJoint = Mapping[str, Expression]
+
+
+def undisturbed(scene: Scene) -> Scene:
+    """The scene in which nothing happens but the lift."""
+    return replace(scene, disturbances=Disturbances())
+
+
+def fastest_joints(form: Form, part: Tree) -> FastestJoint:
+    """The largest speed of each of the form's joints [rad/s]; of a design's actuators where it has them."""
+    joints = {joint.name: joint.velocity for joint in part.joints}
+    return {name: _known(joints[name]) for name in form.joints}
+
+
+def _known(speed: Expression) -> Expression:
+    return speed if not isinstance(speed, float) or math.isfinite(speed) else SPEED
+
+
+@dataclass(frozen=True, slots=True)
+class Symbols:
+    """The symbols of a knot's block.
+
+    Args:
+        moving: variables of postures.
+        others: torques and wrenches.
+        rates, changes: time derivatives of the posture variables, SI units, by variable name.
+        height: of the load [m].
+        lifted: its acceleration [m/s^2].
+        places: of the soles: x, y [m] and the sine of their turn, by agent and side.
+        grips: of hands that hold rigidly: how they are turned against where a start has them, likewise.
+    """
+
+    moving: tuple[Variable, ...]
+    others: tuple[Variable, ...]
+    rates: Mapping[str, Expression]
+    changes: Mapping[str, Expression]
+    height: Expression
+    lifted: Expression
+    places: Mapping[tuple[str, str], Expression]
+    grips: Mapping[tuple[str, str], Expression]
+
+
+class KnotBlocks:
+    """The blocks of a lift in a setting.
+
+    Args:
+        forms: of robot and person, whole or halves.
+        setting: of the problem.
+    Attributes:
+        forms: likewise.
+    """
+
+    def __init__(self, forms: tuple[Form, Form], setting: Setting) -> None:
+        self.forms, self._setting = forms, setting
+        self.design = ca.SX.sym("design", len(setting.space.parameters))
+        self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
+        scene, self._mass = any_load(undisturbed(setting.scene))
+        values = ca.vertsplit(self.design)
+        self._scene = shared_scene(scene, setting.space, values)
+        self._weights = shared_weights(setting.weights, setting.space, values)
+        tree = setting.space.resized(scene.robot.tree, values)
+        self._parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
+        self._rates = {form.agent.name: _derivatives(form, "rate") for form in forms}
+        self._changes = {form.agent.name: _derivatives(form, "change") for form in forms}
+        rigid = scene.payload.grasp is Grasp.RIGID
+        hands = [(form.agent.name, side) for form in forms for side in form.sides if rigid]
+        self._turns = {key: ca.SX.sym(f"{'.'.join(key)}_turn", 3, 3) for key in hands}
+        self._height, self._lifted = ca.SX.sym("height"), ca.SX.sym("lifted")
+
+    @cached_property
+    def _assembly(self) -> Assembly:
+        names = [form.agent.name for form in self.forms]
+        motions = {name: PostureMotion(self._rates[name], self._changes[name]) for name in names}
+        case = CaseSymbols(self._scene, (self._height,), motions, self._lifted)
+        return assemble(self._parties, TERMS.values(), case)
+
+    @cached_property
+    def symbols(self) -> Symbols:
+        """Of the knot's block."""
+        variables = self._assembly.variables
+        moving = tuple(v for v in variables if v.key.part in MOVING_PARTS)  # type: ignore[attr-defined]
+        by_slot = {v.name: (v.key.party, v.key.part) for v in moving}  # type: ignore[attr-defined]
+        return Symbols(
+            moving=moving,
+            others=tuple(v for v in variables if v not in moving),
+            rates={name: self._rates[party][part] for name, (party, part) in by_slot.items()},
+            changes={name: self._changes[party][part] for name, (party, part) in by_slot.items()},
+            height=self._height,
+            lifted=self._lifted,
+            places={
+                (form.agent.name, side): ca.SX.sym(f"{form.agent.name}.{side}_place", 3)
+                for form in self.forms
+                for side in form.sides
+            },
+            grips={key: ca.SX.sym(f"{'.'.join(key)}_grip", 3) for key in self._turns},
+        )
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """Which rows of the posture variables move at all, of those stacked one after the other."""
+        return np.concatenate([v.lower < v.upper for v in self.symbols.moving])
+
+    @property
+    def shared(self) -> Expression:
+        """Design, step [s], the load's mass [kg], the share of inertia that counts, and a start's hands."""
+        turns = [ca.vec(turn) for turn in self._turns.values()]
+        return ca.vertcat(self.design, self._step, self._mass, self._inertia, *turns)
+
+    @cached_property
+    def knot(self) -> Block:
+        """What is said at a knot; its own number is its weight in the cost."""
+        _seen, assembly, weight = self.symbols, self._assembly, ca.SX.sym("weight")
+        by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
+        held = assembly.undisturbed
+        rows, low, high = [], [], []
+        for each in assembly.constraints:
+            rows.append(each.expression)
+            low += [each.lower] * each.expression.numel()
+            high += [each.upper] * each.expression.numel()
+        for body in held.bodies.values():
+            speeds = self._speeds(body)
+            placed = ca.vertcat(*[offset[[0, 1, 5]] for offset in self._soles(body)], *self._grips(body))
+            rows += [speeds, placed]
+            low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
+            high += [1.0] * speeds.numel() + [0.0] * placed.numel()
+        cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
+        column, own, compiled = self._column(), ca.vertcat(weight), self._setting.options.compiled
+        cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
+        return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high), compiled)
+
+    @cached_property
+    def between(self) -> Block:
+        """What is said half-way between knots, of posture, load height and places."""
+        rows = []
+        for body in self._assembly.undisturbed.bodies.values():
+            rows += [row.expression / HAND_CLOSURE for row in GRASP.rows(body)]
+            for offset in self._soles(body):
+                rows += [offset[:3] / SOLE_CLOSURE, offset[3:] / SLANT_CLOSURE]
+            rows += [turned / SLANT_CLOSURE for turned in self._grips(body)]
+        closed = CLOSURE_UNIT * ca.vertcat(*rows)
+        column = ca.vertcat(self._posture, self._height, self._places)
+        (closed,) = self._in_units([closed], column)
+        limit, none = np.full(closed.numel(), CLOSURE_UNIT), ca.SX.sym("none", 0)
+        return Block("between", column, none, self.shared, ca.SX(0.0), closed, -limit, limit)
+
+    @cached_property
+    def closure(self) -> ca.Function:
+        """Hands and soles out of place [m, 1] from a posture, height and places, and the same of each agent.
+
+        Arguments are the posture's free symbols, the load's height, the places and the shared numbers.
+        """
+        rows = []
+        for body in self._assembly.undisturbed.bodies.values():
+            rows += [row.expression for row in GRASP.rows(body)]
+            rows += [*self._soles(body), *self._grips(body)]
+        (open_by,) = self._in_units([ca.vertcat(*rows)], ca.vertcat(self._posture))
+        arguments = [self._posture, self._height, self._places, self.shared]
+        outputs = [open_by, ca.jacobian(open_by, self._posture)]
+        return ca.Function("closure", arguments, outputs, {"cse": True})
+
+    @property
+    def _posture(self) -> Expression:
+        moving = ca.vertcat(*[v.symbol for v in self.symbols.moving])
+        return moving[np.flatnonzero(self.free).tolist()]
+
+    @property
+    def _places(self) -> Expression:
+        return ca.vertcat(*self.symbols.places.values(), *self.symbols.grips.values())
+
+    @cached_property
+    def hands(self) -> ca.Function:
+        """How hands that hold rigidly are turned, as `shared` has them, from posture and design."""
+        bodies = self._assembly.undisturbed.bodies
+        turns = [bodies[name].poses[bodies[name].agent.hands[side]].rotation for name, side in self._turns]
+        column = ca.vertcat(ca.SX(0, 1), *[ca.vec(turn) for turn in turns])
+        (found,) = self._in_units([column], self._posture)
+        return ca.Function("hands", [self._posture, self.design], [found], {"cse": True})
+
+    @cached_property
+    def _stepped(self) -> tuple[Expression, Expression, Expression]:
+        """Symbols of step * rates, step^2 * changes, and step^2 * the load's acceleration."""
+        count = int(self.free.sum())
+        return ca.SX.sym("moved", count), ca.SX.sym("bent", count), ca.SX.sym("load_bent")
+
+    def _column(self) -> Expression:
+        moved, bent, load_bent = self._stepped
+        others = [v.symbol for v in self.symbols.others]
+        return ca.vertcat(self._posture, moved, bent, self._height, load_bent, *others, self._places)
+
+    def _in_units(self, expressions: Sequence[Expression], column: Expression) -> list[Expression]:
+        """Expressions of the block's symbols: derivatives in steps, and zero for what does not move."""
+        seen, (moved, bent, load_bent) = self.symbols, self._stepped
+        scale = np.concatenate([np.full(len(v.lower), v.scale) for v in seen.moving])[self.free]
+        free, fixed = np.flatnonzero(self.free).tolist(), np.flatnonzero(~self.free).tolist()
+        symbols = ca.vertcat(*[v.symbol for v in seen.moving])
+        rates, changes = ca.vertcat(*seen.rates.values()), ca.vertcat(*seen.changes.values())
+        still = ca.DM(np.concatenate([v.lower / v.scale for v in seen.moving])[fixed])
+        pace = self._inertia / self._step
+        replaced = [
+            (symbols[fixed], still),
+            (rates[fixed], ca.DM.zeros(len(fixed))),
+            (changes[fixed], ca.DM.zeros(len(fixed))),
+            (rates[free], scale * moved * pace),
+            (changes[free], scale * bent * pace**2),
+            (self._lifted, load_bent * pace**2),
+        ]
+        names, values = (ca.vertcat(*each) for each in zip(*replaced, strict=True))
+        return list(ca.substitute(list(expressions), [names], [values]))
+
+    def _speeds(self, body: Body) -> Expression:
+        """Shares of the joints' largest speeds."""
+        fastest = fastest_joints(body.form, body.part)
+        rates = self._rates[body.agent.name]["joints"]
+        return ca.vertcat(*[rates[place] / fastest[name] for place, name in enumerate(body.form.joints)])
+
+    def _soles(self, body: Body) -> Iterator[Expression]:
+        """By how much each sole is out of its place: x, y, z [m], its slants and the sine of its turn."""
+        for side in body.form.sides:
+            sole, place = body.poses[body.agent.soles[side]], self.symbols.places[body.agent.name, side]
+            where = sole.position - ca.vertcat(place[:2], 0.0)
+            yield ca.vertcat(where, sole.rotation[:2, 2], sole.rotation[1, 0] - place[2])
+
+    def _grips(self, body: Body) -> Iterator[Expression]:
+        """By how much each rigid hand turns from its grip: axis times sine of the angle."""
+        for side in body.form.sides if self._turns else ():
+            key = body.agent.name, side
+            turn = self._turns[key].T @ body.poses[body.agent.hands[side]].rotation
+            yield ca.inv_skew(turn - turn.T) / 2.0 - self.symbols.grips[key]
+
+    def _smoothness(self, form: Form) -> Expression:
+        changes = self._changes[form.agent.name]["joints"] / SPEEDING_UP
+        return SMOOTHING * ca.dot(ca.DM(list(form.counts)), changes**2)
+
+
+def _derivatives(form: Form, word: str) -> dict[str, Expression]:
+    counts = dict(zip(MOVING_PARTS, (3, 3, len(form.joints)), strict=True))
+    return {part: ca.SX.sym(f"{form.agent.name}.{part}_{word}", count) for part, count in counts.items()}

@@ -1,0 +1,242 @@
+"""Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
+
+Solves begin at the hold at either end, followed along the lift with the feet in place, so that a result
+depends on problem and design alone; the cheaper one counts. Holds of several heights joined together do not
+do for a start: their elbows bend in different ways.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
+from evodesign.motion.course import Lift, LiftCourse
+from evodesign.motion.instant import KnotBlocks, undisturbed
+from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.solver import status_of
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.results import Attempt, CaseSolution
+from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.records import Status, worst_status
+
+__all__ = ["AgentEffort", "LiftProblem", "LiftSolution"]
+
+Array = NDArray[np.float64]
+
+OPEN = 1e-3
+"""By how much [m] hands and feet of a start may be out of place."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AgentEffort:
+    """What a lift takes of one agent.
+
+    Args:
+        torques: norm over the joints [N m] at each of the solution's times.
+        slow_torques: mean over time of the same lift infinitely slowly [N m]; None where it was not found.
+        power: of the joint torques at each time [W].
+        work: of the joint torques [J].
+    """
+
+    torques: Array
+    slow_torques: float | None
+    power: Array
+    work: float
+
+    @property
+    def mean_torque(self) -> float:
+        """Mean over time of the norm [N m], by the trapezoidal rule."""
+        return float(np.trapezoid(self.torques)) / (len(self.torques) - 1)
+
+    @property
+    def peak_torque(self) -> float:
+        """Largest norm [N m]."""
+        return float(self.torques.max())
+
+    @property
+    def static_share(self) -> float | None:
+        """Of the mean torque, how much is there when the same lift is infinitely slow."""
+        return None if self.slow_torques is None else self.slow_torques / self.mean_torque
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LiftSolution:
+    """The best checked lift, or why there is none.
+
+    Args:
+        lift: what was asked for; with the knots that it took.
+        status: solved, or why not.
+        reason: a sentence.
+        attempts: every start tried.
+        course: the motion; None unless solved.
+        checked: what the independent check found; None unless solved.
+        efforts: by agent name; empty unless solved.
+        cost_slope: derivative of the optimal cost with respect to the design's parameters.
+    """
+
+    lift: Lift
+    status: Status
+    reason: str
+    attempts: tuple[Attempt, ...] = ()
+    course: LiftCourse | None = None
+    checked: CheckedLift | None = None
+    efforts: Mapping[str, AgentEffort] = field(default_factory=dict)
+    cost_slope: Array | None = None
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is a checked motion."""
+        return self.status is Status.SOLVED
+
+    @property
+    def times(self) -> Array:
+        """Of all that is told over time [s]; none unless solved."""
+        return np.empty(0) if self.course is None else fine_times(self.course)
+
+
+class LiftProblem:
+    """Lifts of any design of a scene.
+
+    Args:
+        setting: of the scene.
+        symmetric: whether halves of robot and person are looked for.
+    """
+
+    def __init__(self, setting: Setting, *, symmetric: bool) -> None:
+        self._setting = setting
+        self._scene = undisturbed(setting.scene)
+        agents = (self._scene.robot, self._scene.human)
+        forms = symmetric_forms(self._scene) if symmetric else (whole(agents[0]), whole(agents[1]))
+        self._blocks = KnotBlocks(forms, setting)
+        self._programs: dict[int, LiftProgram] = {}
+
+    def solve(
+        self,
+        design: Sequence[float],
+        lift: Lift,
+        holds: Sequence[CaseSolution],
+        robot: AgentModel,
+        human: AgentModel,
+    ) -> LiftSolution:
+        """The best checked motion of a design; where the check finds it too coarse, with twice the knots.
+
+        Args:
+            design: one number per design parameter.
+            lift: what is asked for.
+            holds: the design's posture at the beginning and at the end.
+            robot: the design's, for the check.
+            human: the person's.
+        """
+        ends = dict(zip(("beginning", "end"), holds, strict=True))
+        for name, posture in ends.items():
+            if not posture.solved:
+                where = f"the load cannot be held at the {name} of the lift"
+                return LiftSolution(lift, posture.status, f"{where}: {posture.reason}")
+        checker = LiftChecker(self._scene, robot, human, Checker(self._scene, robot, human))
+        found = self._with_knots(design, lift, ends, checker)
+        if found.status is Status.NUMERICAL_FAILURE and found.checked is not None:
+            return self._with_knots(design, replace(lift, knots=2 * lift.knots), ends, checker)
+        return found
+
+    def _with_knots(
+        self, design: Sequence[float], lift: Lift, ends: Mapping[str, CaseSolution], checker: LiftChecker
+    ) -> LiftSolution:
+        program, mass = self._program(lift.knots), self._scene.payload.mass
+        begins = {"beginning": 0, "end": lift.knots - 1}
+        starts = {
+            name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
+        }
+        solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
+        attempts = tuple(_attempt(name, ending, seconds) for name, ending, seconds in solves)
+        solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
+        if not solved:
+            return self._none(design, lift, starts, attempts)
+        name, best, _ = min(solved, key=lambda end: end[1].cost)
+        course = program.course(lift, best.symbols)
+        checked = checker.check(course)
+        slow, _ = program.solve(lift, replace(starts[name], symbols=best.symbols), design, mass, 0.0)
+        return LiftSolution(
+            lift=lift,
+            status=Status.NUMERICAL_FAILURE if checked.wrong else Status.SOLVED,
+            reason=checked.wrong or "solved",
+            attempts=attempts,
+            course=course,
+            checked=checked,
+            efforts=_efforts(course, checked, slow, program),
+            cost_slope=best.cost_slope[: len(design)],
+        )
+
+    def _none(
+        self,
+        design: Sequence[float],
+        lift: Lift,
+        starts: Mapping[str, LiftStart],
+        attempts: tuple[Attempt, ...],
+    ) -> LiftSolution:
+        """Why no start led to a motion: the way, the time, or limits that no motion meets."""
+        program, mass = self._program(lift.knots), self._scene.payload.mass
+        status = worst_status([attempt.status for attempt in attempts])
+        open_by = min(start.open_by for start in starts.values())
+        slow = [program.solve(lift, start, design, mass, 0.0)[0] for start in starts.values()]
+        if any(status_of(ending.word) is Status.SOLVED for ending in slow):
+            reason = (
+                f"{lift} is too fast: the same motion is found where nothing has inertia or a limit of speed"
+            )
+        elif open_by > OPEN:
+            reason = f"{lift} passes a height out of reach: hands or feet are {open_by:.3f} m off on the way"
+        else:
+            reason = f"no motion {lift} meets all limits, however slow"
+        return LiftSolution(lift, status, reason, attempts)
+
+    def _program(self, knots: int) -> LiftProgram:
+        if knots not in self._programs:
+            self._programs[knots] = LiftProgram(self._blocks, knots, self._options)
+        return self._programs[knots]
+
+    @property
+    def _options(self) -> SolverOptions:
+        return replace(self._setting.options, tolerance=TOLERANCE_OF_LIFTS)
+
+
+TOLERANCE_OF_LIFTS = 1e-7
+"""Of the scaled optimality error: a lift's program is some ten times as large as a hold's."""
+
+
+def _attempt(name: str, ending: Ending, seconds: float) -> Attempt:
+    return Attempt(
+        formulation="lift",
+        start=f"hold at the {name}",
+        status=status_of(ending.word),
+        reason=ending.word,
+        iterations=ending.iterations,
+        seconds=seconds,
+        cost=ending.cost,
+        method=MethodName.IPOPT,
+    )
+
+
+def _efforts(
+    course: LiftCourse, checked: CheckedLift, slow: Ending, program: LiftProgram
+) -> dict[str, AgentEffort]:
+    times = fine_times(course)
+    instants = course.instants(times)
+    slowly = None
+    if status_of(slow.word) is Status.SOLVED:
+        slowly = program.course(course.lift, slow.symbols).instants(times)
+    return {
+        name: AgentEffort(
+            torques=np.array([instant.postures[name].torque_norm for instant in instants]),
+            slow_torques=None
+            if slowly is None
+            else float(np.trapezoid([i.postures[name].torque_norm for i in slowly])) / (len(times) - 1),
+            power=checked.powers[name],
+            work=work,
+        )
+        for name, work in checked.work.items()
+    }

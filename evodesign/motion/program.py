@@ -1,0 +1,260 @@
+"""The program of a lift: splines and wrenches over K knots, for any design and any heights and times."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sparse
+from numpy.typing import NDArray
+
+from evodesign.motion.course import Lift, LiftCourse, LoadProfile
+from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.spline import RestingSpline
+from evodesign.nlp.method import Ending, SolverOptions
+from evodesign.nlp.repeated import Repeated, RepeatedProgram
+from evodesign.posture.results import AgentPosture
+
+__all__ = ["LiftProgram", "LiftStart"]
+
+Array = NDArray[np.float64]
+
+FARTHEST, LOWEST, HIGHEST = 3.0, 0.05, 3.0
+"""How far from the load a foot may stand, and between which heights a load may be [m]."""
+
+TURN = 0.8
+"""Sine of the angle by which rigid hands may be turned otherwise than in the start."""
+
+TRIES, CLOSED, LONGEST_STEP = 60, 1e-9, 0.3
+"""Of closing hands and feet: iterations, what counts as closed [m], largest change [rad]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LiftStart:
+    """Where a solve begins.
+
+    Args:
+        symbols: of the program.
+        hands: how rigid hands are turned in it, entries of rotations; none for other grasps.
+        open_by: by how much hands or feet are out of place at the worst knot [m].
+    """
+
+    symbols: Array
+    hands: Array
+    open_by: float
+
+
+class LiftProgram:
+    """Lifts of so many knots in a setting.
+
+    The variables are, one after the other: posture coefficients, knot after knot; coefficients of the load's
+    height; torques and wrenches, knot after knot; the places of the soles.
+
+    Args:
+        blocks: what is said at a knot and between.
+        knots: their number.
+        options: of the solver.
+    """
+
+    def __init__(self, blocks: KnotBlocks, knots: int, options: SolverOptions) -> None:
+        self._blocks, self._knots, self._options = blocks, knots, options
+        self._postures = int(blocks.free.sum())
+        self._others = sum(len(v.lower) for v in blocks.symbols.others)
+        self._soles, self._grips = len(blocks.symbols.places), len(blocks.symbols.grips)
+        self._places = 3 * (self._soles + self._grips)
+        ends = np.cumsum([0, knots * self._postures, knots, knots * self._others, self._places])
+        self._first = dict(zip(("postures", "load", "others", "places"), ends.tolist(), strict=False))
+        self._size = int(ends[-1])
+
+    @cached_property
+    def _program(self) -> RepeatedProgram:
+        spline, at = RestingSpline(self._knots), np.arange(float(self._knots))
+        value, moved, bent = (spline.image(at, order) for order in range(3))
+        knots = self._stacked(
+            [(value, "postures"), (moved, "postures"), (bent, "postures"), (value, "load"), (bent, "load")],
+            carried=True,
+        )
+        half_way = spline.image(at[:-1] + 0.5)
+        between = self._stacked([(half_way, "postures"), (half_way, "load")], carried=False)
+        parts = [
+            Repeated(self._blocks.knot, knots, self._knots),
+            Repeated(self._blocks.between, between, self._knots - 1),
+        ]
+        return RepeatedProgram("lift", parts, self._options)
+
+    def _stacked(self, splines: Sequence[tuple[Array, str]], *, carried: bool) -> sparse.csc_matrix:
+        """What blocks see: splines, torques and wrenches, places; one repetition after the other."""
+        rows = []
+        for number in range(len(splines[0][0])):
+            for image, kind in splines:
+                width = self._postures if kind == "postures" else 1
+                rows.append(self._at(kind, sparse.kron(image[number : number + 1], sparse.eye(width))))
+            if carried:
+                rows.append(self._at("others", sparse.eye(self._others), number * self._others))
+            rows.append(self._at("places", sparse.eye(self._places)))
+        return sparse.vstack(rows).tocsc()
+
+    def _at(self, kind: str, image: sparse.spmatrix, further: int = 0) -> sparse.spmatrix:
+        """An image of some variables as one of all."""
+        found = sparse.coo_matrix(image)
+        columns = found.col + self._first[kind] + further
+        return sparse.coo_matrix((found.data, (found.row, columns)), (found.shape[0], self._size))
+
+    def solve(
+        self, lift: Lift, start: LiftStart, design: Sequence[float], mass: float, inertia: float = 1.0
+    ) -> tuple[Ending, float]:
+        """Solve from a start; gives its end and the wall time [s].
+
+        Args:
+            lift: with as many knots.
+            start: symbols.
+            design: one number per parameter.
+            mass: of the load [kg].
+            inertia: share of it that counts; 0 for a motion that is infinitely slow.
+        """
+        shared = np.array([*design, lift.step, mass, inertia, *start.hands])
+        weights = np.full((self._knots, 1), 1.0 / (self._knots - 1))
+        weights[[0, -1]] /= 2.0
+        low, high = self._bounds(lift)
+        own = [weights, np.empty((self._knots - 1, 0))]
+        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
+
+    def _bounds(self, lift: Lift) -> tuple[Array, Array]:
+        """Of the symbols: those of a hold, and the load's height."""
+        seen, free = self._blocks.symbols, self._blocks.free
+        sides = []
+        for sign, moving, others in (
+            (-1.0, [v.lower / v.scale for v in seen.moving], [v.lower / v.scale for v in seen.others]),
+            (1.0, [v.upper / v.scale for v in seen.moving], [v.upper / v.scale for v in seen.others]),
+        ):
+            height = RestingSpline(self._knots).through(lift.heights)
+            if lift.profile is LoadProfile.FREE:
+                height = self._free_heights(lift, sign)
+            soles = [sign * FARTHEST, sign * FARTHEST, sign] * self._soles
+            places = np.array(soles + [sign * TURN] * 3 * self._grips)
+            postures = np.tile(np.concatenate(moving)[free], self._knots)
+            sides.append(
+                np.concatenate([postures, height, np.tile(np.concatenate(others), self._knots), places])
+            )
+        return sides[0], sides[1]
+
+    def _free_heights(self, lift: Lift, sign: float) -> Array:
+        """A load that goes as it likes between its ends: there its first two coefficients are the end's."""
+        far = max if sign > 0.0 else min
+        heights = np.full(self._knots, far(lift.from_m, lift.to_m))
+        heights[:2], heights[-2:] = lift.from_m, lift.to_m
+        return heights
+
+    def followed(
+        self, lift: Lift, postures: Mapping[str, AgentPosture], begin: int, design: Sequence[float]
+    ) -> LiftStart:
+        """A start: a hold's posture, followed along the lift with the feet in place, by least-norm steps.
+
+        Args:
+            lift: with as many knots.
+            postures: of the hold, by agent name.
+            begin: the knot at whose height it is, the first or the last.
+            design: one number per parameter.
+        """
+        seen, free = self._blocks.symbols, self._blocks.free
+        parts = {form.agent.name: form.parts(postures[form.agent.name]) for form in self._blocks.forms}
+        moving = np.concatenate([self._known(parts, v) for v in seen.moving])[free]
+        others = np.concatenate([self._known(parts, v) for v in seen.others])
+        closure, path = self._blocks.closure, np.empty((self._knots, self._postures))
+        order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
+        hands = np.asarray(self._blocks.hands(moving, design)).ravel()
+        shared = np.array([*design, lift.step, 0.0, 0.0, *hands])  # of which a place does not ask the rest
+        places, worst = self._places_of(moving, lift.heights[begin], shared), 0.0
+        for knot in order:
+            moving, open_by = self._closed(closure, moving, lift.heights[knot], places, shared)
+            path[knot], worst = moving, max(worst, open_by)
+        coefficients = RestingSpline(self._knots).through(path)
+        load = RestingSpline(self._knots).through(lift.heights)
+        symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
+        return LiftStart(np.concatenate(symbols), hands, worst)
+
+    @staticmethod
+    def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:
+        key, size, scale = variable.key, len(variable.lower), variable.scale  # type: ignore[attr-defined]
+        return np.asarray(parts[key.party][key.part][:size] / scale)
+
+    def _places_of(self, moving: Array, height: float, shared: Array) -> Array:
+        """Where the soles of a posture are: what they are off from nowhere."""
+        nowhere = np.zeros(self._places)
+        found = np.asarray(self._blocks.closure(moving, height, nowhere, shared)[0]).ravel()
+        return np.concatenate([found[self._sole_rows], np.zeros(3 * self._grips)])
+
+    @cached_property
+    def _sole_rows(self) -> Array:
+        """Which rows of the closure are x, y and the turn of soles: after the hands of each agent."""
+        rows: list[int] = []
+        first = 0
+        for form in self._blocks.forms:
+            first += 3 * len(form.sides)
+            for _ in form.sides:
+                rows += [first, first + 1, first + 5]
+                first += 6
+            first += 3 * len(form.sides) if self._grips else 0
+        return np.array(rows)
+
+    def _closed(
+        self, closure: object, moving: Array, height: float, places: Array, shared: Array
+    ) -> tuple[Array, float]:
+        """The posture near another one whose hands and feet are in place, within its bounds."""
+        seen, free = self._blocks.symbols, self._blocks.free
+        low = np.concatenate([v.lower / v.scale for v in seen.moving])[free]
+        high = np.concatenate([v.upper / v.scale for v in seen.moving])[free]
+        moving = np.clip(moving, low, high)
+        for _ in range(TRIES):
+            open_by, jacobian = (np.asarray(each) for each in closure(moving, height, places, shared))  # type: ignore[operator]
+            open_by = open_by.ravel()
+            if np.abs(open_by).max() < CLOSED:
+                break
+            change = _bounded_step(jacobian, open_by, moving <= low, moving >= high)
+            change *= min(1.0, LONGEST_STEP / max(1e-12, float(np.abs(change).max())))
+            moving = np.clip(moving + change, low, high)
+        return moving, float(np.abs(open_by).max())
+
+    def course(self, lift: Lift, symbols: Array) -> LiftCourse:
+        """The motion that symbols stand for, SI units."""
+        seen, free, knots = self._blocks.symbols, self._blocks.free, self._knots
+        pieces = np.split(symbols, [self._first[name] for name in ("load", "others", "places")])
+        still = np.concatenate([v.lower / v.scale for v in seen.moving])
+        postures = np.tile(still, (knots, 1))
+        postures[:, free] = pieces[0].reshape(knots, -1)
+        return LiftCourse(
+            lift=lift,
+            forms=self._blocks.forms,
+            coefficients=self._by_agent(seen.moving, postures),
+            carried=self._by_agent(seen.others, pieces[2].reshape(knots, -1)),
+            load=pieces[1],
+        )
+
+    def _by_agent(self, variables: Sequence[object], columns: Array) -> dict[str, dict[str, Array]]:
+        """Columns of symbols as values by agent and part."""
+        found: dict[str, dict[str, Array]] = {form.agent.name: {} for form in self._blocks.forms}
+        first = 0
+        for variable in variables:
+            key, scale, size = variable.key, variable.scale, len(variable.lower)  # type: ignore[attr-defined]
+            found[key.party][key.part] = scale * columns[:, first : first + size]
+            first += size
+        return found
+
+
+def _bounded_step(
+    jacobian: Array, open_by: Array, at_low: NDArray[np.bool_], at_high: NDArray[np.bool_]
+) -> Array:
+    """The smallest change that closes, of those that do not leave bounds which are met."""
+    free = np.ones(jacobian.shape[1], bool)
+    for _ in range(4):
+        own = jacobian[:, free]
+        damped = own @ own.T + 1e-8 * np.eye(len(open_by))
+        change = np.zeros(len(free))
+        change[free] = -own.T @ np.linalg.solve(damped, open_by)
+        leaving = free & ((at_low & (change < 0.0)) | (at_high & (change > 0.0)))
+        if not leaving.any():
+            break
+        free &= ~leaving
+    return change
