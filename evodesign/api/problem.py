@@ -141,7 +141,7 @@ class Problem:
             return Evaluator(self.built, cached_precomputed(self.built, pool))
 
     @cached_property
-    def lifts(self) -> Lifts:
+    def _lifts(self) -> Lifts:
         """Lifts of designs, for `evodesign.lift`."""
         return Lifts(self._evaluator)
 
