@@ -38,10 +38,12 @@ def _caption(solution: LiftSolution) -> str:
     if solution.checked is None:
         return f"{solution.status}: {solution.reason}"
     checked = solution.checked
-    knots, between = max(checked.knots.values()), max(checked.between.values())
-    residuals = f"largest residual {knots:.1e} at {solution.lift.knots} knots, {between:.1e} between"
+    largest = max(checked.between, key=lambda name: checked.between[name])
+    residuals = f"largest residual {max(checked.knots.values()):.1e} at {solution.lift.knots} knots"
+    residuals += f", {checked.between[largest]:.1e} between them ({largest})"
     energy = f"energy gained {checked.energy:.4g} J, work off by {100.0 * checked.energy_error:.2g} %"
-    return f"{solution.status}: {solution.reason}; {residuals}; {energy}"
+    why = "" if solution.solved else f": {solution.reason}"
+    return f"{solution.status}{why}; {residuals}; {energy}"
 
 
 def _over_time(solution: LiftSolution) -> FittedTable:
