@@ -27,6 +27,7 @@ if __name__ == "__main__":
     tables = tomllib.loads(evodesign.open_problem("icub-lifting").source.text)
     tables["name"] = "light-footed"
     os.environ["EVODESIGN_MODULES"] = "own_objective"
+    del tables["search"]["reference"]  # it names the objectives of the file
     tables["objectives"] = {"minimise": ["own_objective:foot_force", "robot_torque"]}
     problem = evodesign.Problem.from_dict(tables)
     run = evodesign.search(problem, "runs/light", evaluations=evaluations, population=6, jobs=2)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
@@ -25,7 +25,10 @@ from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
 
-settings.register_profile("evodesign", deadline=None, derandomize=True)
+# No test is lost to a busy machine: neither a deadline nor a drawing that is slow there.
+settings.register_profile(
+    "evodesign", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("evodesign")
 
 

@@ -5,7 +5,8 @@
 An actuator is part of what the others carry, so postures and sizes are found in rounds (`hardware.sizing`).
 The first round begins as any evaluation; each further one moves the robot's postures of the last to sizes
 that would meet the demand if postures stayed: torques are about linear then in the masses of actuators
-(`mechanics.added_mass`). What is checked, and solved to the end, are the postures of the last sizes.
+(`mechanics.added_mass`). What is checked, and solved to the end, are the postures of the last sizes. If the
+check finds better ones, which ask for other actuators, the rounds begin again from those.
 """
 
 from __future__ import annotations
@@ -25,6 +26,9 @@ __all__ = ["BOUNDS", "SizingRounds", "sized_result"]
 
 BOUNDS = (1.0, 300.0)
 """Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
+
+BEGINNINGS = 3
+"""How often the rounds begin."""
 
 NOTHING_KNOWN: Mapping[str, float] = {}
 
@@ -81,32 +85,33 @@ def sized_result(
         return latest.at(sizes) if isinstance(latest, Demand) else sizes
 
     margins = {name: values[place] for name, place in groups.items()}
-    sizing = sized(
-        demand,
-        start={name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()},
-        margins=margins,
-        bounds=dict.fromkeys(groups, BOUNDS),
-        predict=predict,
-    )
-    ended, latest = given(sizing.sizes), asked[-1]
-    reason = latest if isinstance(latest, str) else sizing.reason
-    if sizing.status is not Status.SOLVED and all(each.solved for each in cases[-1]):
-        return rounds.result(ended, _failed(cases[-1], sizing, reason))
-    result = rounds.result(ended, cases[-1])
-    if not all(each.solved for each in result.cases):
-        return result
-    final = latest.of_lift(result.cases) if isinstance(latest, Demand) else None
-    if final is not None and _left(final, sizing, margins) <= 2.0 * TOLERANCE:
-        return replace(result, demand=final)
+    start = {name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()}
+    for _ in range(BEGINNINGS):
+        sizing = sized(demand, start, margins, dict.fromkeys(groups, BOUNDS), predict)
+        ended, latest = given(sizing.sizes), asked[-1]
+        if sizing.status is not Status.SOLVED and all(each.solved for each in cases[-1]):
+            reason = latest if isinstance(latest, str) else sizing.reason
+            return rounds.result(ended, _failed(cases[-1], sizing, reason))
+        result = rounds.result(ended, cases[-1])
+        if not all(each.solved for each in result.cases):
+            return result
+        final = latest.of_lift(result.cases) if isinstance(latest, Demand) else None
+        if final is None:
+            break
+        wanted = _wanted(final, sizing, margins)
+        if replace(sizing, wanted=wanted).change <= 2.0 * TOLERANCE:
+            return replace(result, demand=final)
+        start = wanted
+        cases.append(result.cases)
+        asked.append(final)
     lost = replace(sizing, status=Status.ITERATION_LIMIT)
     return replace(result, cases=_failed(result.cases, lost, "checked postures ask for other actuators"))
 
 
-def _left(demand: Demand, sizing: Sizing, margins: Mapping[str, float]) -> float:
-    """The largest difference of a size from the one wanted in the end, as a share of it."""
+def _wanted(demand: Demand, sizing: Sizing, margins: Mapping[str, float]) -> Mapping[str, float]:
+    """The sizes that a demand around those of the last round asks for."""
     asked = demand.at(sizing.sizes)
-    wanted = {name: min(max(margin * asked[name], BOUNDS[0]), BOUNDS[1]) for name, margin in margins.items()}
-    return replace(sizing, wanted=wanted).change
+    return {name: min(max(margin * asked[name], BOUNDS[0]), BOUNDS[1]) for name, margin in margins.items()}
 
 
 def _failed(cases: Cases, sizing: Sizing, reason: str) -> Cases:

@@ -13,6 +13,7 @@ from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.problem import sizing
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
@@ -57,8 +58,8 @@ def sized(problem: DesignProblem) -> DesignProblem:
 
 
 @pytest.fixture(scope="module")
-def inner(sized: DesignProblem) -> Evaluator:
-    return Evaluator(sized)
+def inner(sized: DesignProblem, known: Precomputed) -> Evaluator:
+    return Evaluator(sized, known)
 
 
 @pytest.fixture(scope="module")
