@@ -65,10 +65,12 @@ class WorkerProcess(Generic[A, R]):
         """Begin an argument; the future is to be given to `end`."""
         self._begun = time.perf_counter()
         try:
-            return self._submit(index, argument)
-        except BrokenProcessPool:  # died while it had nothing to do
+            return self._submitted(index, argument)
+        except (OSError, ValueError) as error:  # as loky says it when no process can be had
             self.close()
-            return self._submit(index, argument)
+            never: Future[Finished[R]] = Future()
+            never.set_exception(_NotStartedError(f"no worker process could be started ({explain(error)})"))
+            return never
 
     @property
     def due(self) -> float:
@@ -83,7 +85,7 @@ class WorkerProcess(Generic[A, R]):
         try:
             return future.result()
         except Exception as error:  # noqa: BLE001 - whatever keeps the result back is this argument's failure
-            lost = isinstance(error, TerminatedWorkerError)
+            lost = isinstance(error, TerminatedWorkerError | _NotStartedError)
             failure = _death(error) if lost else f"no result came back: {explain(error)}"
             if isinstance(error, BrokenProcessPool):
                 self.close()
@@ -98,6 +100,13 @@ class WorkerProcess(Generic[A, R]):
     @property
     def _seconds(self) -> float:
         return time.perf_counter() - self._begun
+
+    def _submitted(self, index: int, argument: A) -> Future[Finished[R]]:
+        try:
+            return self._submit(index, argument)
+        except BrokenProcessPool:  # died while it had nothing to do
+            self.close()
+            return self._submit(index, argument)
 
     def _submit(self, index: int, argument: A) -> Future[Finished[R]]:
         if self._executor is None:
@@ -126,6 +135,10 @@ class WorkerProcess(Generic[A, R]):
         failure = f"{what} after {self.due - self._begun:g} s, so the worker process was ended"
         self.close()
         return Finished(index, None, failure, False, self._seconds, self._name, out_of_time=True)
+
+
+class _NotStartedError(Exception):
+    """No process could be had; the text says why."""
 
 
 def _begin_resource_trackers() -> None:
@@ -158,6 +171,8 @@ def _interrupts_held_off() -> Iterator[None]:
 
 def _death(error: BaseException) -> str:
     """A sentence on a worker's death, with the exit code that loky mentions, such as `SIGKILL(-9)`."""
+    if isinstance(error, _NotStartedError):
+        return str(error)
     codes = [int(code) for code in re.findall(r"[A-Z]\((-?\d+)\)", str(error))]
     manners = sorted({f"signal {-code}" if code < 0 else f"exit code {code}" for code in codes})
     return f"the worker process died ({', '.join(manners) or 'unknown cause'})"

@@ -272,3 +272,23 @@ print(os.getpid())
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert not list(Path("/dev/shm").glob(f"*-{done.stdout.strip()}-*"))
+
+
+def test_where_no_process_can_be_had_every_argument_says_so(tmp_path: Path) -> None:
+    script = f"""
+import sys
+from evodesign.pool.joblib_pool import JoblibPool
+from tests.pool.tasks import squares
+sys.executable = {str(tmp_path / "none")!r}
+with JoblibPool(2) as pool:
+    for end in pool.run(squares, range(3)):
+        assert end.value is None
+        print(end.index, end.failure)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == 3
+    assert all("worker process" in line and "also when retried alone" in line for line in lines), lines
