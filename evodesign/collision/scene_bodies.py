@@ -17,8 +17,8 @@ from evodesign.tree.model import Tree
 
 __all__ = ["CheckedBodies", "SceneBodies"]
 
-PoseOf = Callable[[str], tuple[Array, Array]]
-"""Rotation and origin [m] of a link."""
+PosesOf = Callable[[Sequence[str]], Array]
+"""Rotation and origin [m] of some links, as matrices of shape (n, 4, 4)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,22 +84,22 @@ class SceneBodies:
         self._above_floor = np.concatenate(low)
 
     def near(
-        self, poses: Mapping[str, tuple[float, PoseOf]], load_height: float, within: float = 0.0
+        self, poses: Mapping[str, tuple[float, PosesOf]], load_height: float, within: float = 0.0
     ) -> list[BodyDistance]:
         """Bodies that must not overlap and are nearer to each other than a distance.
 
         Args:
             poses: of each agent by name: the cosine of the direction in which it looks (1 or -1), and
-                rotation and origin [m] of its links in its own frame.
+                the poses of its links in its own frame.
             load_height: of the load's centre [m].
             within: the distance [m].
         """
         turns, origins = [], []
-        for name, (sign, pose) in poses.items():
+        for name, (sign, of) in poses.items():
             links, places = self._links[name]
-            found, turn = [pose(link) for link in links], np.array([sign, sign, 1.0])
-            turns.append((turn[:, None] * np.array([rotation for rotation, _ in found]))[places])
-            origins.append((turn * np.array([origin for _, origin in found]))[places])
+            found = of(links)[places] * np.array([sign, sign, 1.0, 1.0])[:, None]
+            turns.append(found[:, :3, :3])
+            origins.append(found[:, :3, 3])
         turns.append(np.eye(3)[None])
         origins.append(np.array([[0.0, 0.0, load_height]]))
         placed = self._bodies.placed_at(np.concatenate(turns), np.concatenate(origins))

@@ -329,6 +329,11 @@ class BodyState:
         placement = self.data.oMf[self._identity(frame)]
         return np.array(placement.rotation), np.array(placement.translation)
 
+    def poses(self, frames: Sequence[str]) -> Array:
+        """Rotations and origins [m] of frames in the world, as matrices of shape (n, 4, 4)."""
+        placements = self.data.oMf
+        return np.array([placements[self._identity(frame)].homogeneous for frame in frames])
+
     def _identity(self, frame: str) -> int:
         return self.body.workspace.frames[frame]
 

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dtrtrs
 
+from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.codegen import compiled_function
 from evodesign.nlp.program import Program
 
@@ -114,16 +115,11 @@ class Conditions:
     def __init__(self, program: Program, *, compiled: bool = False) -> None:
         symbolic, self._shapes = _function(program)
         self._ends = np.cumsum([rows * columns for rows, columns in self._shapes]).tolist()
-        self._function = compiled_function(symbolic) if compiled else symbolic
+        self._function = BufferedFunction(compiled_function(symbolic) if compiled else symbolic)
 
     def _parts(self, symbols: Array, multipliers: Array, parameters: Array) -> list[Array]:
-        """What the function gives, in numbers, without copies through CasADi's own matrices."""
-        buffer, call = self._function.buffer()
-        for position, given in enumerate((symbols, multipliers, parameters)):
-            buffer.set_arg(position, np.ascontiguousarray(given, dtype=float).data)
-        together = np.empty(self._ends[-1])
-        buffer.set_res(0, together.data)
-        call()
+        """What the function gives, in numbers."""
+        together = self._function(symbols, multipliers, parameters)[0]
         begins = [0, *self._ends]
         return [
             together[begin:end].reshape(shape, order="F")

@@ -111,8 +111,15 @@ class Switches(Protocol):
         """
         ...
 
-    def better(self, values: Start, given: Mapping[str, Any]) -> Start:
-        """Parameters with which rows that hold a solution leave it more room; none where there are none."""
+    def better(self, values: Start, given: Mapping[str, Any], multipliers: Array, gain: float) -> Start:
+        """Parameters with which rows that hold a solution leave it more room; none where that gains little.
+
+        Args:
+            values: of the solution, with the parameters that are on.
+            given: the other parameters.
+            multipliers: of the rows of the program with all rows.
+            gain: the least one of its cost that counts, to first order: no more can be gained near by.
+        """
         ...
 
 

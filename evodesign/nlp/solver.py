@@ -81,7 +81,7 @@ ROUNDS = 6
 WAYS = 3
 """Ways to keep a row that are tried."""
 
-GAIN = 1e-6
+GAIN = 1e-4
 """Share of its cost by which a solution must get better to be solved again."""
 
 UNSETTLED = "rows remain that are to be switched on"
@@ -163,7 +163,7 @@ class Solver:
         switches = self.program.switches
         return switches is not None and not self.program.switched and has_any(switches.names, start)
 
-    def settled(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
+    def settled(self, parameters: Mapping[str, Any], raw: RawSolution, gain: float = 0.0) -> RawSolution:
         """A solution with the rows on that it violates; as it is where it violates none.
 
         Where going on from it leads nowhere, the solve begins anew with all rows on.
@@ -171,6 +171,7 @@ class Solver:
         Args:
             parameters: that it was found for.
             raw: the solution; one that failed stays as it is.
+            gain: of its cost, below which rows are not kept in better ways.
         """
         switches = self.program.switches
         if switches is None or raw.status is not Status.SOLVED:
@@ -182,7 +183,7 @@ class Solver:
             found = self._without_violations(
                 parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
             )
-        return self._bettered(parameters, found)
+        return self._bettered(parameters, found, gain)
 
     def parted_start(self, parameters: Mapping[str, Any], start: Start) -> Start:
         """A start with all rows on, unless it has some on already."""
@@ -191,16 +192,19 @@ class Solver:
             return start
         return {**start, **switches.begun(start, parameters)}
 
-    def _bettered(self, parameters: Mapping[str, Any], found: RawSolution) -> RawSolution:
+    def _bettered(self, parameters: Mapping[str, Any], found: RawSolution, gain: float) -> RawSolution:
         """Rows that hold a solution are kept in better ways, as long as it gains by them."""
         switches = self.program.switches
         for _ in range(ROUNDS):
             if switches is None or found.status is not Status.SOLVED:
                 break
-            better = switches.better(found.values, parameters)
-            other = self.near._solved_from(parameters, found, better) if better else found
+            least, rows = max(gain, GAIN * abs(found.cost)), found.multipliers.constraints
+            better = switches.better(found.values, parameters, rows, least)
+            if not better:
+                break
+            other = self.near._solved_from(parameters, found, better)
             other = self._without_violations(parameters, other)
-            if other.status is not Status.SOLVED or not other.cost < found.cost - abs(found.cost) * GAIN:
+            if other.status is not Status.SOLVED or not other.cost < found.cost - least:
                 break
             found = other
         return found

@@ -34,7 +34,7 @@ from evodesign.posture.terms.base import (
     Unknown,
     both_hands,
 )
-from evodesign.posture.terms.collisions import PARTING, directed
+from evodesign.posture.terms.collisions import CLEAR, PARTING, directed
 from evodesign.posture.terms.grasp import hand_unknowns, moment_cost
 from evodesign.posture.terms.torque import effort
 from evodesign.tree.equip import actuators_of
@@ -279,7 +279,7 @@ class _Assembler:
             body = postures[party.name].body(party, self._case, instant, values, disturbance)
             bodies[party.name] = body
             if not again and directed(party.form):
-                self._parted.append(PartedBody(f"{block}.{PARTING}", body))
+                self._parted.append(PartedBody(f"{block}.{PARTING}", f"{block}.{CLEAR}", body))
         hands = {name: body.hands for name, body in bodies.items()}
         for free in self._hands:
             asked, slot = hand_unknowns(free.sides, scene.payload), Slot(instant, number, free.name, "")

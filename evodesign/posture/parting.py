@@ -11,7 +11,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import Program, Start
+from evodesign.nlp.solver import has_any
 from evodesign.posture.separating_axes import Ways, ways_of
 from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
@@ -46,10 +48,12 @@ class PartedBody:
 
     Args:
         name: of the parameters that say what parts it.
+        rows: name of the rows that keep its bodies apart along directions.
         body: its expressions.
     """
 
     name: str
+    rows: str
     body: Body
 
 
@@ -85,7 +89,7 @@ class Parted:
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
             return np.ones(len(seen.margins), bool)
 
-        def wanted(ways: Ways, margin: float, along: float) -> Array:
+        def wanted(ways: Ways, place: int, along: float) -> Array:
             return ways.ranked(0)
 
         return self._changed(values, given, looked_at, wanted)
@@ -96,28 +100,38 @@ class Parted:
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
             return np.asarray(~seen.on & (seen.least < seen.margins + short))
 
-        def wanted(ways: Ways, margin: float, along: float) -> Array | None:
-            return ways.ranked(rank) if ways.distance < margin + short - ALMOST else None
+        def wanted(ways: Ways, place: int, along: float) -> Array | None:
+            wide = self._meetings.margins[place] + short
+            return ways.ranked(rank) if ways.distance < wide - ALMOST else None
 
         return self._changed(values, given, looked_at, wanted)
 
-    def better(self, values: Start, given: Mapping[str, Any]) -> Start:
-        """What parts bodies farther that a row holds in touch; none where every row has the best way."""
+    def better(self, values: Start, given: Mapping[str, Any], multipliers: Array, gain: float) -> Start:
+        """What parts bodies farther that a row holds in touch; none where that gains less than asked for."""
+        if not has_any(self.names, values):
+            return {}
+        prices = self._meetings.prices(multipliers)
+        gains: list[float] = []
 
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
-            return np.asarray(seen.on & (seen.along <= seen.margins + TOUCHING))
+            return np.asarray(seen.on & (prices > 0.0) & (seen.along <= seen.margins + TOUCHING))
 
-        def wanted(ways: Ways, margin: float, along: float) -> Array | None:
-            return ways.ranked(0) if ways.distance > along + BETTER else None
+        def wanted(ways: Ways, place: int, along: float) -> Array | None:
+            farther = ways.distance - along
+            if farther < BETTER:
+                return None
+            gains.append(farther * float(prices[place]))
+            return ways.ranked(0)
 
-        return self._changed(values, given, looked_at, wanted)
+        found = self._changed(values, given, looked_at, wanted)
+        return found if sum(gains) > gain else {}
 
     def _changed(
         self,
         values: Start,
         given: Mapping[str, Any],
         looked_at: Callable[[_Screened], NDArray[np.bool_]],
-        wanted: Callable[[Ways, float, float], Array | None],
+        wanted: Callable[[Ways, int, float], Array | None],
     ) -> Start:
         """The parameters with new numbers for some meetings; without those of bodies for which none are new.
 
@@ -125,25 +139,24 @@ class Parted:
             values: of a solution or a start.
             given: the other parameters.
             looked_at: which meetings may get new numbers.
-            wanted: new numbers for one of them, from the ways to part it, its margin [m], and how far it is
-                apart along its direction [m]; or None.
+            wanted: new numbers for one of them, from the ways to part it, its place, and how far it is apart
+                along its direction [m]; or None.
         """
         program, meetings = self.program, self._meetings
         held = program.held(values)
         numbers = program.packed(values), program.packed_parameters(given, values)
         columns = [held[each.name].reshape(-1, NUMBERS) for each in self._bodies]
-        least, along = (np.asarray(column).ravel() for column in meetings.screen(*numbers))
+        least, along = map(meetings.least, meetings.screen(*numbers))
         on = np.concatenate(columns)[:, 0] != 0.0
-        seen = _Screened(np.asarray(on), meetings.least(least), meetings.least(along), meetings.margins)
-        places = np.flatnonzero(looked_at(seen)).tolist()
+        places = np.flatnonzero(looked_at(_Screened(on, least, along, meetings.margins))).tolist()
         if not places:
             return {}
-        pairs = np.asarray(meetings.shapes(*numbers)).T.reshape(-1, 2, SHAPE)
+        pairs = meetings.shapes(*numbers)[0].reshape(-1, 2, SHAPE)
         ends = np.cumsum([0, *map(len, columns)])
         found: dict[str, Array] = {}
         ways = ways_of([pairs[meetings.places == place] for place in places])
         for place, own in zip(places, ways, strict=True):
-            new = wanted(own, meetings.margins[place], seen.along[place])
+            new = wanted(own, place, along[place])
             if new is not None:
                 body = int(np.searchsorted(ends, place, side="right")) - 1
                 name, first = self._bodies[body].name, NUMBERS * (place - int(ends[body]))
@@ -160,8 +173,11 @@ class Parted:
         directions: list[Any] = []
         places: list[int] = []
         margins: list[float] = []
+        rows: list[int] = []
+        ends = np.cumsum([0, *(block.expression.numel() for block in program.constraints)]).tolist()
+        begins = {block.name: begin for block, begin in zip(program.constraints, ends, strict=False)}
         for each in bodies:
-            rules = each.body.agent.collisions
+            rules, before = each.body.agent.collisions, len(pairs)
             for number, meeting in enumerate(directed(each.body.form)):
                 own = placed_pairs(each.body, meeting)
                 held = each.body.values[PARTING][NUMBERS * number : NUMBERS * (number + 1)]
@@ -169,14 +185,17 @@ class Parted:
                 directions += [parted_by(held, *own[0])] * len(own)
                 places += [len(margins)] * len(own)
                 margins.append(rules.margin if rules else 0.0)
+            first = begins[each.rows]
+            rows += range(first, first + len(pairs) - before)
         least = [_least_apart(*pair) for pair in pairs]
         along = [one.apart(other, way) for way, (one, other) in zip(directions, pairs, strict=True)]
         given = [program.symbols, program.given]
         shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
         return _Meetings(
-            ca.Function("screen", given, [ca.vertcat(*least), ca.vertcat(*along)], {"cse": True}),
-            ca.Function("shapes", given, [ca.densify(ca.horzcat(*shapes))], {"cse": True}),
+            _buffered("screen", given, [ca.vertcat(*least), ca.vertcat(*along)]),
+            _buffered("shapes", given, [ca.horzcat(*shapes)]),
             np.array(places, np.intp),
+            np.array(rows, np.intp),
             np.array(margins),
         )
 
@@ -189,12 +208,14 @@ class _Meetings:
         screen: how far each pair of shapes is apart at least, and along its meeting's direction [m].
         shapes: numbers of each pair.
         places: the meeting of each pair.
+        rows: the row of each pair in the program.
         margins: of each meeting [m].
     """
 
-    screen: Any
-    shapes: Any
+    screen: BufferedFunction
+    shapes: BufferedFunction
     places: Places
+    rows: Places
     margins: Array
 
     def least(self, distances: Array) -> Array:
@@ -202,6 +223,14 @@ class _Meetings:
         found = np.full(len(self.margins), np.inf)
         np.minimum.at(found, self.places, distances)
         return found
+
+    def prices(self, multipliers: Array) -> Array:
+        """What each meeting's pairs cost together, per metre, from the multipliers of a program's rows."""
+        return np.asarray(np.bincount(self.places, -multipliers[self.rows], len(self.margins)), float)
+
+
+def _buffered(name: str, given: list[Any], results: list[Any]) -> BufferedFunction:
+    return BufferedFunction(ca.Function(name, given, [ca.densify(each) for each in results], {"cse": True}))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

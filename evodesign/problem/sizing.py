@@ -85,7 +85,7 @@ def sized_result(
         return latest.at(sizes) if isinstance(latest, Demand) else sizes
 
     margins = {name: values[place] for name, place in groups.items()}
-    start = {name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()}
+    start: Mapping[str, float] = {name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()}
     for _ in range(BEGINNINGS):
         sizing = sized(demand, start, margins, dict.fromkeys(groups, BOUNDS), predict)
         ended, latest = given(sizing.sizes), asked[-1]

@@ -20,6 +20,7 @@ from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.reach import LOWEST, ReachProblem
+from evodesign.posture.parting import Parted
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
@@ -246,3 +247,23 @@ def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
                 assert float(found.cost_slope @ step) == pytest.approx(difference, rel=1e-4, abs=1e-8)
                 compared += 1
     assert compared >= 7
+
+
+def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem, met: dict) -> None:
+    """Rows loosened by a little: the lowest load moves by their price times that."""
+    setting = replace(setting_of(apart), scene=with_meetings(apart.scene, met))
+    reach = ReachProblem(setting, symmetric=True)
+    values = apart.space.unscaled(apart.scene.robot.tree)
+    _, best = reach.extreme(values, LOWEST)
+    switches = reach.program.switches
+    assert isinstance(switches, Parted)
+    prices = switches._meetings.prices(best.multipliers.constraints)
+    parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST}
+    (name,) = switches.names
+    costs = []
+    for loosened in (-1e-4, 1e-4):  # by less or more than the 10 m that switch a row off
+        held = np.array(best.values[name]).reshape(-1, 7)
+        held[held[:, 0] != 0.0, 0] -= loosened / 10.0
+        costs.append(reach._solver.solve(parameters, {**best.values, name: held.ravel()}).cost)
+    assert prices.sum() > 0.1
+    assert costs[0] - costs[1] == pytest.approx(2e-4 * prices.sum(), rel=1e-2)

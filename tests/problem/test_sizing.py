@@ -12,8 +12,8 @@ from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
 from evodesign.mechanics.stance_case import StanceCase
-from evodesign.problem import sizing
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.problem import sizing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients

@@ -68,6 +68,9 @@ FIXED_HEIGHTS = (1.0, 0.6)
 FIXED: tuple[Start, ...] = tuple({HEIGHT: [height]} for height in FIXED_HEIGHTS)
 """Starts where there is no portfolio; the best result counts."""
 
+WORTH = 1e-3
+"""How much farther [m] another way to keep bodies apart must let the load go to be tried."""
+
 NEAR_HEIGHT = 0.005
 """How far [m] from the best known extreme another one is still good."""
 
@@ -270,7 +273,7 @@ def _best_settled(
         best = min(solved, key=lambda place: sense * _height(found[place]), default=None)
         if best is None or best in settled:
             return found
-        found[best] = solver.settled(parameters, found[best])
+        found[best] = solver.settled(parameters, found[best], WORTH)
         settled.add(best)
 
 

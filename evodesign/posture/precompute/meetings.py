@@ -192,7 +192,7 @@ class _Finder:
         models = {name: {ROBOT: robot, HUMAN: self._human}[name] for name in postures}
         solids = {name: model.solid for name, model in models.items() if model.solid is not None}
         poses = {
-            name: (models[name].agent.sign, models[name].at(each).pose) for name, each in postures.items()
+            name: (models[name].agent.sign, models[name].at(each).poses) for name, each in postures.items()
         }
         gaps = SceneBodies(solids, self.scene.payload.size).near(poses, height, NEAR)
         return {met: gap.distance for gap in gaps for met in _own_pairs(gap)}

@@ -51,6 +51,7 @@ from evodesign.posture.terms.base import (
 from evodesign.tree.kinematics import Expression, Pose, vector
 
 __all__ = [
+    "CLEAR",
     "COLLISIONS",
     "NUMBERS",
     "OVERLAP",
@@ -67,6 +68,9 @@ __all__ = [
 
 PARTING, NUMBERS = "parting", 7
 """What an agent holds of the directions that part its bodies: on, a and b of each."""
+
+CLEAR = "clear"
+"""Rows along directions."""
 
 SHAPE = 36
 """Numbers of a placed shape: centre, box, disc, ball, axes."""
@@ -280,7 +284,7 @@ def rows(body: Body) -> Iterator[Row]:
     for kind, name, least in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", rules.margin),
         (MeetingKind.PLANE, "clear_of_plane", rules.margin / 2.0),
-        (MeetingKind.DIRECTION, "clear", rules.margin),
+        (MeetingKind.DIRECTION, CLEAR, rules.margin),
     ):
         yield from _column(name, found[kind], least)
 
@@ -297,7 +301,7 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     """How deep the deepest overlap is [m], by coal on the true shapes, of all that must not overlap."""
     if system.solids is None or system.disturbance is not UNDISTURBED:
         return
-    poses = {name: (body.agent.sign, body.state.pose) for name, body in system.bodies.items()}
+    poses = {name: (body.agent.sign, body.state.poses) for name, body in system.bodies.items()}
     overlaps = system.solids.near(poses, next(iter(system.bodies.values())).load_height)
     worst = min(overlaps, key=lambda gap: gap.distance, default=None)
     deep, who = (0.0, "bodies") if worst is None else (-worst.distance, f"{worst.first} and {worst.second}")
