@@ -137,6 +137,21 @@ class StanceLimits:
 
 
 @dataclass(frozen=True, slots=True)
+class Gaze:
+    """From where an agent sees the load.
+
+    Args:
+        link: its head, which looks along its x.
+        place: of the eyes in that link [m].
+        cone: largest angle of the load from straight ahead [rad].
+    """
+
+    link: str
+    place: Vector
+    cone: float
+
+
+@dataclass(frozen=True, slots=True)
 class Agent:
     """A robot or person and the parts of it that matter for the task.
 
@@ -154,6 +169,7 @@ class Agent:
         torque_limits: largest torque [N m] of each joint that moves and has a limit.
         limits_torques: whether these limits hold in every posture.
         collisions: what its bodies keep clear of; None: they may pass through anything.
+        gaze: from where it looks at the load; None: it may look anywhere.
     """
 
     name: str
@@ -169,6 +185,7 @@ class Agent:
     limits_torques: bool = False
     coupled_joints: tuple[CoupledJoints, ...] = ()
     collisions: CollisionRules | None = None
+    gaze: Gaze | None = None
 
     @property
     def pushed_frame(self) -> str:

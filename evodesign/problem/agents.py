@@ -5,6 +5,7 @@ A population's table stands for one person per sex and percentile.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
@@ -18,7 +19,7 @@ from evodesign.human.coupled_joints import coupled_joints
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Gaze
 from evodesign.problem.file import (
     Facing,
     FrameTable,
@@ -42,6 +43,9 @@ __all__ = [
     "refuse_unrated",
     "robot_agent",
 ]
+
+HEAD = "Head"
+"""A person's link that holds the eyes."""
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
@@ -97,7 +101,23 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
             source, f"{key}.strengths_n_m", "moving joint", joint, person.tree.actuated, person.tree.name
         )
     rated = replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
+    if table.gaze_cone_deg is not None:
+        rated = replace(rated, gaze=_gaze(key, math.radians(table.gaze_cone_deg), rated, source))
     return rated if table.joint_ranges is JointRanges.SEPARATE else _coupled(key, rated, source)
+
+
+def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
+    """From the middle of the head.
+
+    Raises:
+        InputError: a person from a URDF has no link of that name.
+    """
+    head = person.tree.link_by_name.get(HEAD)
+    if head is None:
+        wanted = f"a person with a link '{HEAD}' that looks along its x, as the generated one has"
+        found = f"{math.degrees(cone):g} for '{person.tree.name}'"
+        raise InputError(source.path, f"{key}.gaze_cone_deg", wanted, found)
+    return Gaze(HEAD, head.inertia.center, cone)
 
 
 def _coupled(key: str, person: Agent, source: ProblemSource) -> Agent:

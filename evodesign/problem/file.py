@@ -134,6 +134,7 @@ class HumanTable(Table, frozen=True):
     `population` stands for several people. `strengths_n_m` gives the largest torques of joints in their
     negative and positive direction, for a URDF or instead of published ones. `joint_ranges` says whether the
     joints of the spine share ranges; `shoulder_width` how far a generated person's shoulder joints are apart.
+    `gaze_cone_deg` is the largest angle of the load from where the head looks.
     """
 
     name: Name | None = None
@@ -150,6 +151,7 @@ class HumanTable(Table, frozen=True):
     strengths_n_m: dict[str, tuple[Positive, Positive]] = msgspec.field(default_factory=dict)
     joint_ranges: JointRanges = JointRanges.SEPARATE
     shoulder_width: ShoulderWidth | None = None
+    gaze_cone_deg: Annotated[float, Meta(gt=0.0, lt=180.0)] | None = None
 
 
 class GraspsTable(Table, frozen=True):

@@ -12,7 +12,7 @@ import pytest
 
 from evodesign.human.coupled_joints import coupled_joints
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, GraspDirection, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Gaze, Grasp, GraspDirection, Scene
 from evodesign.nlp.program import Program
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
@@ -54,7 +54,8 @@ SAME_MEASURE = {
 def scene_of(problem: DesignProblem) -> Scene:
     payload = replace(problem.scene.payload, grasp=Grasp.RIGID, hand_moment=5.0)
     payload = replace(payload, grasp_direction=GraspDirection.SIDE)
-    human = replace(problem.scene.human, coupled_joints=coupled_joints())
+    gaze = Gaze("Head", (0.02, 0.0, 0.12), 0.6)
+    human = replace(problem.scene.human, coupled_joints=coupled_joints(), gaze=gaze)
     stance = replace(problem.scene.stance, feet_gap=0.005)
     return replace(problem.scene, human=human, payload=payload, stance=stance, disturbances=DISTURBED)
 

@@ -1,4 +1,4 @@
-"""Postures whose forearms come from where hands hold, and spines that bend as a whole."""
+"""Postures whose forearms come from where hands hold, spines that bend as a whole, and eyes on the load."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from evodesign.human.coupled_joints import coupled_joints
-from evodesign.mechanics.scene import HUMAN, ROBOT, GraspDirection, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Gaze, GraspDirection, Scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
@@ -95,3 +95,21 @@ def test_a_narrow_cone_narrows_the_reach(problem: DesignProblem) -> None:
     (low, high), (lower, upper) = ends
     assert lower > low + 0.05
     assert upper < high - 0.01
+
+
+def test_a_person_sees_the_load_within_the_cone(problem: DesignProblem, free: CaseSolution) -> None:
+    head = problem.scene.human.tree.link_by_name["Head"]
+    scenes = [
+        replace(
+            problem.scene, human=replace(problem.scene.human, gaze=Gaze("Head", head.inertia.center, cone))
+        )
+        for cone in (1e-9, math.radians(5.0))
+    ]
+    off = sizes(checker_of(scenes[0]).residuals(free.instants[0], LOW))["human.gaze"]
+    assert "human.gaze" not in free.residuals
+    assert off > math.radians(8.0)
+    solution = solved(problem, scenes[1], LOW, Symmetry.ON)
+    assert solution.solved, solution.reason
+    assert solution.residuals["human.gaze"] < TOLERANCE
+    found = sizes(checker_of(scenes[0]).residuals(solution.instants[0], LOW))["human.gaze"]
+    assert found == pytest.approx(math.radians(5.0), abs=1e-3)

@@ -72,8 +72,9 @@ def test_without_the_keys_programs_are_those_without_the_terms(
     problem = build_problem(read_source(repository / "problems" / f"{name}.toml"))
     assert all(scene.payload.grasp_direction is GraspDirection.FREE for scene in problem.scenes)
     assert all(scene.human.coupled_joints == () for scene in problem.scenes)
+    assert all(scene.human.gaze is None for scene in problem.scenes)
     before = expressions(problem)
-    for term in ("coupled_joints", "grip"):
+    for term in ("coupled_joints", "grip", "gaze"):
         monkeypatch.delitem(TERMS, term)
     assert expressions(problem) == before
 
@@ -102,6 +103,25 @@ def test_a_person_from_a_urdf_shares_ranges_where_the_spine_has_the_joints(probl
     )
     both = asked.replace("joint_ranges", 'shoulder_width = "joint_centres"\njoint_ranges')
     assert "human.shoulder_width: wanted either urdf or" in refused(ProblemSource("p.toml", both, files))
+
+
+def test_a_person_who_looks_at_the_load(problem: DesignProblem) -> None:
+    built = build_problem(with_lines(problem, PERSON, "gaze_cone_deg = 50"))
+    gaze = built.scene.human.gaze
+    assert gaze is not None
+    assert gaze.cone == pytest.approx(math.radians(50.0))
+    assert gaze.place == built.scene.human.tree.link_by_name["Head"].inertia.center
+    assert built.scene.robot.gaze is None
+    headless = urdf_text(human_tree(Person(1.75, 75.0, Sex.FEMALE))).replace('"Head"', '"skull"')
+    frames = (
+        'urdf = "person.urdf"\nhands = { left = "LeftPalm", right = "RightPalm" }\n'
+        'soles = { left = "LeftSole", right = "RightSole", size_m = [0.27, 0.10] }\ngaze_cone_deg = 50'
+    )
+    asked = problem.source.text.replace(PERSON, frames)
+    assert refused(ProblemSource("p.toml", asked, {**problem.source.files, "person.urdf": headless})) == (
+        "p.toml: human.gaze_cone_deg: wanted a person with a link 'Head' that looks along its x, as the "
+        "generated one has, found 50 for 'human'"
+    )
 
 
 def test_shoulders_are_as_wide_as_they_are_said_to_be(problem: DesignProblem) -> None:

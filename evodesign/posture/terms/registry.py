@@ -10,6 +10,7 @@ from evodesign.posture.terms.coupled_joints import COUPLED_JOINTS
 from evodesign.posture.terms.feet import FEET, UPRIGHT
 from evodesign.posture.terms.feet_gap import FEET_GAP
 from evodesign.posture.terms.floating_base import FLOATING_BASE
+from evodesign.posture.terms.gaze import GAZE
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.grip import GRIP
 from evodesign.posture.terms.load import LOAD
@@ -34,4 +35,5 @@ TERMS: Mapping[str, BodyTerm | SystemTerm] = {
     "upright": UPRIGHT,
     "coupled_joints": COUPLED_JOINTS,
     "grip": GRIP,
+    "gaze": GAZE,
 }
