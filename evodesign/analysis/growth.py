@@ -24,7 +24,7 @@ from evodesign.records import Generation
 
 __all__ = ["HIGH", "LOW", "USUAL", "HypervolumeGrowth", "growth", "growth_of"]
 
-USUAL, LOW, HIGH = 0.85, 0.3, 3.3
+USUAL, LOW, HIGH = 0.83, 0.28, 3.8
 """Growth of a doubling divided by that of the one before: median, and the quantiles 10 % and 90 %."""
 
 

@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow
 POPULATION, BUDGET, SEED = 4, 12, 3
 SIZES: dict[str, Any] = {"population": POPULATION, "evaluations": BUDGET, "seed": SEED}
 COMMAND = [sys.executable, "-m", "evodesign"]
-TIMES = re.compile(rb'"(seconds|started|worker)":("[^"]*"|[^,}]*)')
+TIMES = re.compile(rb'"(seconds|gradient_seconds|started|worker)":("[^"]*"|[^,}]*)')
 
 
 def logged(run: Path) -> list[tuple[str, bytes]]:
