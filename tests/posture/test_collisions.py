@@ -14,18 +14,21 @@ from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.collision.clearance import SolidBodies, places_of
 from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, CollisionRules
+from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.collision.supports import ConvexShape, shapes_of
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
-from evodesign.posture.formulations.reach import LOWEST, ReachProblem
+from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, reach_program
 from evodesign.posture.parting import Parted
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
-from evodesign.posture.symmetry import symmetric_forms
-from evodesign.posture.terms.collisions import ROUNDING, PlacedShape, placed_shape
+from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.posture.terms.collisions import ROUNDING, SHAPE, PlacedShape, directed, placed_shape
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.sensitivities import Sensitivities
@@ -267,3 +270,44 @@ def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem
         costs.append(reach._solver.solve(parameters, {**best.values, name: held.ravel()}).cost)
     assert prices.sum() > 0.1
     assert costs[0] - costs[1] == pytest.approx(2e-4 * prices.sum(), rel=1e-2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [ROBOT, HUMAN])
+def test_signs_are_those_of_coal_in_random_postures(name: str, apart: DesignProblem, met: dict) -> None:
+    """Clear where coal finds 10 mm, and never farther apart than coal finds, in 1,000 postures of each."""
+    scene = with_meetings(apart.scene, met)
+    agent = {ROBOT: scene.robot, HUMAN: scene.human}[name]
+    assert agent.collisions is not None
+    form, tree = whole(agent), agent.tree
+    program = reach_program(form, tree, scene, {}, switched=True)
+    assert isinstance(program.switches, Parted)
+    meetings = program.switches._meetings
+    (body,) = program.switches._bodies
+    labels = [(meeting.first, meeting.second) for meeting in directed(body.body.form)]
+    model = AgentModel.of(agent, tree)
+    bodies = CheckedBodies.of(tree, labels)
+    solids = SceneBodies({name: bodies}, scene.payload.size)
+    zeros = {each: np.zeros(program.parameters[each].numel()) for each in program.switches.names}
+    rng, compared = np.random.default_rng(5), 0
+    for _ in range(1_000):
+        values = {each.name: rng.uniform(each.lower, each.upper) for each in program.variables}
+        height = float(values[HEIGHT][0])
+        numbers = program.packed(values), program.packed_parameters({"mass": 1.0, "sense": 1.0}, zeros)
+        pairs = meetings.shapes(*numbers)[0].reshape(-1, 2, SHAPE)
+        ways = ways_of([pairs[meetings.places == place] for place in range(len(labels))])
+        parts = {part.partition(".")[2]: value for part, value in values.items()}
+        poses = {name: (agent.sign, model.at(form.expand(parts)).poses)}
+        gaps = {
+            tuple(each.rpartition(" ")[2] for each in (gap.first, gap.second)): gap.distance
+            for gap in solids.near(poses, height, 0.05)
+        }
+        for label, way in zip(labels, ways, strict=True):
+            by_coal = gaps.get(label, gaps.get(label[::-1]))
+            if by_coal is not None:
+                compared += 1
+                assert way.distance <= by_coal + 1e-5, label
+                assert way.distance > 0.0 or by_coal < 0.01, label
+            else:
+                assert way.distance > 0.0, label
+    assert compared > 1_000
