@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from evodesign.collision.pairs import checked_pairs
@@ -37,6 +37,7 @@ def with_collisions(
             if id(agent) not in known:
                 known[id(agent)] = replace(agent, collisions=_rules(table, agent, space))
     _refuse_unknown(table, source, [*known.values()])
+    known = {key: _as_everyone(agent, known.values()) for key, agent in known.items()}
     return tuple(
         replace(scene, robot=known[id(scene.robot)], human=known[id(scene.human)]) for scene in scenes
     )
@@ -57,6 +58,19 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
             own.setdefault(frozenset(pair), pair)
     parted = tuple(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own)
     return CollisionRules(table.margin_m, tuple(own.values()), parted)
+
+
+def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:
+    """Keeps clear of what all agents with the same links keep clear of: so starts of one fit the others."""
+    own, links = agent.collisions, agent.tree.link_by_name.keys()
+    others = [each.collisions for each in agents if each.tree.link_by_name.keys() == links]
+    if own is None:
+        return agent
+
+    def shared(pairs: Sequence[BodyPair]) -> tuple[BodyPair, ...]:
+        return tuple(pair for pair in pairs if all(pair in rules.checked for rules in others if rules))
+
+    return replace(agent, collisions=replace(own, checked=shared(own.checked), parted=shared(own.parted)))
 
 
 def _designs(space: DesignSpace) -> Iterator[tuple[float, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem, build_problem
@@ -67,3 +68,17 @@ def test_what_cannot_be_meant_is_refused(problem: DesignProblem) -> None:
     both = refused(problem, 'part = [["head", "load"]]', 'ignore = [["head", "load"]]')
     assert "wanted a pair that is not ignored, found 'head' and 'load' among those ignored" in both
     assert "margin_m" in refused(problem, "margin_m = -0.1")
+
+
+def test_everyone_keeps_clear_of_the_same(problem: DesignProblem) -> None:
+    """A pair that rests on each other in one person is no pair of the others: rows fit everybody's starts."""
+    person = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
+    assert person in problem.source.text
+    several = problem.source.text.replace(person, 'population = { sex = "both", percentiles = [5, 95] }')
+    built = build_problem(ProblemSource("p.toml", f"{several}\n[collisions]\n", problem.source.files))
+    alone = [set(checked_pairs(each.human.tree, each.human.hands, each.human.soles)) for each in built.scenes]
+    assert len(alone) == 4
+    assert set.union(*alone) != set.intersection(*alone)
+    for scene in built.scenes:
+        assert scene.human.collisions is not None
+        assert set(scene.human.collisions.checked) == set.intersection(*alone)
