@@ -1,13 +1,13 @@
 // What the page knows, what is chosen in it, and who wants to be told.
 
-// JSON, compressed with gzip, in the letters of base64.
-const unpacked = async (text) => {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).json();
+// Text, compressed with gzip, in the letters of base64.
+const unpacked = (letters) => {
+  const bytes = Uint8Array.from(atob(letters), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
 };
 
-const content = await unpacked(byId("content").textContent);
+new Function(await unpacked(byId("plotly").textContent)).call(window);
+const content = JSON.parse(await unpacked(byId("content").textContent));
 const { objectives, constraints, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
