@@ -44,7 +44,7 @@ LEAST_EXPLAINED = 0.5
 FEWEST, FEWEST_PER_PARAMETER = 60, 2
 """Designs without which there is no model: so many, and so many for each parameter."""
 
-MOST = 2_000
+MOST = 10_000
 """Designs that a model is made of, at most; of more, the log is thinned evenly."""
 
 LARGEST = 1e60

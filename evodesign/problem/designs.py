@@ -17,7 +17,14 @@ from evodesign.problem.table import Name, Positive, Table
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
-__all__ = ["DesignEntry", "PopulationFile", "designs_text", "read_designs", "start_genomes", "unscaled_genome"]
+__all__ = [
+    "DesignEntry",
+    "PopulationFile",
+    "designs_text",
+    "read_designs",
+    "start_genomes",
+    "unscaled_genome",
+]
 
 
 class DesignEntry(Table, frozen=True):

@@ -47,7 +47,10 @@ SCRIPTS = (
     "ingredients.js",
     "hardware.js",
     "reach.js",
+    "downloads.js",
     "card.js",
+    "beside.js",
+    "link.js",
     "head.js",
     "main.js",
 )

@@ -55,8 +55,9 @@ const decimals = Math.max(
 );
 const heightText = (height) => `${height.toFixed(decimals)} m`;
 
-const state = { selected: null, person: 0, payload: 0, height: 0, brushes: new Map(), lasso: null };
-const listeners = { selected: [], filter: [], height: [], pair: [], theme: [] };
+// `beside`: the design that is shown next to the selected one.
+const state = { selected: null, beside: null, person: 0, payload: 0, height: 0, brushes: new Map(), lasso: null };
+const listeners = { selected: [], filter: [], height: [], pair: [], theme: [], view: [] };
 const on = (event, listener) => listeners[event].push(listener);
 const tell = (event) => listeners[event].forEach((listener) => listener());
 
