@@ -27,6 +27,7 @@ SCRIPTS = (
     "store.js",
     "theme.js",
     "front.js",
+    "front_axes.js",
     "parallel.js",
     "progress.js",
     "failures.js",

@@ -46,7 +46,7 @@ def test_a_page_of_a_thousand_designs_is_smaller_than_4_mb(
             genome = tuple(generator.random() for _ in found.genome)
             values = problem.space.named(problem.space.values(genome))
             share = number / DESIGNS
-            objectives = {name: 10.0 + share for name in found.assessment.objectives}
+            objectives = dict.fromkeys(found.assessment.objectives, 10.0 + share)
             objectives["robot_torque"] = 11.0 - share + 0.5 * share**2
             assessment = msgspec.structs.replace(found.assessment, design=dict(values), objectives=objectives)
             changed = msgspec.structs.replace(

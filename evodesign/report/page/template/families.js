@@ -59,6 +59,8 @@ const drawFamilies = () => {
     ].join("<br>");
   const values = kinds.map((kind) => kind.objectives[name]);
   const ends = [quantile(values, sign > 0 ? 0 : 0.05), quantile(values, sign > 0 ? 0.95 : 1)];
+  const beyond = values.filter((value) => value < ends[0] || value > ends[1]).length;
+  byId("families-beyond").textContent = beyond ? `Beyond the scale of colours: ${beyond} designs.` : "";
   const scale = strength();
   const chosen = rowOf.has(state.selected) ? cellsOf(rowOf.get(state.selected)) : null;
   const at = (axis, value) =>

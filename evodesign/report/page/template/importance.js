@@ -63,7 +63,7 @@ const drawImportance = () => {
           ["alone", "number aside"],
         ]
       : []),
-    ...(sloped ? [[`Slope [${unitText(found.unit)}]`, "number aside"]] : []),
+    ...(sloped ? [[`Slope [${unitText(found.unit)}]`, modelled ? "number aside" : "number"]] : []),
     ...(slices.size ? [[`Through ${state.selected}`, ""]] : []),
   ];
   const body = found.parameters.map((one) => {
@@ -76,7 +76,7 @@ const drawImportance = () => {
       );
     if (sloped) {
       const slope = one.slope && (one.slope.value < 1e-12 ? "0" : exact(one.slope.value, 3));
-      cells.push(element("td", { class: "number aside", text: slope ?? "–" }));
+      cells.push(element("td", { class: modelled ? "number aside" : "number", text: slope ?? "–" }));
     }
     if (slices.size)
       cells.push(
