@@ -8,6 +8,10 @@ const unpacked = (letters) => {
 
 new Function(await unpacked(byId("plotly").textContent)).call(window);
 const content = JSON.parse(await unpacked(byId("content").textContent));
+const columnsOfDesigns = content.designs;
+content.designs = {};
+for (const [field, column] of Object.entries(columnsOfDesigns))
+  for (const [number, value] of Object.entries(column)) (content.designs[number] ??= {})[field] = value;
 const { objectives, constraints, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
