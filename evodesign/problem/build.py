@@ -39,7 +39,7 @@ from evodesign.problem.design_space import (
     refuse_choices,
     robot_share,
 )
-from evodesign.problem.designs import read_designs, start_genomes
+from evodesign.problem.designs import read_designs, start_genomes, unscaled_genome
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.joint_settings import joint_settings, joint_start
@@ -87,7 +87,7 @@ class DesignProblem:
         symmetry_notes: what was averaged for them, or why they are whole.
         start_portfolio: whether solves begin at the problem's start portfolio.
         search: the file's `[search]` table.
-        start: genomes that a search begins with.
+        start: genomes that a search begins with; the unscaled robot is the first wherever it is a design.
         joint: the paper's joint problem.
         joint_start: genomes that its starts begin with.
         stances: postures in which the robot stands alone, for what they ask of actuators.
@@ -221,6 +221,8 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         name = tables.search.start
         designs = read_designs(source.files[name], name, space, robot.tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
+    unscaled = unscaled_genome(space, robot.tree)
+    first = () if unscaled is None else (unscaled,)
     weights = effort_weights(tables)
     options = SolverOptions(
         iterations=tables.solver.iterations,
@@ -244,7 +246,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         symmetry_notes=resolved.notes,
         start_portfolio=tables.solver.start_portfolio,
         search=tables.search,
-        start=tuple(start.values()),
+        start=tuple(dict.fromkeys((*first, *start.values()))),
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
         stances=standing_cases(tables, source, robot),

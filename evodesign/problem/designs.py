@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated
 
@@ -16,7 +17,14 @@ from evodesign.problem.table import Name, Positive, Table
 from evodesign.records import Genome
 from evodesign.tree.model import Tree
 
-__all__ = ["DesignEntry", "PopulationFile", "designs_text", "read_designs", "start_genomes"]
+__all__ = [
+    "DesignEntry",
+    "PopulationFile",
+    "designs_text",
+    "read_designs",
+    "start_genomes",
+    "unscaled_genome",
+]
 
 
 class DesignEntry(Table, frozen=True):
@@ -95,6 +103,15 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
             name = f"{kind}.{group}"
             given[name] = _value_of(choice, known.get(name), source, f"{key}.{word}.{group}", given)
     return given
+
+
+def unscaled_genome(space: DesignSpace, tree: Tree) -> Genome | None:
+    """The file's own robot as a genome; None where it lies outside the bounds or is none of the choices."""
+    values = space.unscaled(tree)
+    genome = space.genome(values)
+    inside = all(0.0 <= coordinate <= 1.0 for coordinate in genome)
+    alike = zip(space.values(genome), values, strict=True)
+    return genome if inside and all(math.isclose(a, b, rel_tol=1e-9) for a, b in alike) else None
 
 
 CHOSEN = {ParameterKind.DENSITY: "material", ParameterKind.ACTUATOR: "model"}

@@ -312,3 +312,17 @@ def digest_of_proposals():
 
 if __name__ == "__main__":
     sys.stdout.write(digest_of_proposals())
+
+
+def test_cosines_in_single_precision_give_the_same_outputs_to_four_digits() -> None:
+    generator = np.random.default_rng(3)
+    points = generator.random((120, 3))
+    targets = np.sin(6.0 * points @ np.array([1.0, 0.5, -0.7]))[:, None]
+    model = GlobalModel(np.full(3, 0.4), np.ones(3, dtype=bool), 1, generator)
+    model.add(points, targets, np.full((120, 1, 3), np.nan))
+    fitted = model.solved(targets.mean(axis=0), targets.std(axis=0))
+    weights = np.hstack([fitted.drawn(generator) for _ in range(4)])
+    places = generator.random((200, 3))
+    exact = fitted.at(places, weights)
+    assert exact.std() > 0.1
+    np.testing.assert_allclose(fitted.roughly_at(places, weights), exact, atol=1e-4)

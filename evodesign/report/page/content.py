@@ -1,6 +1,6 @@
 """What stands in the page, as it is handed to its scripts: JSON in columns, units in the names.
 
-Numbers are the log's, unrounded. A number that does not exist is None.
+Numbers are the log's; those of postures have ten significant digits. A number that does not exist is None.
 """
 
 from __future__ import annotations
@@ -257,6 +257,9 @@ class DesignContent(Part, frozen=True):
         gradients: of each objective by parameter; empty when the log has none.
         hardware: bill of materials; None where the problem has no hardware, or postures are left out.
         slices: through a marked design, as in `analysis.importance_json`.
+        urdf: of the robot: lines that differ from the unscaled one's by their place, or the whole text where
+            it has another number of lines.
+        replay: MCAP file of a marked design, as base64; empty when it is left out.
     """
 
     cases: tuple[CaseOutcome, ...]
@@ -267,10 +270,14 @@ class DesignContent(Part, frozen=True):
     gradients: dict[str, dict[str, float]] = {}
     hardware: HardwareContent | None = None
     slices: list[dict[str, Any]] = []
+    urdf: dict[int, str] | str = {}
+    replay: str = ""
 
 
 class Content(Part, frozen=True):
     """The whole page; people and loads have an empty name where there is one of them.
+
+    `urdf` is the unscaled robot's, empty where it is not known.
 
     `importance` is as in `analysis.importance_json`, `families` as `analysis.families` tells
     them, `growth` a sentence or empty.
@@ -291,5 +298,6 @@ class Content(Part, frozen=True):
     importance: dict[str, Any]
     families: dict[str, Any]
     bodies: Bodies | None
+    urdf: str
     designs: dict[int, DesignContent]
     notes: tuple[str, ...]

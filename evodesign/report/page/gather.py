@@ -15,6 +15,7 @@ from evodesign.analysis.importance_json import importance_json, slices_json
 from evodesign.errors import EvodesignError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import Clearances
+from evodesign.problem.designs import unscaled_genome
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
@@ -29,15 +30,20 @@ from evodesign.report.page.content import (
     Facts,
     Mark,
 )
+from evodesign.report.page.downloads import Downloads, rounded
 from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
+from evodesign.tree.urdf_write import urdf_text
 
 __all__ = ["MOST_POSTURES", "Gradients", "gradients_of", "page_content", "with_gradients"]
 
-MOST_POSTURES = 300
+MOST_POSTURES = 250
 """Designs whose postures are in the page: the marked ones, then the front, evenly."""
+
+MOST_LEARNT = 2_000
+"""Evaluations that tell what matters in the page; beyond this number they are thinned out evenly."""
 
 Gradients = dict[str, dict[str, float]]
 """Derivatives by objective, then by parameter."""
@@ -63,7 +69,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         needed |= elites
     shown = chosen_points(run.evaluations, on_front, needed, MOST_POINTS)
     opened, more_notes = _opened(run, marked, shown, on_front)
-    found = importance(run.header, run.evaluations)
+    found = importance(run.header, subsample(run.evaluations, MOST_LEARNT))
     known = growth(run.generations)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     return Content(
@@ -85,13 +91,20 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         importance=importance_json(found),
         families=families_json(kinds),
         bodies=None if problem is None else bodies(problem),
+        urdf="" if problem is None else urdf_text(problem.scene.robot.tree),
         designs=_with_slices(
             _designs(run, problem, shown, opened, marked, on_front),
             run,
             found,
             {mark.number for mark in marked},
         ),
-        notes=(*run.notes, *notes, *_thinned_note(run, shown), *more_notes),
+        notes=(
+            *run.notes,
+            *notes,
+            *_unscaled_note(run, problem, marked),
+            *_thinned_note(run, shown),
+            *more_notes,
+        ),
     )
 
 
@@ -110,6 +123,14 @@ def _marks(
     named = marks.asked(asked, run.evaluations)
     near = () if best else marks.nearest_to_feasible(run.evaluations)
     return (*first, *named, *marks.chosen(run.header.objectives, best), *near)
+
+
+def _unscaled_note(run: RunLog, problem: DesignProblem | None, marked: Sequence[Mark]) -> tuple[str, ...]:
+    if problem is None or not run.evaluations or any(mark.kind == "unscaled" for mark in marked):
+        return ()
+    if unscaled_genome(problem.space, problem.scene.robot.tree) is None:
+        return ("the unscaled robot is no design of this problem: it is out of bounds or no choice",)
+    return ("no evaluation of this run is of the unscaled robot",)
 
 
 def _facts(run: RunLog, on_front: int) -> Facts:
@@ -180,8 +201,12 @@ def _designs(
 ) -> dict[int, DesignContent]:
     wanted = {*on_front, *(mark.number for mark in marked)}
     clearances = None if problem is None else Clearances(problem.scenes)
+    downloads = None if problem is None else Downloads(problem, run)
+    recorded = {mark.number for mark in marked}
     return {
-        evaluation.number: _design(problem, clearances, evaluation, opened.get(evaluation.number))
+        evaluation.number: _design(
+            problem, clearances, downloads, evaluation, opened.get(evaluation.number), recorded
+        )
         for evaluation in shown
         if evaluation.number in wanted
     }
@@ -203,11 +228,13 @@ def _with_slices(
 def _design(
     problem: DesignProblem | None,
     clearances: Clearances | None,
+    downloads: Downloads | None,
     evaluation: Evaluation,
     detail: Detail | None,
+    recorded: Collection[int],
 ) -> DesignContent:
     cases = evaluation.assessment.cases
-    if problem is None or clearances is None or detail is None:
+    if problem is None or clearances is None or downloads is None or detail is None:
         return DesignContent(cases=cases)
     space, assessment = problem.space, evaluation.assessment
     design = [assessment.design[parameter.name] for parameter in space.parameters]
@@ -223,11 +250,13 @@ def _design(
     )
     return DesignContent(
         cases=cases,
-        postures=detail.cases,
+        postures=tuple(rounded(each) for each in detail.cases),
         clearances=nearest,
         links=links,
         joints=joints,
         hardware=hardware_content(problem, robot, detail.cases),
+        urdf=downloads.urdf(robot),
+        replay=downloads.replay(robot, detail) if evaluation.number in recorded else "",
     )
 
 

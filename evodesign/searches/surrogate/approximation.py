@@ -156,12 +156,12 @@ class Approximation:
         return lambda places: self._natural(self._together(fitted, weights, places))
 
     def several(self, generator: np.random.Generator, count: int) -> Function:
-        """So many Thompson samples of one output at once: from points to [points x samples]."""
+        """So many Thompson samples of one output at once, roughly: from points to [points x samples]."""
         (model,) = self._fitted()
         weights = np.hstack([model.drawn(generator) for _ in range(count)])
 
         def at(places: Array) -> Array:
-            found = model.at(places, weights)
+            found = model.roughly_at(places, weights)
             return self._natural(found.reshape(-1, 1)).reshape(found.shape)
 
         return at

@@ -89,6 +89,13 @@ class GlobalModel:
         constant = np.full((len(points), 1), WIDE)
         return np.hstack([constant, WIDE * (points - 0.5), self._height * np.cos(angles)])
 
+    def rough_sum(self, points: Array, weights: Array) -> Array:
+        """`features(points) @ weights`, with cosines in single precision."""
+        linear = 1 + points.shape[1]
+        angles = (points @ self._frequencies.T + self._phases).astype(np.float32)
+        wavy = np.cos(angles) @ (self._height * weights[linear:]).astype(np.float32)
+        return np.asarray(WIDE * (weights[0] + (points - 0.5) @ weights[1:linear]) + wavy)
+
     def sines(self, points: Array) -> Array:
         """The cosines' derivatives by their angles."""
         return np.asarray(-self._height * np.sin(points @ self._frequencies.T + self._phases))
@@ -197,6 +204,12 @@ class FittedModel:
         """Outputs at points [points x outputs]."""
         high = self.heights[:, None] * weights
         return np.asarray(self.features.features(points) @ high * self.deviation + self.mean)
+
+    def roughly_at(self, points: Array, weights: Array) -> Array:
+        """As `at`, with cosines in single precision: many times as fast, where a few digits will do."""
+        high = self.heights[:, None] * weights
+        found = self.features.rough_sum(points, high)
+        return np.asarray(found * self.deviation + self.mean)
 
     def slopes(self, points: Array) -> Array:
         """Derivatives of the mean's outputs [points x outputs x dimension]."""

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
+import msgspec
 import numpy as np
+import pytest
 
 from evodesign.records import AgentDetail
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
@@ -24,6 +27,26 @@ def open_page(tab: Tab, path: Path, theme: str = "light") -> None:
 def shown_as(value: float) -> str:
     """A number as tiles and tables show it: four significant digits."""
     return f"{value:#.4g}".rstrip(".").replace("-", "\u2212")
+
+
+def leaves(part: Any, path: str = "") -> dict[str, Any]:
+    """Every number and text of a record by its path."""
+    match msgspec.to_builtins(part):
+        case dict() as found:
+            parts = found.items()
+        case list() | tuple() as found:
+            parts = enumerate(found)
+        case found:
+            return {path: found}
+    return {at: leaf for key, one in parts for at, leaf in leaves(one, f"{path}/{key}").items()}
+
+
+def check_to_ten_digits(shown: Any, logged: Any) -> None:
+    """Records are the same, but for what lies beyond ten digits of a number."""
+    assert leaves(shown) == {
+        path: pytest.approx(leaf, rel=5e-10, abs=0.0) if isinstance(leaf, float) else leaf
+        for path, leaf in leaves(logged).items()
+    }
 
 
 def check_poses(tab: Tab, script: str, tree: Tree, posture: AgentDetail, turn: float) -> None:

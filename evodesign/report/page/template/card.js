@@ -50,6 +50,7 @@ const cardHead = (row) => {
       element(
         "span",
         { class: "choices" },
+        besideButton(number),
         ...(hasFront
           ? [step("‹", "Previous design of the front", -1), step("›", "Next design of the front", 1)]
           : []),
@@ -91,7 +92,8 @@ const fillCard = (parts) => {
   const card = byId("card");
   const sections = () => [...card.querySelectorAll("details")];
   const folded = new Map(sections().map((one) => [titleOf(one), one.open]));
-  card.querySelectorAll(".joint-plot").forEach(Plotly.purge);
+  for (const plot of card.querySelectorAll(".joint-plot"))
+    Promise.allSettled([plot.drawn]).then(() => Plotly.purge(plot)); // plotly fails if it still draws there
   card.replaceChildren(...parts.filter(Boolean));
   for (const one of sections()) one.open = folded.get(titleOf(one)) ?? one.open;
   card.scrollTop = 0;
@@ -100,7 +102,8 @@ const fillCard = (parts) => {
 const drawWithoutPostures = (row) => {
   shownScene = null;
   const why = element("div", {}, element("p", { class: "plain", text: whyNoPosture(row) }));
-  fillCard([cardHead(row), why, fold("Parameters", `${parameters.length}`, parameterTable(row))]);
+  const files = downloads(row, content.designs[state.selected] ?? NOTHING_KNOWN);
+  fillCard([cardHead(row), why, fold("Parameters", `${parameters.length}`, parameterTable(row)), files]);
   Object.assign(shown, { redraw: () => {}, height: () => {} });
 };
 
@@ -114,6 +117,7 @@ const drawWithPostures = (row, design) => {
     cardHead(row),
     hasWebgl ? theStage() : withoutStage(),
     height.box,
+    downloads(row, design),
     cases?.section,
     fold("Parameters", `${parameters.length}`, parameterTable(row)),
     torques.section,

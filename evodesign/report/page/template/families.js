@@ -59,9 +59,12 @@ const drawFamilies = () => {
     ].join("<br>");
   const values = kinds.map((kind) => kind.objectives[name]);
   const ends = [quantile(values, sign > 0 ? 0 : 0.05), quantile(values, sign > 0 ? 0.95 : 1)];
+  const beyond = values.filter((value) => value < ends[0] || value > ends[1]).length;
+  byId("families-beyond").textContent = beyond ? `Beyond the scale of colours: ${beyond} designs.` : "";
   const scale = strength();
   const chosen = rowOf.has(state.selected) ? cellsOf(rowOf.get(state.selected)) : null;
-  const at = (axis, value) => axis.lower + (value / axis.cells) * (axis.upper - axis.lower);
+  const at = (axis, value) =>
+    axis.lower + (Math.min(axis.cells, Math.max(0, value)) / axis.cells) * (axis.upper - axis.lower);
   Plotly.react(
     byId("families"),
     [
@@ -142,7 +145,9 @@ const startFamilies = () => {
   drawFamilies();
   drawRelatives();
   byId("families").on("plotly_click", ({ points: [point] }) => {
-    if (point.customdata !== null && point.customdata !== undefined) select(point.customdata);
+    if (point.customdata === null || point.customdata === undefined) return;
+    document.activeElement.blur(); // so that arrow keys walk on
+    select(point.customdata);
   });
   on("theme", drawFamilies);
   on("selected", () => {

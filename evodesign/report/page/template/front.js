@@ -1,6 +1,9 @@
-// The front, in two or three of its objectives. With one objective: its value over the evaluations.
+// The front, in two or three of its objectives, constrained quantities or parameters. With one objective: its
+// value over the evaluations. `everything` counts how often
+// it was asked that the axes reach to the last design.
 
-const drawnIn = { across: 0, up: 1, colour: 2, solid: false };
+const NO_COLOUR = -1;
+const drawnIn = { across: 0, up: 1, colour: NO_COLOUR, solid: false, everything: 0 };
 
 // How much the front's designs differ in an objective: interquartile range over the median's size.
 const spread = (axis) => {
@@ -10,7 +13,13 @@ const spread = (axis) => {
 };
 
 const evaluationAxis = { name: "evaluation", unit: "number", sense: "", column: points.number };
-const frontAxes = objectives.length > 1 ? resultAxes : [evaluationAxis, axes[0]];
+const frontAxes = objectives.length > 1 ? axes : [evaluationAxis, ...axes];
+
+// The third axis: what colours, and in three dimensions always one.
+const thirdIndex = () => {
+  if (drawnIn.colour !== NO_COLOUR || !drawnIn.solid) return drawnIn.colour;
+  return frontAxes.findIndex((_, index) => index !== drawnIn.across && index !== drawnIn.up);
+};
 
 // Beyond this number SVG is slow; all traces then change to WebGL together, so that they keep their order.
 const manyPoints = frontRows.length + dominatedRows.length > 2500 && hasWebgl;
@@ -18,14 +27,15 @@ const manyPoints = frontRows.length + dominatedRows.length > 2500 && hasWebgl;
 const hover = (row) => {
   const lines = [`<b>Design ${points.number[row]}</b>`];
   for (const mark of marksOf(points.number[row])) lines.push(plain(mark.label));
-  for (const axis of resultAxes) {
+  const drawn = [drawnIn.across, drawnIn.up, thirdIndex()].map((index) => frontAxes[index]);
+  for (const axis of [...resultAxes, ...drawn.filter((one) => one?.isParameter)]) {
     lines.push(`${plain(words(axis.name))} ${exact(axis.column[row])} ${plain(unitText(axis.unit))}`);
   }
   return lines.join("<br>");
 };
 
 const frontTrace = (wanted, name, marker, more = {}) => {
-  const { across, up, colour: third, solid } = drawnIn;
+  const { across, up, solid } = drawnIn;
   const column = (index) => wanted.map((row) => frontAxes[index].column[row]);
   return {
     type: solid ? "scatter3d" : manyPoints ? "scattergl" : "scatter",
@@ -33,7 +43,7 @@ const frontTrace = (wanted, name, marker, more = {}) => {
     name,
     x: column(across),
     y: column(up),
-    ...(solid ? { z: column(third) } : {}),
+    ...(solid ? { z: column(thirdIndex()) } : {}),
     text: wanted.map(hover),
     customdata: wanted.map((row) => points.number[row]),
     hoverinfo: "text",
@@ -44,7 +54,9 @@ const frontTrace = (wanted, name, marker, more = {}) => {
 };
 
 // From the front's best value to its worst but 5 %, with the marked designs: outliers must not compress it.
+// What lies beyond is counted below the figure.
 const zoomed = (axis) => {
+  if (drawnIn.everything || axis.isParameter) return whole(axis);
   const values = frontRows.map((row) => axis.column[row]);
   const marked = content.marks
     .map((mark) => axis.column[rowOf.get(mark.number)])
@@ -53,6 +65,14 @@ const zoomed = (axis) => {
   const low = Math.min(quantile(values, from), ...marked);
   const high = Math.max(quantile(values, to), ...marked);
   const margin = 0.06 * (high - low) || Math.abs(high) * 0.05 || 1;
+  return [low - margin, high + margin];
+};
+
+const whole = (axis) => {
+  const values = [...frontRows, ...dominatedRows].map((row) => axis.column[row]).filter((value) => value !== null);
+  const low = values.reduce((a, b) => Math.min(a, b), Infinity);
+  const high = values.reduce((a, b) => Math.max(a, b), -Infinity);
+  const margin = 0.04 * (high - low) || Math.abs(high) * 0.05 || 1;
   return [low - margin, high + margin];
 };
 
@@ -95,7 +115,7 @@ const markTraces = () => {
 
 const frontTraces = () => {
   const { solid } = drawnIn;
-  const third = frontAxes.length > 2 && !solid ? frontAxes[drawnIn.colour] : null;
+  const third = drawnIn.colour !== NO_COLOUR && !solid ? frontAxes[drawnIn.colour] : null;
   const kept = frontRows.filter(inside);
   const left = frontRows.filter((row) => !inside(row));
   const around = dominatedRows.filter((row) => !filtered() || inside(row));
@@ -122,7 +142,8 @@ const frontTraces = () => {
 };
 
 const frontLayout = () => {
-  const { across, up, colour: third, solid } = drawnIn;
+  const { across, up, solid, everything } = drawnIn;
+  const third = thirdIndex();
   if (solid) {
     const axis = (index) => ({
       ...plotAxis(label(frontAxes[index])),
@@ -133,7 +154,7 @@ const frontLayout = () => {
     });
     return plotLayout({
       margin: { l: 0, r: 0, t: 0, b: 0 },
-      uirevision: `3d ${across} ${up} ${third}`,
+      uirevision: `3d ${across} ${up} ${third} ${everything}`,
       scene: {
         xaxis: axis(across),
         yaxis: axis(up),
@@ -146,7 +167,7 @@ const frontLayout = () => {
   }
   return plotLayout({
     margin: { l: 62, r: 12, t: 30, b: 50 },
-    uirevision: `2d ${across} ${up}`,
+    uirevision: `2d ${across} ${up} ${everything}`,
     selections: state.lasso ? (byId("front").layout?.selections ?? []) : [],
     dragmode: "zoom",
     xaxis: plotAxis(label(frontAxes[across]), { range: zoomed(frontAxes[across]), zeroline: false }),
@@ -161,6 +182,7 @@ const drawFront = () => {
   const left = !state.lasso && plot.layout?.selections?.length;
   if (left) Plotly.relayout(plot, { selections: [] }); // the frame of a selection that is no more
   Plotly.react(plot, frontTraces(), frontLayout(), config);
+  sayOutside();
 };
 
 // Left and right walk along the first axis.
@@ -173,58 +195,20 @@ const walk = (step) => {
   select(points.number[order[next]]);
 };
 
-const axisChoice = (text, key) => {
-  const options = frontAxes.map((axis, index) =>
-    element("option", { value: index, text: words(axis.name), selected: drawnIn[key] === index }),
-  );
-  const choice = element(
-    "select",
-    {
-      id: `axis-${key}`,
-      onchange: () => {
-        drawnIn[key] = Number(choice.value);
-        drawFront();
-      },
-    },
-    ...options,
-  );
-  return element("label", { text }, choice);
-};
-
-const frontChoices = () => {
-  const form = byId("front-choices");
-  if (frontAxes.length < 3) return;
-  const segments = element("span", { class: "segments", role: "radiogroup", "aria-label": "Dimensions" });
-  for (const [text, solid] of [
-    ["2D", false],
-    ["3D", true],
-  ]) {
-    const radio = element("input", {
-      type: "radio",
-      name: "dimensions",
-      id: `front-${text}`,
-      checked: !solid,
-      disabled: solid && !hasWebgl,
-      onchange: () => {
-        drawnIn.solid = solid;
-        Plotly.purge(byId("front"));
-        wireFront();
-      },
-    });
-    segments.append(element("label", {}, radio, text));
-  }
-  form.append(
-    axisChoice("across", "across"),
-    axisChoice("up", "up"),
-    axisChoice("colour, depth", "colour"),
-    segments,
-  );
+const turnSolid = (solid) => {
+  drawnIn.solid = solid;
+  Plotly.purge(byId("front"));
+  wireFront();
 };
 
 const wireFront = () => {
   drawFront();
   const plot = byId("front");
-  plot.on("plotly_click", (event) => select(event.points[0].customdata));
+  plot.on("plotly_click", (event) => {
+    plot.focus({ preventScroll: true });
+    select(event.points[0].customdata);
+  });
+  plot.on("plotly_relayout", sayOutside);
   plot.on("plotly_selected", (event) => {
     const drawnByHand = event?.range || event?.lassoPoints;
     if (drawnByHand) lasso(new Set(event.points.map((point) => point.customdata)));
@@ -258,12 +242,12 @@ const startFront = () => {
   plot.setAttribute("aria-label", `${hint.textContent} The same designs are in the table below.`);
   frontChoices();
   wireFront();
-  plot.addEventListener("keydown", (event) => {
+  document.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (step) {
-      event.preventDefault();
-      walk(step);
-    }
+    const taken = event.target.closest("input, select, canvas, pre") || event.target.matches(".scroll");
+    if (!step || taken || event.altKey || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    walk(step);
   });
   for (const event of ["selected", "filter", "theme"]) on(event, drawFront);
 };

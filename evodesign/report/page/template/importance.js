@@ -44,7 +44,8 @@ const drawImportance = () => {
   const sloped = found.parameters.some((one) => one.slope);
   const slices = slicesOf(found.name);
   const row = rowOf.get(state.selected);
-  const span = [...slices.values()].flatMap((one) => one.predicted);
+  const measured = row === undefined ? null : points.objectives[found.name][row];
+  const span = [...slices.values()].flatMap((one) => [...one.predicted, ...(measured === null ? [] : [measured])]);
   const scale = [Math.min(...span), Math.max(...span)];
   byId("importance-hint").textContent = modelled
     ? `Shares of the variance over all designs within the bounds: the whole bar is what a parameter explains alone and together with others, its inner part what it explains alone; the line spans 5 to 95 % of the models' samples. ${
@@ -62,7 +63,7 @@ const drawImportance = () => {
           ["alone", "number aside"],
         ]
       : []),
-    ...(sloped ? [[`Slope [${unitText(found.unit)}]`, "number aside"]] : []),
+    ...(sloped ? [[`Slope [${unitText(found.unit)}]`, modelled ? "number aside" : "number"]] : []),
     ...(slices.size ? [[`Through ${state.selected}`, ""]] : []),
   ];
   const body = found.parameters.map((one) => {
@@ -75,7 +76,7 @@ const drawImportance = () => {
       );
     if (sloped) {
       const slope = one.slope && (one.slope.value < 1e-12 ? "0" : exact(one.slope.value, 3));
-      cells.push(element("td", { class: "number aside", text: slope ?? "–" }));
+      cells.push(element("td", { class: modelled ? "number aside" : "number", text: slope ?? "–" }));
     }
     if (slices.size)
       cells.push(

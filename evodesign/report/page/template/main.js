@@ -10,6 +10,7 @@ startImportance();
 startFamilies();
 startTable();
 startCard();
+startBeside();
 applyTheme(root.dataset.theme);
 
 const firstShown =
@@ -19,9 +20,10 @@ const firstShown =
   content.marks[0];
 if (firstShown) select(firstShown.number, { announce: false });
 else if (points.number.length) select(points.number[0], { announce: false });
+startLink();
 
 // For whoever wants to script the page, and for its tests.
 window.evodesign = {
   ...{ content, state, select, brush, clearFilter, linkPoses, treeOf, showCase, shownCase, postureAt },
-  ...{ sceneItems, verticesOf },
+  ...{ sceneItems, verticesOf, camera, look, linkText },
 };

@@ -3,6 +3,7 @@
 
 const STEPS = 1000;
 const ROW = 27;
+const NARROW_ROW = 47;
 const GAP = 12;
 
 let showsAll = !hasFront || frontRows.length < 5;
@@ -14,7 +15,8 @@ const lineRows = () => {
 
 const extent = (axis) => {
   if (axis.isParameter) return [axis.lower, axis.upper];
-  const values = lineRows()
+  const marked = content.marks.map((mark) => rowOf.get(mark.number));
+  const values = [...lineRows(), ...marked]
     .map((row) => axis.column[row])
     .filter((value) => value !== null);
   const low = values.reduce((a, b) => Math.min(a, b), Infinity);
@@ -25,7 +27,13 @@ const extent = (axis) => {
 
 let extents = axes.map(extent);
 
-const topOf = (index) => index * ROW + (index >= resultAxes.length ? GAP : 0) + ROW / 2;
+// Where the middle of an axis stands; on a narrow page its name and range are above it.
+const narrow = window.matchMedia("(max-width: 640px)");
+const rowHeight = () => (narrow.matches ? NARROW_ROW : ROW);
+const topOf = (index) =>
+  index * rowHeight() +
+  (index >= resultAxes.length ? GAP : 0) +
+  (narrow.matches ? NARROW_ROW - ROW / 2 : ROW / 2);
 
 const shareOf = (index, value) => (value - extents[index][0]) / (extents[index][1] - extents[index][0]);
 const valueAt = (index, share) => extents[index][0] + share * (extents[index][1] - extents[index][0]);
@@ -33,6 +41,7 @@ const valueAt = (index, share) => extents[index][0] + share * (extents[index][1]
 const drawLines = () => {
   const canvas = byId("lines");
   const ratio = window.devicePixelRatio || 1;
+  canvas.style.height = `${topOf(axes.length - 1) + ROW / 2}px`;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   canvas.width = width * ratio;
   canvas.height = height * ratio;
@@ -42,7 +51,8 @@ const drawLines = () => {
     pen.beginPath();
     axes.forEach((axis, index) => {
       const value = axis.column[row];
-      if (value !== null) pen.lineTo(shareOf(index, value) * width, topOf(index));
+      const share = Math.min(1, Math.max(0, shareOf(index, value)));
+      if (value !== null) pen.lineTo(share * width, topOf(index));
     });
     pen.stroke();
   };
@@ -195,9 +205,15 @@ const sayBrushed = () => {
   const shown = lineRows();
   const kept = shown.filter(inside).length;
   const noun = `design${shown.length === 1 ? "" : "s"}${hasFront && !showsAll ? " of the front" : ""}`;
-  byId("brushed").textContent = filtered()
-    ? `${kept} of ${shown.length} ${noun} are inside the brushes.`
-    : `${shown.length} ${noun}.`;
+  const row = rowOf.get(state.selected);
+  const beyond = axes.filter(({ column }, index) => {
+    const [low, high] = extents[index];
+    return row !== undefined && column[row] !== null && (column[row] < low || column[row] > high);
+  });
+  const outside = beyond.map((axis) => words(axis.name)).join(", ");
+  byId("brushed").textContent =
+    (filtered() ? `${kept} of ${shown.length} ${noun} are inside the brushes.` : `${shown.length} ${noun}.`) +
+    (outside ? ` Design ${state.selected} lies beyond the end of: ${outside}.` : "");
 };
 
 const startParallel = () => {
@@ -228,8 +244,6 @@ const startParallel = () => {
       ...(unscaledMark ? [key("ink", "unscaled robot")] : []),
     ),
   );
-  canvas.style.height = `${topOf(axes.length - 1) + ROW / 2}px`;
-  canvas.style.width = "calc(100% - 346px)";
   byId("all").addEventListener("change", (event) => {
     showsAll = event.target.checked;
     extents = axes.map(extent);
@@ -238,7 +252,7 @@ const startParallel = () => {
     drawLinesSoon();
   });
   byId("clear").addEventListener("click", clearFilter);
-  on("filter", sayBrushed);
+  for (const event of ["filter", "selected"]) on(event, sayBrushed);
   for (const event of ["filter", "selected", "theme"]) on(event, drawLinesSoon);
   new ResizeObserver(drawLinesSoon).observe(place);
   sayBrushed();

@@ -20,7 +20,7 @@ const stageOf = () => {
         type: "button",
         class: "quiet",
         text: name,
-        onclick: () => viewer.look(turn, tilt),
+        onclick: () => look(turn, tilt),
       }),
     ),
   );
@@ -42,7 +42,7 @@ const theStage = () => {
   if (!stageBox) {
     stageBox = stageOf();
     viewer = new Viewer(stageBox.querySelector("canvas"));
-    steer(viewer);
+    steer(viewer.canvas);
   }
   return stageBox;
 };

@@ -1,11 +1,10 @@
 // Drag to turn, arrow keys to turn, plus and minus (or the wheel with Ctrl) to come nearer.
-const steer = (viewer) => {
-  const { canvas } = viewer;
+const steer = (canvas) => {
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     let [x, y] = [event.clientX, event.clientY];
     const move = (moved) => {
-      viewer.look(viewer.turn - (moved.clientX - x) / 150, viewer.tilt + (moved.clientY - y) / 150);
+      look(camera.turn - (moved.clientX - x) / 150, camera.tilt + (moved.clientY - y) / 150);
       [x, y] = [moved.clientX, moved.clientY];
     };
     canvas.addEventListener("pointermove", move);
@@ -18,7 +17,7 @@ const steer = (viewer) => {
     (event) => {
       if (!event.ctrlKey && !event.metaKey) return;
       event.preventDefault();
-      viewer.zoom(Math.exp(event.deltaY / 400));
+      look(camera.turn, camera.tilt, camera.distance * Math.exp(event.deltaY / 400));
     },
     { passive: false },
   );
@@ -29,7 +28,7 @@ const steer = (viewer) => {
     const factor = { "+": 0.9, "=": 0.9, "-": 1 / 0.9 }[event.key];
     if (!turns && !factor) return;
     event.preventDefault();
-    if (turns) viewer.look(viewer.turn + turns[0], viewer.tilt + turns[1]);
-    else viewer.zoom(factor);
+    const [turn, tilt] = turns ?? [0, 0];
+    look(camera.turn + turn, camera.tilt + tilt, camera.distance * (factor ?? 1));
   });
 };

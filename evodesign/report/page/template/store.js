@@ -1,13 +1,17 @@
 // What the page knows, what is chosen in it, and who wants to be told.
 
-// JSON, compressed with gzip, in the letters of base64.
-const unpacked = async (text) => {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).json();
+// Text, compressed with gzip, in the letters of base64.
+const unpacked = (letters) => {
+  const bytes = Uint8Array.from(atob(letters), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
 };
 
-const content = await unpacked(byId("content").textContent);
+new Function(await unpacked(byId("plotly").textContent)).call(window);
+const content = JSON.parse(await unpacked(byId("content").textContent));
+const columnsOfDesigns = content.designs;
+content.designs = {};
+for (const [field, column] of Object.entries(columnsOfDesigns))
+  for (const [number, value] of Object.entries(column)) (content.designs[number] ??= {})[field] = value;
 const { objectives, constraints, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
@@ -55,8 +59,9 @@ const decimals = Math.max(
 );
 const heightText = (height) => `${height.toFixed(decimals)} m`;
 
-const state = { selected: null, person: 0, payload: 0, height: 0, brushes: new Map(), lasso: null };
-const listeners = { selected: [], filter: [], height: [], pair: [], theme: [] };
+// `beside`: the design that is shown next to the selected one.
+const state = { selected: null, beside: null, person: 0, payload: 0, height: 0, brushes: new Map(), lasso: null };
+const listeners = { selected: [], filter: [], height: [], pair: [], theme: [], view: [] };
 const on = (event, listener) => listeners[event].push(listener);
 const tell = (event) => listeners[event].forEach((listener) => listener());
 

@@ -38,7 +38,7 @@ const drawBoxes = (place, number, design, agent) => {
     unscaledMark && unscaledMark.number !== number ? content.designs[unscaledMark.number] : null;
   const traces = [boxTrace(design, agent, `Design ${number}`, "accent", true)];
   if (reference?.postures.length) traces.push(boxTrace(reference, agent, "Unscaled robot", "soft", false));
-  Plotly.react(
+  place.drawn = Plotly.react(
     place,
     traces,
     plotLayout({
@@ -89,7 +89,7 @@ const drawJoints = (place, design, agent) => {
       },
     };
   });
-  Plotly.react(
+  place.drawn = Plotly.react(
     place,
     traces,
     plotLayout({

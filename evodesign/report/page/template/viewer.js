@@ -40,6 +40,18 @@ const loadedMeshes = (gl, program) =>
 
 const VIEWS = { Oblique: [-2.15, 0.2], Side: [-Math.PI / 2, 0.04], "Behind robot": [-Math.PI, 0.12] };
 
+// Where the camera of all views stands: angles [rad] and distance [m].
+const camera = { turn: VIEWS["Oblique"][0], tilt: VIEWS["Oblique"][1], distance: 5.7 };
+const viewers = [];
+
+const look = (turn, tilt, distance = camera.distance) => {
+  camera.turn = turn;
+  camera.tilt = Math.min(1.5, Math.max(-0.05, tilt));
+  camera.distance = Math.min(12, Math.max(1.5, distance));
+  viewers.forEach((viewer) => viewer.draw());
+  tell("view");
+};
+
 class Viewer {
   constructor(canvas) {
     this.canvas = canvas;
@@ -53,10 +65,9 @@ class Viewer {
     this.program = compiled(this.gl);
     this.meshes = loadedMeshes(this.gl, this.program);
     this.places = {};
-    [this.turn, this.tilt] = VIEWS["Oblique"];
-    this.distance = 5.7;
     this.middle = 0.9;
     this.items = [];
+    viewers.push(this);
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
@@ -83,14 +94,14 @@ class Viewer {
     const target = [0, 0, this.middle];
     const eye = plus(
       target,
-      scaled(this.distance, [
-        Math.cos(this.tilt) * Math.cos(this.turn),
-        Math.cos(this.tilt) * Math.sin(this.turn),
-        Math.sin(this.tilt),
+      scaled(camera.distance, [
+        Math.cos(camera.tilt) * Math.cos(camera.turn),
+        Math.cos(camera.tilt) * Math.sin(camera.turn),
+        Math.sin(camera.tilt),
       ]),
     );
-    const camera = times4(perspective(0.44, canvas.width / canvas.height, 0.1, 40), lookAt(eye, target));
-    gl.uniformMatrix4fv(this.place("camera"), false, camera);
+    const projection = times4(perspective(0.44, canvas.width / canvas.height, 0.1, 40), lookAt(eye, target));
+    gl.uniformMatrix4fv(this.place("camera"), false, projection);
     gl.uniform3fv(this.place("eye"), eye);
     gl.uniform3fv(this.place("light"), LIGHT);
     gl.uniform3fv(this.place("line"), rgb("faint"));
@@ -98,7 +109,7 @@ class Viewer {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.disable(gl.DEPTH_TEST);
     this.mesh("ground", placed(IDENTITY, [0, 0, 0], [2.4, 2.4, 1]), [0, 0, 0, 0], 1);
-    if (this.tilt > 0) this.shadows();
+    if (camera.tilt > 0) this.shadows();
     gl.enable(gl.DEPTH_TEST);
     for (const item of this.items.filter(({ over }) => !over))
       this.mesh(item.mesh, item.model, [...item.tint, 1], 0);
@@ -145,16 +156,5 @@ class Viewer {
     gl.uniform1i(this.place("mode"), mode);
     gl.bindVertexArray(array);
     gl.drawArrays(gl.TRIANGLES, 0, count);
-  }
-
-  look(turn, tilt) {
-    this.turn = turn;
-    this.tilt = Math.min(1.5, Math.max(-0.05, tilt));
-    this.draw();
-  }
-
-  zoom(factor) {
-    this.distance = Math.min(12, Math.max(1.5, this.distance * factor));
-    this.draw();
   }
 }

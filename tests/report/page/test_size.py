@@ -1,0 +1,61 @@
+"""How large a page is: a thousand designs, all of them on the front, in less than 4 MB."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from evodesign.problem.build import DesignProblem
+from evodesign.records import Detail
+from evodesign.report.page import page_content, page_html
+from evodesign.runlog.header import header_of
+from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.writer import RunWriter
+
+DESIGNS = 1000
+
+
+def jittered(part: Any, generator: random.Random) -> Any:
+    """Numbers moved a little, so that no two postures have a number in common that does not stand still."""
+    match part:
+        case float():
+            return part if abs(part) < 1e-12 else part * (1.0 + 1e-3 * generator.random())
+        case dict():
+            return {
+                key: value if key == "case" else jittered(value, generator) for key, value in part.items()
+            }
+        case list() | tuple():
+            return [jittered(value, generator) for value in part]
+    return part
+
+
+@pytest.mark.slow
+def test_a_page_of_a_thousand_designs_is_smaller_than_4_mb(
+    problem: DesignProblem, real_run: RunLog, tmp_path: Path
+) -> None:
+    generator = random.Random(3)
+    known = msgspec.to_builtins(real_run.details[0])
+    found = real_run.evaluations[real_run.details[0].evaluation]
+    settings = problem.settings("nsga2", 40, 1)
+    with RunWriter(tmp_path / "run", header_of(problem, settings, DESIGNS)) as log:
+        for number in range(DESIGNS):
+            genome = tuple(generator.random() for _ in found.genome)
+            values = problem.space.named(problem.space.values(genome))
+            share = number / DESIGNS
+            objectives = dict.fromkeys(found.assessment.objectives, 10.0 + share)
+            objectives["robot_torque"] = 11.0 - share + 0.5 * share**2
+            assessment = msgspec.structs.replace(found.assessment, design=dict(values), objectives=objectives)
+            changed = msgspec.structs.replace(
+                found, number=number, genome=genome, generation=number // 40, assessment=assessment
+            )
+            log.evaluation(changed)
+            detail = msgspec.convert(jittered(known, generator), Detail)
+            log.detail(msgspec.structs.replace(detail, evaluation=number))
+    content = page_content(read_run(tmp_path / "run"))
+    assert len(content.points.number) == DESIGNS
+    assert sum(bool(design.postures) for design in content.designs.values()) >= 200
+    assert len(page_html(content).encode()) < 4_000_000
