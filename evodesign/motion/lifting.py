@@ -153,7 +153,7 @@ class LiftProblem:
             name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
         }
         solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
-        attempts = tuple(_attempt(name, ending, seconds) for name, ending, seconds in solves)
+        attempts = tuple(_attempt(name, ending, seconds, program.method) for name, ending, seconds in solves)
         solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
         if not solved:
             return self._none(design, lift, starts, attempts)
@@ -208,7 +208,7 @@ TOLERANCE_OF_LIFTS = 1e-7
 """Of the scaled optimality error: a lift's program is some ten times as large as a hold's."""
 
 
-def _attempt(name: str, ending: Ending, seconds: float) -> Attempt:
+def _attempt(name: str, ending: Ending, seconds: float, method: MethodName) -> Attempt:
     return Attempt(
         formulation="lift",
         start=f"hold at the {name}",
@@ -217,7 +217,7 @@ def _attempt(name: str, ending: Ending, seconds: float) -> Attempt:
         iterations=ending.iterations,
         seconds=seconds,
         cost=ending.cost,
-        method=MethodName.IPOPT,
+        method=method,
     )
 
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from evodesign.motion.course import Lift, LiftCourse, LoadProfile
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.spline import RestingSpline
-from evodesign.nlp.method import Ending, SolverOptions
-from evodesign.nlp.repeated import Repeated, RepeatedProgram
+from evodesign.nlp.blocks import Repeated
+from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.results import AgentPosture
 
 __all__ = ["LiftProgram", "LiftStart"]
@@ -101,6 +102,11 @@ class LiftProgram:
         found = sparse.coo_matrix(image)
         columns = found.col + self._first[kind] + further
         return sparse.coo_matrix((found.data, (found.row, columns)), (found.shape[0], self._size))
+
+    @property
+    def method(self) -> MethodName:
+        """Who solves."""
+        return self._program.method
 
     def solve(
         self, lift: Lift, start: LiftStart, design: Sequence[float], mass: float, inertia: float = 1.0
