@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
@@ -180,6 +181,32 @@ class LiftProgram:
         load = RestingSpline(self._knots).through(lift.heights)
         symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
         return LiftStart(np.concatenate(symbols), hands, worst)
+
+    def refined(self, lift: Lift, course: LiftCourse, start: LiftStart) -> LiftStart:
+        """A start: a motion of other knots, at this program's.
+
+        Args:
+            lift: with as many knots.
+            course: the motion.
+            start: where its solve began.
+        """
+        seen, free, times = self._blocks.symbols, self._blocks.free, lift.times
+        moving = self._sampled(course.postures(times), seen.moving)[:, free]
+        others = self._sampled(course.carriage(times), seen.others)
+        spline = RestingSpline(self._knots)
+        symbols = [
+            spline.through(moving).ravel(),
+            spline.through(course.heights(times)),
+            others.ravel(),
+            start.symbols[-self._places :],
+        ]
+        return LiftStart(np.concatenate(symbols), start.hands, start.open_by)
+
+    @staticmethod
+    def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:
+        """Symbols of variables over time, shape (times, symbols)."""
+        columns = [values[v.key.party][v.key.part][:, : len(v.lower)] / v.scale for v in variables]
+        return np.hstack(columns)
 
     @staticmethod
     def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:
