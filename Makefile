@@ -76,6 +76,9 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python -m benchmarks.cold_start
 	$(BIN)/python -m benchmarks.averaging
 	$(BIN)/python -m benchmarks.native_solver
+	$(BIN)/python -m benchmarks.lift_speed
+	$(BIN)/python -m benchmarks.lift_quality
+	$(BIN)/python -m benchmarks.lift_ranking
 
 faults: $(VENV)/installed-dev  ## kill searches and commands 1,000 times, damage logs (KILLS=, FOLDER= to go on)
 	$(BIN)/python -m tests.faults.campaign --kills $(KILLS) $(if $(FOLDER),--folder $(FOLDER))

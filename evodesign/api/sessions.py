@@ -17,7 +17,7 @@ from evodesign import evolve
 from evodesign.errors import InputError, Interrupted, ResumeMismatch, RunError
 from evodesign.nlp.codegen import NotCompiled
 from evodesign.nlp.method import MethodName
-from evodesign.nlp.native.library import method_library
+from evodesign.nlp.native.calls import method_library
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import DesignProblem

@@ -121,16 +121,30 @@ class LiftCourse:
 
     def instants(self, times: Sequence[float] | Array) -> tuple[Instant, ...]:
         """Whole postures and what is carried, between knots by cubic splines through those at the knots."""
-        knots = self.lift.times
+        postures, carriage = self.postures(times), self.carriage(times)
         found: list[dict[str, object]] = [{} for _ in times]
         for form in self.forms:
             name = form.agent.name
-            parts = {part: self._image(times) @ c for part, c in self.coefficients[name].items()}
-            parts |= {part: CubicSpline(knots, at)(times) for part, at in self.carried[name].items()}
+            parts = {**postures[name], **carriage[name]}
             for number, each in enumerate(found):
                 each[name] = form.expand({part: values[number] for part, values in parts.items()})
         pairs = zip(times, found, strict=True)
         return tuple(Instant(float(time), postures) for time, postures in pairs)  # type: ignore[arg-type]
+
+    def postures(self, times: Sequence[float] | Array) -> dict[str, dict[str, Array]]:
+        """Of the forms, by agent and part, shape (times, rows)."""
+        image = self._image(times)
+        return {
+            name: {part: image @ c for part, c in parts.items()} for name, parts in self.coefficients.items()
+        }
+
+    def carriage(self, times: Sequence[float] | Array) -> dict[str, dict[str, Array]]:
+        """Torques and wrenches of the forms, likewise."""
+        knots = self.lift.times
+        return {
+            name: {part: CubicSpline(knots, at)(times) for part, at in parts.items()}
+            for name, parts in self.carried.items()
+        }
 
     def motions(self, times: Sequence[float] | Array) -> tuple[SceneMotion, ...]:
         """How everything moves."""

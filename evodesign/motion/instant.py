@@ -24,8 +24,8 @@ import numpy as np
 
 from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.nlp.blocks import Block
 from evodesign.nlp.program import Expression, Variable
-from evodesign.nlp.repeated import Block
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import (
     MOVING_PARTS,
@@ -184,9 +184,9 @@ class KnotBlocks:
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
         cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
-        column, own, compiled = self._column(), ca.vertcat(weight), self._setting.options.compiled
+        column, own = self._column(), ca.vertcat(weight)
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
-        return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high), compiled)
+        return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))
 
     @cached_property
     def between(self) -> Block:

@@ -29,6 +29,9 @@ __all__ = ["AgentEffort", "LiftProblem", "LiftSolution"]
 
 Array = NDArray[np.float64]
 
+REFINEMENTS = 2
+"""How often the knots are doubled until the check accepts a motion between them."""
+
 OPEN = 1e-3
 """By how much [m] hands and feet of a start may be out of place."""
 
@@ -100,6 +103,23 @@ class LiftSolution:
         return np.empty(0) if self.course is None else fine_times(self.course)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Motion:
+    """A motion that a solve found, for another one to begin at.
+
+    Args:
+        lift: with its knots.
+        start: its symbols.
+        ending: of the solve.
+        attempts: every start tried until then.
+    """
+
+    lift: Lift
+    start: LiftStart
+    ending: Ending
+    attempts: tuple[Attempt, ...]
+
+
 class LiftProblem:
     """Lifts of any design of a scene.
 
@@ -124,7 +144,7 @@ class LiftProblem:
         robot: AgentModel,
         human: AgentModel,
     ) -> LiftSolution:
-        """The best checked motion of a design; where the check finds it too coarse, with twice the knots.
+        """The best checked motion of a design; where the check finds it too coarse, with more knots.
 
         Args:
             design: one number per design parameter.
@@ -139,51 +159,66 @@ class LiftProblem:
                 where = f"the load cannot be held at the {name} of the lift"
                 return LiftSolution(lift, posture.status, f"{where}: {posture.reason}")
         checker = LiftChecker(self._scene, robot, human, Checker(self._scene, robot, human))
-        found = self._with_knots(design, lift, ends, checker)
-        if found.status is Status.NUMERICAL_FAILURE and found.checked is not None:
-            return self._with_knots(design, replace(lift, knots=2 * lift.knots), ends, checker)
-        return found
-
-    def _with_knots(
-        self, design: Sequence[float], lift: Lift, ends: Mapping[str, CaseSolution], checker: LiftChecker
-    ) -> LiftSolution:
         program, mass = self._program(lift.knots), self._scene.payload.mass
         begins = {"beginning": 0, "end": lift.knots - 1}
         starts = {
             name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
         }
         solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
-        attempts = tuple(_attempt(name, ending, seconds) for name, ending, seconds in solves)
+        attempts = tuple(
+            _attempt(f"hold at the {name}", ending, seconds, program.method)
+            for name, ending, seconds in solves
+        )
         solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
         if not solved:
-            return self._none(design, lift, starts, attempts)
+            return self._none(design, lift, list(starts.values()), attempts)
         name, best, _ = min(solved, key=lambda end: end[1].cost)
-        course = program.course(lift, best.symbols)
-        checked = checker.check(course)
-        slow, _ = program.solve(lift, replace(starts[name], symbols=best.symbols), design, mass, 0.0)
+        start = replace(starts[name], symbols=best.symbols)
+        return self._checked(design, _Motion(lift, start, best, attempts), checker)
+
+    def _checked(self, design: Sequence[float], motion: _Motion, checker: LiftChecker) -> LiftSolution:
+        """A motion that the check accepts, with more knots where it has to; or what it found."""
+        mass = self._scene.payload.mass
+        for further in range(REFINEMENTS, -1, -1):
+            lift, program = motion.lift, self._program(motion.lift.knots)
+            course = program.course(lift, motion.ending.symbols)
+            checked = checker.check(course)
+            if not (checked.wrong and further):
+                break
+            finer = replace(lift, knots=2 * lift.knots)
+            start = self._program(finer.knots).refined(finer, course, motion.start)
+            ending, seconds = self._program(finer.knots).solve(finer, start, design, mass)
+            attempt = _attempt(f"motion of {lift.knots} knots", ending, seconds, program.method)
+            attempts = (*motion.attempts, attempt)
+            if attempt.status is not Status.SOLVED:
+                return self._none(design, finer, [start], attempts)
+            motion = _Motion(finer, replace(start, symbols=ending.symbols), ending, attempts)
+        if checked.wrong:
+            return LiftSolution(lift, Status.NUMERICAL_FAILURE, checked.wrong, motion.attempts)
+        slow, _ = program.solve(lift, motion.start, design, mass, 0.0)
         return LiftSolution(
             lift=lift,
-            status=Status.NUMERICAL_FAILURE if checked.wrong else Status.SOLVED,
-            reason=checked.wrong or "solved",
-            attempts=attempts,
+            status=Status.SOLVED,
+            reason="solved",
+            attempts=motion.attempts,
             course=course,
             checked=checked,
             efforts=_efforts(course, checked, slow, program),
-            cost_slope=best.cost_slope[: len(design)],
+            cost_slope=motion.ending.cost_slope[: len(design)],
         )
 
     def _none(
         self,
         design: Sequence[float],
         lift: Lift,
-        starts: Mapping[str, LiftStart],
+        starts: Sequence[LiftStart],
         attempts: tuple[Attempt, ...],
     ) -> LiftSolution:
         """Why no start led to a motion: the way, the time, or limits that no motion meets."""
         program, mass = self._program(lift.knots), self._scene.payload.mass
-        status = worst_status([attempt.status for attempt in attempts])
-        open_by = min(start.open_by for start in starts.values())
-        slow = [program.solve(lift, start, design, mass, 0.0)[0] for start in starts.values()]
+        status = worst_status([each.status for each in attempts if each.status is not Status.SOLVED])
+        open_by = min(start.open_by for start in starts)
+        slow = [program.solve(lift, start, design, mass, 0.0)[0] for start in starts]
         if any(status_of(ending.word) is Status.SOLVED for ending in slow):
             reason = (
                 f"{lift} is too fast: the same motion is found where nothing has inertia or a limit of speed"
@@ -191,7 +226,7 @@ class LiftProblem:
         elif open_by > OPEN:
             reason = f"{lift} passes a height out of reach: hands or feet are {open_by:.3f} m off on the way"
         else:
-            reason = f"no motion {lift} meets all limits, however slow"
+            reason = f"no motion {lift} was found that meets all limits, however slow"
         return LiftSolution(lift, status, reason, attempts)
 
     def _program(self, knots: int) -> LiftProgram:
@@ -208,16 +243,16 @@ TOLERANCE_OF_LIFTS = 1e-7
 """Of the scaled optimality error: a lift's program is some ten times as large as a hold's."""
 
 
-def _attempt(name: str, ending: Ending, seconds: float) -> Attempt:
+def _attempt(name: str, ending: Ending, seconds: float, method: MethodName) -> Attempt:
     return Attempt(
         formulation="lift",
-        start=f"hold at the {name}",
+        start=name,
         status=status_of(ending.word),
         reason=ending.word,
         iterations=ending.iterations,
         seconds=seconds,
         cost=ending.cost,
-        method=MethodName.IPOPT,
+        method=method,
     )
 
 

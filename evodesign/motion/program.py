@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 from evodesign.motion.course import Lift, LiftCourse, LoadProfile
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.spline import RestingSpline
-from evodesign.nlp.method import Ending, SolverOptions
-from evodesign.nlp.repeated import Repeated, RepeatedProgram
+from evodesign.nlp.blocks import Repeated
+from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.results import AgentPosture
 
 __all__ = ["LiftProgram", "LiftStart"]
@@ -102,6 +104,11 @@ class LiftProgram:
         columns = found.col + self._first[kind] + further
         return sparse.coo_matrix((found.data, (found.row, columns)), (found.shape[0], self._size))
 
+    @property
+    def method(self) -> MethodName:
+        """Who solves."""
+        return self._program.method
+
     def solve(
         self, lift: Lift, start: LiftStart, design: Sequence[float], mass: float, inertia: float = 1.0
     ) -> tuple[Ending, float]:
@@ -174,6 +181,32 @@ class LiftProgram:
         load = RestingSpline(self._knots).through(lift.heights)
         symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
         return LiftStart(np.concatenate(symbols), hands, worst)
+
+    def refined(self, lift: Lift, course: LiftCourse, start: LiftStart) -> LiftStart:
+        """A start: a motion of other knots, at this program's.
+
+        Args:
+            lift: with as many knots.
+            course: the motion.
+            start: where its solve began.
+        """
+        seen, free, times = self._blocks.symbols, self._blocks.free, lift.times
+        moving = self._sampled(course.postures(times), seen.moving)[:, free]
+        others = self._sampled(course.carriage(times), seen.others)
+        spline = RestingSpline(self._knots)
+        symbols = [
+            spline.through(moving).ravel(),
+            spline.through(course.heights(times)),
+            others.ravel(),
+            start.symbols[-self._places :],
+        ]
+        return LiftStart(np.concatenate(symbols), start.hands, start.open_by)
+
+    @staticmethod
+    def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:
+        """Symbols of variables over time, shape (times, symbols)."""
+        columns = [values[v.key.party][v.key.part][:, : len(v.lower)] / v.scale for v in variables]
+        return np.hstack(columns)
 
     @staticmethod
     def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:

@@ -1,89 +1,27 @@
-"""Programs made of blocks that repeat, such as the knots of a motion, with derivatives block by block.
-
-    minimise    sum_k f(y_k, p_k, s)        subject to  lower <= g(y_k, p_k, s) <= upper,    y = A x
-
-Each repetition k of a block sees a linear image y_k of the variables x, numbers p_k of its own and numbers s
-that all share. First and second derivatives of f and g are worked out once per block, with respect to y; the
-chain rule through A is a product of sparse matrices:
-
-    dg/dx = blockdiag(dg/dy) A        d2L/dx2 = A^T blockdiag(d2L/dy2) A
-
-So the machine code is that of one block, whatever the number of repetitions, and the splines of a motion do
-not blow up its second derivatives.
-"""
+"""Programs of blocks, solved by the method in C or by IPOPT, its judge."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from evodesign.nlp.codegen import compiled_function
+from evodesign.nlp.blocks import Block, Repeated, stacked_limits
+from evodesign.nlp.codegen import NotCompiled, compiled_function
 from evodesign.nlp.ipopt import casadi_options
-from evodesign.nlp.method import Ending, SolverOptions
+from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.native.blocks import NativeMaker, native_maker
 from evodesign.nlp.program import Array, Expression
 
-__all__ = ["Block", "BlockDerivatives", "Repeated", "RepeatedProgram"]
-
-
-@dataclass(frozen=True)
-class Block:
-    """What one repetition says; all expressions are SX.
-
-    Args:
-        name: of its functions.
-        symbols: y, a column.
-        own: p, the numbers that each repetition has for itself, a column.
-        shared: s, a column.
-        cost: f.
-        rows: g, a column.
-        lower, upper: limits of the rows.
-        compiled: whether its derivatives run as machine code.
-    """
-
-    name: str
-    symbols: Expression
-    own: Expression
-    shared: Expression
-    cost: Expression
-    rows: Expression
-    lower: Array
-    upper: Array
-    compiled: bool = False
-
-    @cached_property
-    def derivatives(self) -> BlockDerivatives:
-        """Made once, for any number of repetitions."""
-        return BlockDerivatives(self)
-
-    @property
-    def arguments(self) -> list[Expression]:
-        """Of all functions."""
-        return [self.symbols, self.own, self.shared]
-
-
-@dataclass(frozen=True, slots=True)
-class Repeated:
-    """A block and what its repetitions see.
-
-    Args:
-        block: said every time.
-        image: A, shape (times * y, x), one repetition after the other; sparse.
-        times: number of repetitions.
-    """
-
-    block: Block
-    image: Any
-    times: int
+__all__ = ["RepeatedProgram"]
 
 
 class RepeatedProgram:
-    """A program of repeated blocks, ready to be solved by IPOPT.
+    """A program of repeated blocks, ready to be solved.
 
     Args:
         name: of the program.
@@ -93,12 +31,14 @@ class RepeatedProgram:
 
     def __init__(self, name: str, parts: Sequence[Repeated], options: SolverOptions) -> None:
         self._name, self._parts, self._options = name, tuple(parts), options
-        counts = [part.times * part.block.rows.numel() for part in parts]
-        self.rows = sum(counts)
+        self._limits = stacked_limits(self._parts)
+        self.rows = len(self._limits[0])
         self.variables = int(parts[0].image.shape[1])
-        least = np.concatenate([np.tile(part.block.lower, part.times) for part in parts])
-        self._limits = least, np.concatenate([np.tile(part.block.upper, part.times) for part in parts])
-        self._counts = counts
+
+    @property
+    def method(self) -> MethodName:
+        """Who solves: IPOPT where nothing can be compiled."""
+        return MethodName.IPOPT if self._native is None else MethodName.NATIVE
 
     def solve(
         self, start: Array, bounds: tuple[Array, Array], shared: Array, own: Sequence[Array]
@@ -106,7 +46,7 @@ class RepeatedProgram:
         """Solve from a start.
 
         Args:
-            start: x.
+            start: x, within its bounds.
             bounds: lower and upper bounds of x.
             shared: s.
             own: p of each block, shape (times, p).
@@ -116,41 +56,61 @@ class RepeatedProgram:
         """
         began = time.perf_counter()
         parameters = np.concatenate([shared, *[np.ravel(each) for each in own]])
+        if self._native is not None:
+            symbols, found = self._native.for_bounds(bounds).solve(self._options, start, bounds, parameters)
+            cost, word, iterations, rows = found.cost, found.word, found.iterations, found.rows
+        else:
+            result, stats = self._by_ipopt(start, bounds, parameters)
+            symbols, rows = (np.asarray(result[name]).ravel() for name in ("x", "lam_g"))
+            cost, word = float(result["f"]), str(stats["return_status"])
+            iterations = int(stats["iter_count"])
+        by_x, by_shared = self._slopes(symbols, shared, own, rows)
+        return Ending(symbols, cost, word, iterations, -by_x, rows, by_shared), time.perf_counter() - began
+
+    def _slopes(
+        self, symbols: Array, shared: Array, own: Sequence[Array], rows: Array
+    ) -> tuple[Array, Array]:
+        """Derivatives of the Lagrangian without bounds by x and by s."""
+        ends = np.cumsum([part.rows for part in self._parts])[:-1]
+        found = [
+            part.slopes(symbols, mine, shared, weights)
+            for part, mine, weights in zip(self._parts, own, np.split(rows, ends), strict=True)
+        ]
+        by_x, by_shared = (np.sum(each, axis=0) for each in zip(*found, strict=True))
+        return by_x, by_shared
+
+    @cached_property
+    def _native(self) -> NativeMaker | None:
+        """The method in C; none where IPOPT solves."""
+        if self._options.method is MethodName.IPOPT:
+            return None
+        maker = native_maker(self._parts, seldom=self._options.seldom)
+        return None if isinstance(maker, NotCompiled) else maker
+
+    def _by_ipopt(
+        self, start: Array, bounds: tuple[Array, Array], parameters: Array
+    ) -> tuple[Any, Mapping[str, Any]]:
         (low, high), (least, most) = bounds, self._limits
-        result = self._solver(x0=start, p=parameters, lbx=low, ubx=high, lbg=least, ubg=most)
-        stats = self._solver.stats()
-        rows = np.asarray(result["lam_g"]).ravel()
-        ending = Ending(
-            symbols=np.asarray(result["x"]).ravel(),
-            cost=float(result["f"]),
-            word=str(stats["return_status"]),
-            iterations=int(stats["iter_count"]),
-            bounds=np.asarray(result["lam_x"]).ravel(),
-            rows=rows,
-            cost_slope=np.asarray(self._slope(result["x"], parameters, rows)).ravel(),
-        )
-        return ending, time.perf_counter() - began
+        result = self._ipopt(x0=start, p=parameters, lbx=low, ubx=high, lbg=least, ubg=most)
+        return result, self._ipopt.stats()
 
     @cached_property
     def functions(self) -> Mapping[str, Any]:
-        """Cost and rows, their first derivatives, and the Hessian of the Lagrangian, as `nlpsol` wants them.
-
-        Beside them the Lagrangian's derivative with respect to the shared numbers.
-        """
+        """Cost, rows, their first derivatives and the Hessian of the Lagrangian, as `nlpsol` wants them."""
         shared_size = self._parts[0].block.shared.numel()
         sizes = [part.times * part.block.own.numel() for part in self._parts]
         x, p = ca.MX.sym("x", self.variables), ca.MX.sym("p", shared_size + sum(sizes))
         factor, multipliers = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", self.rows)
         shared, *owns = ca.vertsplit(p, np.cumsum([0, shared_size, *sizes]).tolist())
-        per_block = ca.vertsplit(multipliers, np.cumsum([0, *self._counts]).tolist())
+        counts = [part.rows for part in self._parts]
+        per_block = ca.vertsplit(multipliers, np.cumsum([0, *counts]).tolist())
         cost: Expression = 0.0
         gradient: Expression = 0.0
         hessian: Expression = 0.0
-        slope: Expression = 0.0
         rows, jacobians = [], []
         for part, own, multiplier in zip(self._parts, owns, per_block, strict=True):
             image, block, times = ca.MX(ca.DM(part.image)), part.block, part.times
-            made = block.derivatives
+            made = _BlockDerivatives(block, compiled=self._options.compiled)
             seen = ca.reshape(image @ x, block.symbols.numel(), times)
             mine = ca.reshape(own, block.own.numel(), times)
             weights = ca.reshape(multiplier, block.rows.numel(), times)
@@ -164,8 +124,6 @@ class RepeatedProgram:
             second = made.second.map(made.second.name(), "serial", times, [2, 3], [])
             curved = second(seen, mine, shared, factor, weights)
             hessian += image.T @ (_diagonal(made.hessian, curved[made.order, :], times) @ image)
-            sloped = made.slope.map(made.slope.name(), "serial", times, [2], [])
-            slope += ca.sum2(sloped(seen, mine, shared, weights))
         g, jacobian = ca.vertcat(*rows), ca.vertcat(*jacobians)
         return {
             "nlp": ca.Function("nlp", [x, p], [cost, g], ["x", "p"], ["f", "g"]),
@@ -180,15 +138,10 @@ class RepeatedProgram:
                 ["x", "p", "lam_f", "lam_g"],
                 ["triu_hess_gamma_x_x"],
             ),
-            "slope": ca.Function("slope", [x, p, multipliers], [slope]),
         }
 
-    @property
-    def _slope(self) -> Any:
-        return self.functions["slope"]
-
     @cached_property
-    def _solver(self) -> Any:
+    def _ipopt(self) -> Any:
         functions = self.functions
         options = {
             **casadi_options(self._options),
@@ -199,38 +152,28 @@ class RepeatedProgram:
         return ca.nlpsol(self._name, "ipopt", functions["nlp"], options)
 
 
-class BlockDerivatives:
-    """A block's derivatives.
+class _BlockDerivatives:
+    """A block's derivatives as functions of CasADi.
 
     Attributes:
         first: cost, its gradient, rows and the entries of their Jacobian.
         second: entries of the upper triangle of the Lagrangian's Hessian.
-        slope: the Lagrangian's derivative with respect to the shared numbers.
         jacobian, hessian: patterns; the Hessian's is of all of it.
         order: which entry of the triangle each entry of the Hessian is.
     """
 
-    def __init__(self, block: Block) -> None:
-        factor, weights = ca.SX.sym("lam_f"), ca.SX.sym("lam_g", block.rows.numel())
-        jacobian = ca.jacobian(block.rows, block.symbols)
-        lagrangian = factor * block.cost + ca.dot(weights, block.rows)
-        triangle = ca.triu(ca.hessian(lagrangian, block.symbols)[0])
+    def __init__(self, block: Block, *, compiled: bool) -> None:
+        factor = ca.SX.sym("lam_f")
+        *values, jacobian = block.first
+        triangle = block.hessian(factor)
         self.jacobian = jacobian.sparsity()
         places = ca.triu2symm(ca.DM(triangle.sparsity(), np.arange(1.0, triangle.nnz() + 1.0)))
         self.hessian, self.order = places.sparsity(), [int(place) - 1 for place in places.nonzeros()]
-        gradient = ca.densify(ca.gradient(block.cost, block.symbols))
-        firsts = [ca.SX(block.cost), gradient, ca.densify(block.rows), _entries(jacobian)]
-        made = compiled_function if block.compiled else (lambda function: function)
-        once = {"cse": True}
-        self.first = made(ca.Function(f"{block.name}_first", block.arguments, firsts, once))
-        self.second = made(
-            ca.Function(
-                f"{block.name}_second", [*block.arguments, factor, weights], [_entries(triangle)], once
-            )
-        )
-        whole = block.cost + ca.dot(weights, block.rows)
-        slope = ca.densify(ca.gradient(whole, block.shared))
-        self.slope = ca.Function(f"{block.name}_slope", [*block.arguments, weights], [slope], once)
+        made = compiled_function if compiled else (lambda function: function)
+        once, arguments = {"cse": True}, [*block.arguments, factor, block.multipliers]
+        first = [*values, _entries(jacobian)]
+        self.first = made(ca.Function(f"{block.name}_first", block.arguments, first, once))
+        self.second = made(ca.Function(f"{block.name}_second", arguments, [_entries(triangle)], once))
 
 
 def _entries(matrix: Expression) -> Expression:

@@ -14,7 +14,8 @@ import numpy as np
 from evodesign.nlp.codegen import CompiledFunctions, Library, NotCompiled
 from evodesign.nlp.ipopt import Ipopt
 from evodesign.nlp.method import Method, MethodName, SolverOptions
-from evodesign.nlp.native.library import method_library, native_method
+from evodesign.nlp.native.calls import method_library
+from evodesign.nlp.native.library import native_method
 from evodesign.nlp.program import Array, Program, Start
 from evodesign.records import Status
 

@@ -24,7 +24,7 @@ from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.nlp.codegen import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.nlp.method import MethodName, SolverOptions
-from evodesign.nlp.native.library import method_library
+from evodesign.nlp.native.calls import method_library
 from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
 import mujoco
@@ -16,66 +16,25 @@ from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES
 from evodesign.motion.check import LiftChecker
-from evodesign.motion.course import Lift, LoadProfile
+from evodesign.motion.course import LoadProfile
 from evodesign.motion.instant import KnotBlocks
-from evodesign.motion.lifting import LiftProblem, LiftSolution
+from evodesign.motion.lifting import LiftSolution
 from evodesign.motion.program import LiftProgram
+from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.program import ConstraintBlock
 from evodesign.nlp.solver import Solver
-from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.base import Setting
+from evodesign.posture.check import Checker
 from evodesign.posture.formulations.joint import posture_program
-from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, symmetric_forms
 from evodesign.posture.warm_start import start_from
-from evodesign.problem.build import DesignProblem
-from evodesign.records import Hold, Status
+from evodesign.records import Status
 from evodesign.tree.frames import link_frames
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.mjcf_write import mjcf_text
+from tests.motion.lifted import LIFT, Lifted
 
 pytestmark = pytest.mark.slow
-
-LIFT = Lift(0.9, 1.1, 1.5, knots=8)
-
-
-@dataclass(frozen=True)
-class Lifted:
-    """The default problem's unscaled robot, with everything that a lift of it needs."""
-
-    setting: Setting
-    design: tuple[float, ...]
-    robot: AgentModel
-    human: AgentModel
-    lifts: LiftProblem
-    holds: PostureProblem
-
-    def hold(self, height: float) -> CaseSolution:
-        checker = Checker(self.setting.scene, self.robot, self.human)
-        return self.holds.solve(self.design, Hold(height_m=height), checker)
-
-    def solve(self, lift: Lift) -> LiftSolution:
-        holds = [self.hold(height) for height in (lift.from_m, lift.to_m)]
-        return self.lifts.solve(self.design, lift, holds, self.robot, self.human)
-
-
-@pytest.fixture(scope="module")
-def lifted(problem: DesignProblem) -> Lifted:
-    setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
-    return Lifted(
-        setting=setting,
-        design=tuple(problem.space.unscaled(problem.scene.robot.tree)),
-        robot=AgentModel.of(problem.scene.robot, problem.scene.robot.tree),
-        human=AgentModel.of(problem.scene.human, problem.scene.human.tree),
-        lifts=LiftProblem(setting, symmetric=True),
-        holds=PostureProblem(setting, Symmetry.ON),
-    )
-
-
-@pytest.fixture(scope="module")
-def solution(lifted: Lifted) -> LiftSolution:
-    return lifted.solve(LIFT)
 
 
 def test_a_lift_is_found_and_obeys_inverse_dynamics(solution: LiftSolution) -> None:
@@ -120,7 +79,7 @@ def test_a_slow_lift_is_a_row_of_holds_in_one_stance(lifted: Lifted) -> None:
         program = replace(program, constraints=(*program.constraints, *stand))
         mass = lifted.setting.scene.payload.mass
         given = {"design": lifted.design, "height": float(heights[number]), "mass": mass}
-        raw = Solver(program, lifted.setting.options).solve(given, start_from(program, forms, [instant]))
+        raw = Solver(program, SolverOptions()).solve(given, start_from(program, forms, [instant]))
         assert raw.status is Status.SOLVED
         for form in forms:
             name = form.agent.name
@@ -129,6 +88,54 @@ def test_a_slow_lift_is_a_row_of_holds_in_one_stance(lifted: Lifted) -> None:
             assert instant.postures[name].torque_norm == pytest.approx(norm, rel=2e-3)
     for effort in found.efforts.values():
         assert effort.static_share == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_very_slow_lift_is_the_one_without_inertia(lifted: Lifted) -> None:
+    """From the same start; torques at every knot, and the cost."""
+    quick, slow = replace(LIFT, knots=6), replace(LIFT, knots=6, seconds=100.0)
+    program = LiftProgram(_blocks(lifted), 6, replace(lifted.setting.options, tolerance=1e-9))
+    start = program.followed(quick, lifted.hold(LIFT.from_m).postures, 0, lifted.design)
+    mass = lifted.setting.scene.payload.mass
+    standing, _ = program.solve(quick, start, lifted.design, mass, 0.0)
+    creeping, _ = program.solve(slow, start, lifted.design, mass)
+    moving, _ = program.solve(quick, start, lifted.design, mass)
+    assert creeping.cost == pytest.approx(standing.cost, rel=1e-3)
+    assert abs(moving.cost / standing.cost - 1.0) > 1e-2
+    torques = [
+        np.hstack([each["torques"] for each in program.course(lift, ending.symbols).carried.values()])
+        for lift, ending in ((quick, standing), (slow, creeping))
+    ]
+    assert np.abs(torques[0] - torques[1]).max() < 1e-3 * np.abs(torques[0]).max()
+
+
+def test_twice_the_knots_cost_the_same(lifted: Lifted) -> None:
+    mass, costs = lifted.setting.scene.payload.mass, []
+    hold = lifted.hold(LIFT.from_m).postures
+    for knots in (12, 24):
+        lift = replace(LIFT, knots=knots)
+        program = LiftProgram(_blocks(lifted), knots, replace(lifted.setting.options, tolerance=1e-7))
+        ending, _ = program.solve(lift, program.followed(lift, hold, 0, lifted.design), lifted.design, mass)
+        assert ending.word == "Solve_Succeeded"
+        costs.append(ending.cost)
+    assert costs[1] == pytest.approx(costs[0], rel=1e-2)
+
+
+def test_both_methods_find_the_same_lift(lifted: Lifted) -> None:
+    lift, mass, found = replace(LIFT, knots=6), lifted.setting.scene.payload.mass, []
+    for method in MethodName:
+        options = replace(lifted.setting.options, tolerance=1e-9, compiled=method is MethodName.NATIVE)
+        program = LiftProgram(_blocks(lifted), lift.knots, replace(options, method=method))
+        assert program.method is method
+        start = program.followed(lift, lifted.hold(lift.from_m).postures, 0, lifted.design)
+        found.append(program.solve(lift, start, lifted.design, mass)[0])
+    native, ipopt = found
+    assert native.word == ipopt.word == "Solve_Succeeded"
+    assert native.cost == pytest.approx(ipopt.cost, rel=1e-6)
+    assert native.cost_slope == pytest.approx(ipopt.cost_slope, abs=1e-4 * np.abs(ipopt.cost_slope).max())
+
+
+def _blocks(lifted: Lifted) -> KnotBlocks:
+    return KnotBlocks(symmetric_forms(lifted.setting.scene), lifted.setting)
 
 
 def _standing(form: Form, variables: Sequence[object], posture: AgentPosture) -> ConstraintBlock:
@@ -168,17 +175,6 @@ def test_the_cost_changes_with_the_design_as_its_gradient_says(
         step = 1e-4 * design[place] * np.eye(len(design))[place]
         slope = (cost(design + step) - cost(design - step)) / (2.0 * step[place])
         assert ending.cost_slope[place] == pytest.approx(slope, rel=1e-4)
-
-
-def test_a_lift_that_is_too_fast_or_too_high_says_so(lifted: Lifted) -> None:
-    high = lifted.solve(replace(LIFT, to_m=2.6))
-    assert high.status is not Status.SOLVED
-    assert "cannot be held at the end of the lift" in high.reason
-    quick = replace(lifted.setting, options=replace(lifted.setting.options, iterations=40))
-    hurried = replace(lifted, lifts=LiftProblem(quick, symmetric=True))
-    fast = hurried.solve(replace(LIFT, seconds=0.02, knots=5))
-    assert fast.status is not Status.SOLVED
-    assert "too fast" in fast.reason
 
 
 def test_a_load_that_goes_as_it_likes_stays_between_its_ends_and_costs_no_more(

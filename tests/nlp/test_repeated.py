@@ -6,8 +6,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.method import SolverOptions
-from evodesign.nlp.repeated import Block, Repeated, RepeatedProgram
+from evodesign.nlp.blocks import Block, Repeated
+from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.repeated import RepeatedProgram
 
 TIMES = 4
 IMAGE = np.random.default_rng(1).normal(size=(2 * TIMES, 5))
@@ -20,11 +21,15 @@ def cost_and_rows(seen: ca.SX, own: ca.SX, shared: ca.SX) -> tuple[ca.SX, ca.SX]
     return cost, ca.vertcat(seen[0] * seen[1] + shared[0], ca.sin(seen[1]))
 
 
-def program() -> RepeatedProgram:
+METHODS = pytest.mark.parametrize("method", list(MethodName))
+
+
+def program(method: MethodName = MethodName.IPOPT) -> RepeatedProgram:
     seen, own, shared = ca.SX.sym("y", 2), ca.SX.sym("p"), ca.SX.sym("s", 2)
     cost, rows = cost_and_rows(seen, own, shared)
     block = Block("toy", seen, own, shared, cost, rows, np.array([-1.0, -0.5]), np.array([1.5, np.inf]))
-    return RepeatedProgram("toy", [Repeated(block, IMAGE, TIMES)], SolverOptions(tolerance=1e-10))
+    options = SolverOptions(tolerance=1e-10, compiled=method is MethodName.NATIVE, method=method)
+    return RepeatedProgram("toy", [Repeated(block, IMAGE, TIMES)], options)
 
 
 def solved_at_length(shared: np.ndarray) -> tuple[float, np.ndarray]:
@@ -38,20 +43,66 @@ def solved_at_length(shared: np.ndarray) -> tuple[float, np.ndarray]:
     return float(found["f"]), np.array(found["x"]).ravel()
 
 
-def test_blocks_have_the_optimum_of_the_program_at_length() -> None:
-    shared = np.array([0.4, 0.2])
-    ending, _ = program().solve(START, BOUNDS, shared, [OWN])
+@METHODS
+def test_blocks_have_the_optimum_of_the_program_at_length(method: MethodName) -> None:
+    shared, solver = np.array([0.4, 0.2]), program(method)
+    assert solver.method is method
+    ending, _ = solver.solve(START, BOUNDS, shared, [OWN])
     cost, where = solved_at_length(shared)
     assert ending.word == "Solve_Succeeded"
     assert ending.cost == pytest.approx(cost, rel=1e-8)
     assert ending.symbols == pytest.approx(where, abs=1e-5)
 
 
-def test_the_optimal_cost_changes_with_shared_numbers_as_told() -> None:
+@METHODS
+def test_the_optimal_cost_changes_with_shared_numbers_as_told(method: MethodName) -> None:
     shared, step = np.array([0.4, 0.2]), 1e-4
-    ending, _ = program().solve(START, BOUNDS, shared, [OWN])
+    ending, _ = program(method).solve(START, BOUNDS, shared, [OWN])
     differences = [
         (solved_at_length(shared + step * e)[0] - solved_at_length(shared - step * e)[0]) / (2 * step)
         for e in np.eye(2)
     ]
     assert ending.cost_slope == pytest.approx(differences, rel=1e-4)
+
+
+@METHODS
+def test_variables_with_one_value_keep_it_and_tell_what_it_costs(method: MethodName) -> None:
+    shared, place, step = np.array([0.4, 0.2]), 2, 1e-4
+
+    def solved(value: float) -> Ending:
+        held = np.where(np.arange(5) == place, value, START)
+        lower, upper = (np.where(np.arange(5) == place, value, side) for side in BOUNDS)
+        return program(method).solve(held, (lower, upper), shared, [OWN])[0]
+
+    found = solved(0.7)
+    assert found.symbols[place] == 0.7
+    slope = (solved(0.7 + step).cost - solved(0.7 - step).cost) / (2.0 * step)
+    assert -found.bounds[place] == pytest.approx(slope, rel=1e-4)
+
+
+def test_blocks_of_several_kinds_are_solved_alike_by_both_methods() -> None:
+    """Their patterns are sparse, and some of their symbols see several variables."""
+    rng = np.random.default_rng(3)
+    parts = []
+    for number, times in enumerate((3, 5)):
+        seen, own, shared = ca.SX.sym("y", 4), ca.SX.sym("p", number), ca.SX.sym("s")
+        cost = ca.sumsqr(seen - shared) + ca.sin(seen[0]) * seen[3] + ca.sum1(own) * seen[1] ** 2
+        rows = ca.vertcat(seen[0] * seen[2] + seen[1], seen[3] ** 2)
+        block = Block(
+            f"kind_{number}", seen, own, shared, cost, rows, np.array([0.1, -1.0]), np.array([0.1, 2.0])
+        )
+        image = rng.normal(size=(4 * times, 20)) * (rng.uniform(size=(4 * times, 20)) < 0.2)
+        parts.append(Repeated(block, image, times))
+    found = []
+    for method in MethodName:
+        options = SolverOptions(tolerance=1e-10, compiled=True, method=method)
+        bounds = np.full(20, -3.0), np.full(20, 3.0)
+        solver = RepeatedProgram("kinds", parts, options)
+        own = [np.empty((3, 0)), np.linspace(0.0, 1.0, 5).reshape(5, 1)]
+        found.append(solver.solve(np.full(20, 0.2), bounds, np.array([0.3]), own)[0])
+    native, ipopt = found
+    assert native.word == ipopt.word == "Solve_Succeeded"
+    assert native.cost == pytest.approx(ipopt.cost, rel=1e-8)
+    assert native.symbols == pytest.approx(ipopt.symbols, abs=1e-6)
+    assert native.rows == pytest.approx(ipopt.rows, abs=1e-5)
+    assert native.cost_slope == pytest.approx(ipopt.cost_slope, rel=1e-5)

@@ -4,7 +4,8 @@ The system of a step is quasi-definite (`linear_system.c`), so that any order ha
 without pivoting, but not each is accurate. Each equality's row is eliminated right after a variable that it
 determines: pairs are found by linear assignment, large constant entries in sparse columns first; pairs and
 single unknowns are then ordered for little fill (approximate minimum degree). That costs about a tenth more
-fill than without pairs, and then the iterates are those of a factorisation that pivots.
+fill than without pairs, and then the iterates are those of a factorisation that pivots. Programs of blocks
+do without: there pairs double the work, and the iterates stay the same.
 
 Source: pairs: Duff and Pralet, SIAM J. Matrix Anal. Appl. 27 (2005), 313-340; factors: Davis, Direct Methods
 for Sparse Linear Systems (2006), ch. 4.
@@ -12,6 +13,7 @@ for Sparse Linear Systems (2006), ch. 4.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,10 +21,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Elimination", "elimination"]
+__all__ = ["Elimination", "Entries", "determined", "elimination"]
 
 Integers = NDArray[np.int32]
-Pattern = NDArray[np.bool_]
 
 NOT_AN_ENTRY = 1e3
 """Cost of a pair without an entry of the Jacobian."""
@@ -61,98 +62,129 @@ class Elimination:
     pattern: Integers
 
 
-def elimination(hessian: Any, jacobian: Any, equalities: NDArray[np.bool_]) -> Elimination:
+@dataclass(frozen=True, slots=True)
+class Entries:
+    """Where a matrix has entries, by columns, the rows of each ascending.
+
+    Args:
+        shape: rows and columns.
+        rows, columns: of each entry.
+    """
+
+    shape: tuple[int, int]
+    rows: Integers
+    columns: Integers
+
+    @classmethod
+    def of(cls, matrix: Any) -> Entries:
+        """Of an expression (SX)."""
+        rows, columns = matrix.sparsity().get_triplet()
+        return cls(matrix.shape, np.asarray(rows, np.int32), np.asarray(columns, np.int32))
+
+    @property
+    def starts(self) -> Integers:
+        """Of the columns among the entries."""
+        return _starts(self.columns, self.shape[1])
+
+
+def elimination(hessian: Entries, jacobian: Entries, pairs: Mapping[int, int]) -> Elimination:
     """The elimination of a program's system.
 
     Args:
-        hessian: of the Lagrangian, upper triangle, an expression of shape (variables, variables).
-        jacobian: of the rows, an expression of shape (rows, variables).
-        equalities: which rows are equalities.
+        hessian: of the Lagrangian, upper triangle, shape (variables, variables).
+        jacobian: of the rows, shape (rows, variables).
+        pairs: rows by the variable after which they are eliminated; none: little fill is all that counts.
     """
-    variables, unknowns = hessian.size1(), hessian.size1() + jacobian.size1()
-    system = np.eye(unknowns, dtype=bool)
-    above = _entries(hessian)
-    beside = _entries(jacobian)
-    system[above] = True
-    system[beside[0] + variables, beside[1]] = True
-    system |= system.T
-    order = _order(system, jacobian, equalities)
-    reordered = np.triu(system[np.ix_(order, order)])
-    factor = _factor(system[np.ix_(order, order)])
-    starts, rows = _by_columns(reordered)
-    where = np.full(system.shape, -1)
-    where[rows, np.repeat(np.arange(unknowns), np.diff(starts))] = np.arange(len(rows))
-    new = np.empty(unknowns, int)
-    new[order] = np.arange(unknowns)
-
-    def places(row: Integers, column: Integers) -> Integers:
-        first, second = new[row], new[column]
-        return where[np.minimum(first, second), np.maximum(first, second)].astype(np.int32)
-
-    everyone = np.arange(unknowns, dtype=np.int32)
+    variables = hessian.shape[0]
+    unknowns = variables + jacobian.shape[0]
+    everyone = np.arange(unknowns)
+    beside = jacobian.rows + variables
+    ends = [(hessian.rows, hessian.columns), (beside, jacobian.columns), (everyone, everyone)]
+    firsts, seconds = (np.concatenate(each).astype(np.int64) for each in zip(*ends, strict=True))
+    groups = [[variable, variables + row] for variable, row in pairs.items()]
+    paired = {unknown for group in groups for unknown in group}
+    groups += [[unknown] for unknown in range(unknowns) if unknown not in paired]
+    order = _order(firsts, seconds, groups, unknowns)
+    new = np.empty(unknowns, np.int64)
+    new[order] = everyone
+    rows, columns = np.minimum(new[firsts], new[seconds]), np.maximum(new[firsts], new[seconds])
+    keys, places = np.unique(columns * unknowns + rows, return_inverse=True)
+    system_rows, system_columns = keys % unknowns, keys // unknowns
+    below, across = _factor(system_rows, system_columns, unknowns)
+    by_rows = np.lexsort((across, below))
+    counts = np.cumsum([len(hessian.rows), len(jacobian.rows)])
+    hessian_places, jacobian_places, diagonal_places = np.split(places.astype(np.int32), counts)
     return Elimination(
         order.astype(np.int32),
-        starts,
-        rows,
-        places(*above),
-        places(beside[0] + variables, beside[1]),
-        places(everyone, everyone),
-        *_by_columns(factor),
-        *_by_columns(factor.T),
+        _starts(system_columns, unknowns),
+        system_rows.astype(np.int32),
+        hessian_places,
+        jacobian_places,
+        diagonal_places,
+        _starts(across, unknowns),
+        below.astype(np.int32),
+        _starts(below, unknowns),
+        across[by_rows].astype(np.int32),
     )
 
 
-def _entries(matrix: Any) -> tuple[Integers, Integers]:
-    """Row and column of each entry, by columns."""
-    rows, columns = matrix.sparsity().get_triplet()
-    return np.asarray(rows, np.int32), np.asarray(columns, np.int32)
+def _starts(columns: NDArray[Any], count: int) -> Integers:
+    """Of columns among the entries that lie in them."""
+    return np.concatenate([[0], np.cumsum(np.bincount(columns, minlength=count))]).astype(np.int32)
 
 
-def _by_columns(pattern: Pattern) -> tuple[Integers, Integers]:
-    """Starts of the columns, and the rows of their entries, ascending."""
-    columns, rows = np.nonzero(pattern.T)
-    starts = np.concatenate([[0], np.cumsum(np.bincount(columns, minlength=len(pattern)))])
-    return starts.astype(np.int32), rows.astype(np.int32)
+def _order(
+    firsts: NDArray[np.int64], seconds: NDArray[np.int64], groups: list[list[int]], unknowns: int
+) -> NDArray[np.int64]:
+    """Pairs and single unknowns in an order of little fill, of a system with entries at (first, second)."""
+    group = np.empty(unknowns, np.int64)
+    for place, members in enumerate(groups):
+        group[members] = place
+    one, other = group[firsts], group[seconds]
+    sparsity = ca.Sparsity.triplet(
+        len(groups), len(groups), np.r_[one, other].tolist(), np.r_[other, one].tolist()
+    )
+    return np.array([unknown for place in sparsity.amd() for unknown in groups[place]], np.int64)
 
 
-def _order(system: Pattern, jacobian: Any, equalities: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Pairs and single unknowns in an order of little fill."""
-    groups = _groups(jacobian, equalities)
-    members = np.zeros((len(groups), len(system)), bool)
-    for place, group in enumerate(groups):
-        members[place, group] = True
-    counts = members.astype(float)
-    compressed = counts @ system.astype(float) @ counts.T > 0
-    rows, columns = np.nonzero(compressed)
-    sparsity = ca.Sparsity.triplet(len(groups), len(groups), rows.tolist(), columns.tolist())
-    return np.array([unknown for place in sparsity.amd() for unknown in groups[place]])
+def determined(jacobian: Any, equalities: NDArray[np.bool_]) -> dict[int, int]:
+    """Of each variable that an equality determines, its row.
 
-
-def _groups(jacobian: Any, equalities: NDArray[np.bool_]) -> list[list[int]]:
-    """A variable and the row that is eliminated after it, or one unknown alone."""
+    Args:
+        jacobian: of the rows, an expression (SX).
+        equalities: which rows are equalities.
+    """
     from scipy.optimize import linear_sum_assignment  # takes half a second to load
 
-    count, variables = jacobian.shape
-    rows, columns = _entries(jacobian)
+    entries, (count, variables) = Entries.of(jacobian), jacobian.shape
     values = [jacobian.nz[k] for k in range(jacobian.nnz())]
     sizes = [min(abs(float(v)), MOST_SIZE) if v.is_constant() else UNKNOWN_SIZE for v in values]
+    further = np.bincount(entries.columns, minlength=variables)[entries.columns]
     costs = np.full((count, variables), NOT_AN_ENTRY)
-    costs[rows, columns] = SPARSE * np.bincount(columns, minlength=variables)[columns] - np.asarray(sizes)
+    costs[entries.rows, entries.columns] = SPARSE * further - np.asarray(sizes)
     equal = np.flatnonzero(equalities)
-    pairs = {
-        int(variable): variables + int(equal[place])
+    return {
+        int(variable): int(equal[place])
         for place, variable in zip(*linear_sum_assignment(costs[equal]), strict=True)
         if costs[equal[place], variable] < NOT_AN_ENTRY
     }
-    alone = set(range(variables + count)) - set(pairs) - set(pairs.values())
-    return [[variable, row] for variable, row in pairs.items()] + [[unknown] for unknown in sorted(alone)]
 
 
-def _factor(system: Pattern) -> Pattern:
-    """Pattern of L below its diagonal: a column passes what lies below on to the first of it."""
-    factor = np.tril(system, -1)
-    for column in range(len(system)):
-        below = np.flatnonzero(factor[:, column])
-        if len(below):
-            factor[below[1:], below[0]] = True
-    return factor
+def _factor(
+    rows: NDArray[np.int64], columns: NDArray[np.int64], unknowns: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and columns of L below its diagonal, by columns, from the system's upper triangle.
+
+    A column passes what lies below on to the first of it.
+    """
+    below: list[set[int]] = [set() for _ in range(unknowns)]
+    for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
+        if row < column:
+            below[row].add(column)
+    for here in below:
+        if here:
+            first = min(here)
+            below[first] |= here - {first}
+    found = [sorted(here) for here in below]
+    across = np.repeat(np.arange(unknowns), [len(here) for here in found])
+    return np.array([row for here in found for row in here], np.int64), across

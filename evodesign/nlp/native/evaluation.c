@@ -3,12 +3,20 @@
 #include "solver.h"
 
 void evaluate_all(Solver *s, const double *primals, const double *multipliers, Evaluation *at) {
+    if (s->problem.blocks) {
+        evaluate_blocks(s, primals, multipliers, at);
+        return;
+    }
     const double *arguments[3] = {primals, s->parameters, multipliers};
     double *results[5] = {&at->cost, at->gradient, at->rows, at->jacobian, at->hessian};
     s->problem.derivatives(arguments, results, s->integers, s->work, 0);
 }
 
 void evaluate_values(Solver *s, const double *primals, Evaluation *at) {
+    if (s->problem.blocks) {
+        evaluate_blocks(s, primals, NULL, at);
+        return;
+    }
     const double *arguments[2] = {primals, s->parameters};
     double *results[2] = {&at->cost, at->rows};
     s->problem.values(arguments, results, s->integers, s->work, 0);

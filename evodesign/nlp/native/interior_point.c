@@ -202,6 +202,8 @@ void solve(Solver *s, const Options *options, const double *parameters, double *
     memcpy(rows, s->multipliers, sizeof(double) * s->problem.rows);
     for (int i = 0; i < s->problem.variables; i++)
         bounds[i] = s->upper_forces[i] - s->lower_forces[i];
+    if (s->problem.blocks)
+        return;
     const double *arguments[3] = {x, parameters, rows};
     double *results[2] = {parameter_slopes, fixed_slopes};
     s->problem.slopes(arguments, results, s->integers, s->work, 0);

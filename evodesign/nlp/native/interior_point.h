@@ -11,6 +11,24 @@
 typedef long long Size; /* CasADi's integer */
 typedef int (*Function)(const double **arguments, double **results, Size *integers, double *work, int memory);
 
+/* Where each entry of a block, one repetition after the other, is added among the program's, and with which weight:
+   `starts` of each entry among `places`. */
+typedef struct {
+    const int *starts, *places;
+    const double *weights;
+} Scatter;
+
+/* A part of a program that repeats: repetition k has f(y_k, p_k, s) and g(y_k, p_k, s) with y_k = A_k x + b_k, p_k
+   numbers of its own and s numbers that all share. The image is stored by rows, one repetition after the other. */
+typedef struct {
+    int repetitions, symbols, own, rows, jacobian_entries, hessian_entries;
+    Function values;      /* (y, p, s) -> f, g */
+    Function derivatives; /* (y, p, s, multipliers) -> f, grad f, g, jacobian, hessian */
+    const int *image_starts, *image_columns;
+    const double *image, *constants; /* A and b */
+    Scatter jacobian, hessian;
+} Block;
+
 /* What is known of a program before it is solved. Matrices are stored by columns: `starts` of each column among
    the `rows` of its entries. */
 typedef struct {
@@ -27,6 +45,8 @@ typedef struct {
     Function derivatives; /* (x, p, y) -> f, grad f, g, jacobian, hessian */
     Function slopes;      /* (x, p, y) -> gradients of f + y g by p and by variables that are no variables here */
     Size work, integers;  /* what the functions need */
+    int block_count, shared; /* blocks, in place of functions; numbers that they share come first among p */
+    const Block *blocks;     /* the rows of one after those of the other */
 } Problem;
 
 typedef struct {
@@ -62,7 +82,7 @@ Solver *create(const Problem *problem); /* NULL where memory is short */
 void destroy(Solver *solver);
 
 /* Solve from x, which the solution replaces, with the multipliers of variables' bounds and of rows, and with the
-   slopes of the Lagrangian. */
+   slopes of the Lagrangian, where the program is not made of blocks. */
 void solve(Solver *solver, const Options *options, const double *parameters, double *x, double *bounds,
            double *rows, double *parameter_slopes, double *fixed_slopes, Outcome *outcome);
 

@@ -69,6 +69,9 @@ static inline double larger(double a, double b) { return a != a || a > b ? a : b
 static inline int bounded_below(const Solver *s, int i) { return s->lower[i] > -UNBOUNDED; }
 static inline int bounded_above(const Solver *s, int i) { return s->upper[i] < UNBOUNDED; }
 
+/* blocks.c */
+void evaluate_blocks(Solver *s, const double *primals, const double *multipliers, Evaluation *at);
+
 /* linear_system.c */
 int factorise(Solver *s, const double *hessian, double dual_shift);
 double solve_system(Solver *s, const double *hessian, double dual_shift);

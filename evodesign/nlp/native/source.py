@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.nlp.native.elimination import Elimination, elimination
+from evodesign.nlp.native.elimination import Elimination, Entries, determined, elimination
 from evodesign.nlp.program import Array, Program
 
 __all__ = ["METHOD_FILES", "PROBLEM", "fixed_variables", "program_text"]
@@ -67,7 +67,8 @@ def program_text(program: Program) -> str:
     generator = ca.CodeGenerator("functions", {"verbose": False})
     for function in functions:
         generator.add(function)
-    order = elimination(hessian, jacobian, np.asarray(limits[0] == limits[1]))
+    equalities = np.asarray(limits[0] == limits[1])
+    order = elimination(Entries.of(hessian), Entries.of(jacobian), determined(jacobian, equalities))
     vectors = [*(bound[~held] for bound in (lower, upper)), *limits]
     return "\n".join(
         [

@@ -10,7 +10,7 @@ import pytest
 
 from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
-from evodesign.nlp.native.elimination import elimination
+from evodesign.nlp.native.elimination import Entries, determined, elimination
 from evodesign.nlp.native.library import native_method
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import Solver, available
@@ -154,7 +154,8 @@ def test_factors_hold_every_fill(seed: int) -> None:
     y = ca.SX.sym("y", random.rows.numel())
     hessian = ca.triu(ca.hessian(random.cost + ca.dot(y, random.rows), x)[0])
     jacobian = ca.jacobian(random.rows, x)
-    found = elimination(hessian, jacobian, np.asarray(random.limits[0] == random.limits[1]))
+    equalities = np.asarray(random.limits[0] == random.limits[1])
+    found = elimination(Entries.of(hessian), Entries.of(jacobian), determined(jacobian, equalities))
     n, unknowns = x.numel(), x.numel() + random.rows.numel()
     rng = np.random.default_rng(seed)
     system = np.zeros((unknowns, unknowns))
@@ -269,11 +270,11 @@ def test_near_solves_keep_the_solution() -> None:
 
 
 def test_without_a_compiler_ipopt_is_had(monkeypatch: pytest.MonkeyPatch) -> None:
-    from evodesign.nlp.native import library
+    from evodesign.nlp.native import calls
 
-    library.method_library.cache_clear()
+    calls.method_library.cache_clear()
     monkeypatch.setenv("PATH", "")
     monkeypatch.delenv("CC", raising=False)
     assert available(NATIVE).method is MethodName.IPOPT
     assert isinstance(native_method(random_program(0, convex=True).program), NotCompiled)
-    library.method_library.cache_clear()
+    calls.method_library.cache_clear()

@@ -1,0 +1,254 @@
+"""The method in C for programs of blocks: a block's functions are compiled once, tables say the rest."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import scipy.sparse as sparse
+from numpy.typing import NDArray
+
+from evodesign.identity import code_digest
+from evodesign.nlp.blocks import Block, Repeated, stacked_limits
+from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, NotCompiled, built, compiler_and_cache
+from evodesign.nlp.method import MethodName, SolverOptions
+from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
+from evodesign.nlp.native.elimination import elimination
+from evodesign.nlp.native.library import SELDOM_FLAGS
+from evodesign.nlp.native.pieces import in_pieces
+from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
+from evodesign.nlp.native.source import UNBOUNDED
+from evodesign.nlp.native.structures import BlockRecord, Memory
+from evodesign.nlp.program import Array
+
+__all__ = ["BlockFunctions", "NativeBlocks", "NativeMaker", "block_functions", "native_maker"]
+
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlockFunctions:
+    """A block's machine code: `values` and `derivatives`, as the C wants them.
+
+    Args:
+        library: that holds them.
+        jacobian, hessian: rows and symbols of the entries that they give.
+        work, integers: what they need.
+    """
+
+    library: ctypes.CDLL
+    jacobian: tuple[Integers, Integers]
+    hessian: tuple[Integers, Integers]
+    work: int
+    integers: int
+
+    def address(self, name: str) -> int | None:
+        """Of a function."""
+        return ctypes.cast(self.library[name], ctypes.c_void_p).value
+
+
+def block_functions(block: Block, *, seldom: bool = False) -> BlockFunctions | NotCompiled:
+    """A block's machine code, compiled or from the user's cache, or why there is none.
+
+    Args:
+        block: whose functions are wanted.
+        seldom: whether they run so seldom that the compiler had better be quick than its code.
+    """
+    tools = compiler_and_cache(os.environ)
+    if isinstance(tools, NotCompiled):
+        return tools
+    expressions = ca.Function("block", block.arguments, block.values).serialize()
+    flags = SELDOM_FLAGS if seldom else FUNCTION_FLAGS
+
+    def texts() -> Mapping[str, str]:
+        text = _c_text(block)
+        return {"functions.c": in_pieces(text) if seldom else text}
+
+    try:
+        found = built((code_digest(__name__), expressions), texts, flags, *tools)
+        return found if isinstance(found, NotCompiled) else _loaded(found)
+    except (OSError, RuntimeError) as error:  # such as a directory mounted without the right to execute
+        return NotCompiled(f"{NOT_LOADED}: {error}")
+
+
+class NativeMaker:
+    """Makes the method in C for a program, once for each choice of variables that have one value.
+
+    Args:
+        parts: blocks with what they see.
+        functions: of each block.
+        method: the method's own library.
+    """
+
+    def __init__(
+        self, parts: Sequence[Repeated], functions: Sequence[BlockFunctions], method: ctypes.CDLL
+    ) -> None:
+        self._parts, self._functions, self._method = parts, functions, method
+        self._made: dict[bytes, NativeBlocks] = {}
+
+    def for_bounds(self, bounds: tuple[Array, Array]) -> NativeBlocks:
+        """For the variables that lower and upper bounds leave."""
+        held = np.asarray(bounds[0] == bounds[1])
+        key = held.tobytes()
+        if key not in self._made:
+            self._made[key] = NativeBlocks(self._parts, self._functions, held, self._method)
+        return self._made[key]
+
+
+def native_maker(parts: Sequence[Repeated], *, seldom: bool = False) -> NativeMaker | NotCompiled:
+    """The method in C for a program of blocks, or why there is none."""
+    method, functions = method_library(), []
+    if isinstance(method, NotCompiled):
+        return method
+    for part in parts:
+        made = block_functions(part.block, seldom=seldom)
+        if isinstance(made, NotCompiled):
+            return made
+        functions.append(made)
+    return NativeMaker(parts, functions, method)
+
+
+def _c_text(block: Block) -> str:
+    generator = ca.CodeGenerator("functions", {"verbose": False})
+    generator.add(ca.Function("values", block.arguments, ca.cse(block.values)))
+    derivatives = ca.cse([*block.first, block.hessian(1.0)])
+    generator.add(ca.Function("derivatives", [*block.arguments, block.multipliers], derivatives))
+    return str(generator.dump())
+
+
+def _loaded(library: Library) -> BlockFunctions:
+    made = [ca.external(name, str(library.path)) for name in ("values", "derivatives")]
+    jacobian, hessian = (made[1].sparsity_out(place).get_triplet() for place in (3, 4))
+    return BlockFunctions(
+        library=ctypes.CDLL(str(library.path)),
+        jacobian=(np.array(jacobian[0], int), np.array(jacobian[1], int)),
+        hessian=(np.array(hessian[0], int), np.array(hessian[1], int)),
+        work=max(function.sz_w() for function in made),
+        integers=max(function.sz_iw() for function in made),
+    )
+
+
+class NativeBlocks:
+    """A program of blocks, of which some variables have one value, ready to be solved by the method in C.
+
+    Args:
+        parts: blocks with what they see.
+        functions: of each block.
+        held: which variables have one value.
+        method: the method's own library.
+    """
+
+    name = MethodName.NATIVE
+
+    def __init__(
+        self,
+        parts: Sequence[Repeated],
+        functions: Sequence[BlockFunctions],
+        held: NDArray[np.bool_],
+        method: ctypes.CDLL,
+    ) -> None:
+        images = [sparse.csr_matrix(part.image) for part in parts]
+        self._free, self._held = np.flatnonzero(~held), np.flatnonzero(held)
+        self._fixed = [image[:, self._held] for image in images]
+        self._constants = [np.zeros(image.shape[0]) for image in images]
+        self._bounds = np.zeros(len(self._free)), np.zeros(len(self._free))
+        self._memory = Memory()
+        seen = [image[:, self._free].tocsr() for image in images]
+        limits, made = stacked_limits(parts), list(zip(parts, functions, seen, strict=True))
+        variables, rows = len(self._free), len(limits[0])
+        firsts = accumulate([part.rows for part in parts[:-1]], initial=0)
+        jacobian, to_jacobian = scattered(
+            [
+                jacobian_targets(f.jacobian, image, times=p.times, rows=p.rows // p.times, first=first)
+                for (p, f, image), first in zip(made, firsts, strict=True)
+            ],
+            (rows, variables),
+        )
+        hessian, to_hessian = scattered(
+            [hessian_targets(f.hessian, image, times=p.times) for p, f, image in made], (variables, variables)
+        )
+        order = elimination(hessian, jacobian, pairs={})
+        row_limits = [np.clip(side, -UNBOUNDED, UNBOUNDED) for side in limits]
+        arrays = {
+            **dict(zip(("lower", "upper"), self._bounds, strict=True)),
+            **dict(zip(("row_lower", "row_upper"), row_limits, strict=True)),
+            "hessian_starts": hessian.starts,
+            "hessian_rows": hessian.rows,
+            "jacobian_starts": jacobian.starts,
+            "jacobian_rows": jacobian.rows,
+            **{name: getattr(order, name) for name in order.__dataclass_fields__},
+        }
+        tables = zip(self._constants, to_jacobian, to_hessian, strict=True)
+        blocks = [self._record(*each, *to) for each, to in zip(made, tables, strict=True)]
+        shared = int(parts[0].block.shared.numel())
+        problem = self._memory.problem(
+            arrays,
+            blocks,
+            variables=variables,
+            rows=rows,
+            work=max(f.work + _kept_by(p, f) for p, f, _ in made),
+            integers=max(f.integers for f in functions),
+            shared=shared,
+        )
+        own = sum(part.times * int(part.block.own.numel()) for part in parts)
+        self._called = CalledSolver(
+            method, problem, variables=variables, rows=rows, parameters=shared + own, fixed=0
+        )
+
+    def _record(
+        self,
+        part: Repeated,
+        functions: BlockFunctions,
+        image: Any,
+        constants: Array,
+        jacobian: Scatter,
+        hessian: Scatter,
+    ) -> BlockRecord:
+        block, memory = part.block, self._memory
+        return BlockRecord(
+            repetitions=part.times,
+            symbols=block.symbols.numel(),
+            own=block.own.numel(),
+            rows=block.rows.numel(),
+            jacobian_entries=len(functions.jacobian[0]),
+            hessian_entries=len(functions.hessian[0]),
+            values=functions.address("values"),
+            derivatives=functions.address("derivatives"),
+            image_starts=memory.integers(image.indptr),
+            image_columns=memory.integers(image.indices),
+            image=memory.reals(image.data),
+            constants=memory.reals(constants),
+            jacobian=memory.table(jacobian),
+            hessian=memory.table(hessian),
+        )
+
+    def solve(
+        self, options: SolverOptions, start: Array, bounds: tuple[Array, Array], parameters: Array
+    ) -> tuple[Array, CSolution]:
+        """All variables of the last iterate, and what else the C found.
+
+        Args:
+            options: of the solve.
+            start: all variables; those with one value have it.
+            bounds: lower and upper bounds of all variables.
+            parameters: shared numbers, then those of each block's repetitions.
+        """
+        for own, side in zip(self._bounds, bounds, strict=True):
+            own[:] = np.clip(side[self._free], -UNBOUNDED, UNBOUNDED)
+        for constants, image in zip(self._constants, self._fixed, strict=True):
+            constants[:] = image @ start[self._held]
+        found = self._called.solve(options, start[self._free], parameters)
+        symbols = start.copy()
+        symbols[self._free] = found.variables
+        return symbols, found
+
+
+def _kept_by(part: Repeated, functions: BlockFunctions) -> int:
+    """Numbers that the C keeps of one repetition: symbols, slopes, entries."""
+    return 2 * int(part.block.symbols.numel()) + len(functions.jacobian[0]) + len(functions.hessian[0])

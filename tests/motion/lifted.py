@@ -1,0 +1,35 @@
+"""The default problem's unscaled robot and person, who lift."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from evodesign.motion.course import Lift
+from evodesign.motion.lifting import LiftProblem, LiftSolution
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem
+from evodesign.posture.results import CaseSolution
+from evodesign.records import Hold
+
+LIFT = Lift(0.9, 1.1, 1.5, knots=8)
+
+
+@dataclass(frozen=True)
+class Lifted:
+    """Everything that a lift of a design needs."""
+
+    setting: Setting
+    design: tuple[float, ...]
+    robot: AgentModel
+    human: AgentModel
+    lifts: LiftProblem
+    holds: PostureProblem
+
+    def hold(self, height: float) -> CaseSolution:
+        checker = Checker(self.setting.scene, self.robot, self.human)
+        return self.holds.solve(self.design, Hold(height_m=height), checker)
+
+    def solve(self, lift: Lift) -> LiftSolution:
+        holds = [self.hold(height) for height in (lift.from_m, lift.to_m)]
+        return self.lifts.solve(self.design, lift, holds, self.robot, self.human)
