@@ -61,11 +61,12 @@ def problem_text(repository: Path, grasps: str) -> str:
     before, rest = text.split("[human]\n")
     after = rest[rest.index("[payload]") :]
     for old, new in (
-        ('start = "../populations/icub.toml"\n', SOLVER),
+        ('start = "../populations/icub.toml"\n', ""),
+        ("[[design.length]]\n", SOLVER + "\n[[design.length]]\n"),
         ('grasp = "point"\n', f'grasp = "point"\n{grasps}'),
     ):
         assert old in after
-        after = after.replace(old, new)
+        after = after.replace(old, new, 1)
     return before.replace("robots/icub_shapes.urdf", ROBOT) + HUMAN + after
 
 
