@@ -26,7 +26,6 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dtrtrs
 
 from evodesign.nlp.buffered import BufferedFunction
-from evodesign.nlp.codegen import compiled_function
 from evodesign.nlp.program import Program
 
 __all__ = [
@@ -107,15 +106,16 @@ class Change:
 class Conditions:
     """A program's functions and their derivatives.
 
+    They run on CasADi's virtual machine: as machine code they took as long, and seconds to compile.
+
     Args:
         program: whose they are.
-        compiled: whether they run as machine code where that can be had; results are the same.
     """
 
-    def __init__(self, program: Program, *, compiled: bool = False) -> None:
+    def __init__(self, program: Program) -> None:
         symbolic, self._shapes = _function(program)
         self._ends = np.cumsum([rows * columns for rows, columns in self._shapes]).tolist()
-        self._function = BufferedFunction(compiled_function(symbolic) if compiled else symbolic)
+        self._function = BufferedFunction(symbolic)
 
     def _parts(self, symbols: Array, multipliers: Array, parameters: Array) -> list[Array]:
         """What the function gives, in numbers."""

@@ -45,9 +45,6 @@ NEWTON_STEPS = 8
 TOUCHING = 1e-3
 """How little may be missing to the violation of rows that are switched on, in their unit [m]."""
 
-MOST_COMPILED = 100
-"""Symbols of a program whose second derivatives are compiled; a larger one's take the compiler minutes."""
-
 EXACT = 1e-12
 """Residual of the optimality conditions, in the program's own units, of a solution that counts as exact."""
 
@@ -191,8 +188,7 @@ class SolutionSensitivity:
         pairs = zip(solver.program.bounds, solver.program.limits, strict=True)
         self._lower, self._upper = (np.concatenate(pair) for pair in pairs)
         self._sides = _sides(_names(solver.program), self._lower, self._upper)
-        small = solver.program.symbols.numel() <= MOST_COMPILED
-        self._conditions = Conditions(solver.program, compiled=solver.native and small)
+        self._conditions = Conditions(solver.program)
 
     @cached_property
     def _ipopt(self) -> Solver:

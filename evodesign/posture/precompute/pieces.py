@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from itertools import islice
+from itertools import cycle, islice
 
 import msgspec
 import numpy as np
@@ -49,8 +49,9 @@ Whole postures have many optima that lie close to each other; from random starts
 but the optima of other designs lead there.
 """
 
-WIDER_DESIGNS, MOST_WIDER = 24, 8
-"""Designs for which starts of other heights are tried with everyone, and starts of a portfolio with them."""
+WIDER_DESIGNS, WIDER_PEOPLE, MOST_WIDER = 24, 2, 8
+"""Designs for which starts of other heights are tried, people by turns that each is tried with, and starts of
+a portfolio with them."""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -335,5 +336,6 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     settings = [replace(own, scene=each) for each in setting.scenes]
     landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
     few = list(islice(designs, WIDER_DESIGNS))
-    cases = ((each, design) for design in few for each in landscapes)
+    turns = [list(islice(cycle(landscapes), place, place + WIDER_PEOPLE)) for place in range(len(landscapes))]
+    cases = ((each, design) for design, turn in zip(few, cycle(turns), strict=False) for each in turn)
     return widened(known.postures[task], offers, cases, MOST_WIDER)
