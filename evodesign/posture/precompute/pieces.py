@@ -336,6 +336,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     settings = [replace(own, scene=each) for each in setting.scenes]
     landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
     few = list(islice(designs, WIDER_DESIGNS))
-    turns = [list(islice(cycle(landscapes), place, place + WIDER_PEOPLE)) for place in range(len(landscapes))]
-    cases = ((each, design) for design, turn in zip(few, cycle(turns), strict=False) for each in turn)
+    lower = sum(other.height_m < task.height_m for other in piece.beside)
+    people = islice(cycle(landscapes), lower * WIDER_PEOPLE, None)  # whose programs others do not compile
+    cases = ((next(people), design) for design in few for _ in range(min(WIDER_PEOPLE, len(landscapes))))
     return widened(known.postures[task], offers, cases, MOST_WIDER)
