@@ -57,8 +57,8 @@ SADDLE = 1e-5
 
 
 MOST_ELIMINATED = 100
-"""Symbols of a program whose common subexpressions are worth the time to find them: a larger one has a quarter
-less to do for it, and takes a second longer to make."""
+"""Symbols of a program whose common subexpressions are worth the time to find them: a larger one takes a second
+longer to make, and has a quarter less to do."""
 
 
 @dataclass(frozen=True, slots=True)
