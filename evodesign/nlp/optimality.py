@@ -57,7 +57,7 @@ SADDLE = 1e-5
 
 
 MOST_ELIMINATED = 100
-"""Symbols of a program whose common subexpressions are worth the time to find them: a larger one takes a second
+"""Symbols of a program whose common subexpressions are worth the time to find: a larger one takes a second
 longer to make, and has a quarter less to do."""
 
 
