@@ -35,7 +35,7 @@ __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "
 
 REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
-DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=2)
+DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=1)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
 
@@ -49,7 +49,7 @@ Whole postures have many optima that lie close to each other; from random starts
 but the optima of other designs lead there.
 """
 
-WIDER_DESIGNS, WIDER_PEOPLE, MOST_WIDER = 24, 2, 8
+WIDER_DESIGNS, WIDER_PEOPLE, MOST_WIDER = 16, 2, 8
 """Designs for which starts of other heights are tried, people by turns that each is tried with, and starts of
 a portfolio with them."""
 
