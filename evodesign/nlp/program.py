@@ -100,14 +100,13 @@ class Switches(Protocol):
         """
         ...
 
-    def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0, rank: int = 0) -> Start:
+    def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0) -> Start:
         """Parameters that switch on the rows that a solution violates; none where all hold.
 
         Args:
             values: of the solution, with the parameters that are on.
             given: the other parameters.
             short: by how much [m] a row may hold and still be switched on.
-            rank: zero for what seems best, one for the next best, ...
         """
         ...
 

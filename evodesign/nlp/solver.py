@@ -79,9 +79,6 @@ class RawSolution:
 ROUNDS = 6
 """How often rows are switched on, one solve after the other."""
 
-WAYS = 3
-"""Ways to keep a row that are tried."""
-
 GAIN = 1e-4
 """Share of its cost by which a solution must get better to be solved again."""
 
@@ -211,19 +208,15 @@ class Solver:
         return found
 
     def _without_violations(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
-        """Rows are switched on until none is violated; where that leads nowhere, in the next best way."""
+        """Rows are switched on until none is violated."""
         switches = self.program.switches
         for _ in range(ROUNDS):
             if switches is None or raw.status is not Status.SOLVED:
                 return raw
-            for rank in range(WAYS):
-                on = switches.violated(raw.values, parameters, rank=rank)
-                if not on:
-                    return raw
-                found = self._solved_from(parameters, raw, on)
-                if found.status is Status.SOLVED:
-                    break
-            raw = found
+            on = switches.violated(raw.values, parameters)
+            if not on:
+                return raw
+            raw = self._solved_from(parameters, raw, on)
         return replace(raw, status=Status.NUMERICAL_FAILURE, reason=UNSETTLED)
 
     def _solved_from(self, parameters: Mapping[str, Any], raw: RawSolution, on: Start) -> RawSolution:

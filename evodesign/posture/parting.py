@@ -90,11 +90,11 @@ class Parted:
             return np.ones(len(seen.margins), bool)
 
         def wanted(ways: Ways, place: int, along: float) -> Array:
-            return ways.ranked(0)
+            return ways.best
 
         return self._changed(values, given, looked_at, wanted)
 
-    def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0, rank: int = 0) -> Start:
+    def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0) -> Start:
         """What parts bodies that overlap, beside those that are parted already; none where none overlap."""
 
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
@@ -102,7 +102,7 @@ class Parted:
 
         def wanted(ways: Ways, place: int, along: float) -> Array | None:
             wide = self._meetings.margins[place] + short
-            return ways.ranked(rank) if ways.distance < wide - ALMOST else None
+            return ways.best if ways.distance < wide - ALMOST else None
 
         return self._changed(values, given, looked_at, wanted)
 
@@ -121,7 +121,7 @@ class Parted:
             if farther < BETTER:
                 return None
             gains.append(farther * float(prices[place]))
-            return ways.ranked(0)
+            return ways.best
 
         found = self._changed(values, given, looked_at, wanted)
         return found if sum(gains) > gain else {}

@@ -27,9 +27,6 @@ __all__ = ["Ways", "ways_of"]
 Array = NDArray[np.float64]
 Expression = Any
 
-DIFFERENT = 0.7
-"""Cosine between two directions that are different ways to part bodies."""
-
 STEPS = 8
 """From body to body, on the shortest way between them."""
 
@@ -42,12 +39,10 @@ class Ways:
     """Directions that may part two bodies.
 
     Args:
-        units: unit vectors from the one to the other, shape (n, 3).
         numbers: that stand for them, as in `terms.collisions`, shape (n, NUMBERS).
         apart: how far the bodies are apart along each [m]; minus infinity for one that is none.
     """
 
-    units: Array
     numbers: Array
     apart: Array
 
@@ -56,15 +51,10 @@ class Ways:
         """How far the bodies are apart along the best one [m]."""
         return float(self.apart.max())
 
-    def ranked(self, rank: int) -> Array:
-        """The numbers of the best direction, or of the next best ones that differ from all better ones."""
-        chosen: list[int] = []
-        for place in np.argsort(-self.apart, kind="stable").tolist():
-            if all(self.units[place] @ self.units[other] < DIFFERENT for other in chosen):
-                chosen.append(place)
-            if len(chosen) > rank:
-                break
-        return np.asarray(self.numbers[chosen[-1]])
+    @property
+    def best(self) -> Array:
+        """The numbers of the best direction."""
+        return np.asarray(self.numbers[int(self.apart.argmax())])
 
 
 def ways_of(meetings: Sequence[Array]) -> list[Ways]:
@@ -77,7 +67,7 @@ def ways_of(meetings: Sequence[Array]) -> list[Ways]:
     candidates, apart = _functions()
     pairs = np.concatenate(meetings).reshape(-1, 2 * SHAPE)
     found = [np.array(each).T for each in candidates(pairs.T)]
-    units, numbers = found[0].reshape(len(pairs), -1, 3), found[1].reshape(len(pairs), -1, NUMBERS)
+    numbers = found[1].reshape(len(pairs), -1, NUMBERS)
     ends = np.cumsum([len(meeting) for meeting in meetings]).tolist()
     ways = []
     for first, end in zip([0, *ends], ends, strict=False):
@@ -87,7 +77,6 @@ def ways_of(meetings: Sequence[Array]) -> list[Ways]:
             least = np.array([along.min(axis=1) for along in each])
         ways.append(
             Ways(
-                units[first:end].reshape(-1, 3),
                 numbers[first:end].reshape(-1, NUMBERS),
                 np.where(np.isfinite(found[2][first:end]), least, -np.inf).ravel(),
             )

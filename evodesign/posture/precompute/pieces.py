@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from itertools import cycle, islice
+from itertools import islice
 
 import msgspec
 import numpy as np
@@ -35,7 +35,7 @@ __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "
 
 REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
-DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=1)
+DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=2)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
 
@@ -49,9 +49,8 @@ Whole postures have many optima that lie close to each other; from random starts
 but the optima of other designs lead there.
 """
 
-WIDER_DESIGNS, WIDER_PEOPLE, MOST_WIDER = 16, 2, 8
-"""Designs for which starts of other heights are tried, people by turns that each is tried with, and starts of
-a portfolio with them."""
+WIDER_DESIGNS, MOST_WIDER = 24, 8
+"""Designs for which starts of other heights are tried with everyone, and starts of a portfolio with them."""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -337,6 +336,6 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
     few = list(islice(designs, WIDER_DESIGNS))
     lower = sum(other.height_m < task.height_m for other in piece.beside)
-    people = islice(cycle(landscapes), lower * WIDER_PEOPLE, None)  # whose programs others do not compile
-    cases = ((next(people), design) for design in few for _ in range(min(WIDER_PEOPLE, len(landscapes))))
+    first = 2 * lower % len(landscapes)  # so that workers compile different people's programs first
+    cases = ((each, design) for design in few for each in (*landscapes[first:], *landscapes[:first]))
     return widened(known.postures[task], offers, cases, MOST_WIDER)
