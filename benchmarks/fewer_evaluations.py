@@ -1,9 +1,10 @@
 """After how many evaluations has the surrogate search what CMA-ES has after its budget?
 
-On `problems/icub_materials.toml`, whose densities are materials, on `problems/point_grasp.toml` with a greatest
-height of 1.48 m, which a fifth of all designs cannot reach, and on `problems/shared_lifting.toml`. Hypervolumes are measured against the worst
-feasible values of quasi-random sampling, made worse by a tenth of its range; the surrogate search is not
-told. Results go to benchmarks/results/fewer_evaluations.json and are printed as a Markdown table.
+On `problems/icub_materials.toml`, whose densities are materials, on `problems/point_grasp.toml` with a
+greatest height of 1.48 m, which a fifth of all designs cannot reach, and on `problems/shared_lifting.toml`.
+Hypervolumes are measured against the worst feasible values of quasi-random sampling, made worse by a tenth of
+its range; the surrogate search is not told. Results go to benchmarks/results/fewer_evaluations.json and are
+printed as a Markdown table.
 
     python -m benchmarks.fewer_evaluations [--evaluations 240] [--seeds 11 12 13]
 """
