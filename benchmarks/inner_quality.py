@@ -199,7 +199,8 @@ def main() -> None:
     reach = reach_summary([ends for ends, _ in judged])
     name = "" if options.problem == DEFAULT else f"_{Path(options.problem).stem}"
     target = HERE / "results" / f"inner_quality{name}.json"
-    target.write_text(json.dumps({**vars(options), "figures": figures, "reach": reach}, indent=2) + "\n")
+    measured = {**vars(options), "problem": Path(options.problem).name, "figures": figures, "reach": reach}
+    target.write_text(json.dumps(measured, indent=2) + "\n")
     print(_table(figures))
     print(json.dumps(reach, indent=2))
 

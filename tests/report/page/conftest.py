@@ -17,6 +17,7 @@ from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.page.chromium import Tab, browser
+from tests.report.page.reading import open_page
 
 RANDOM_DESIGNS = 4
 
@@ -82,3 +83,13 @@ def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     """A tab of a browser of the module's own."""
     with browser(tmp_path_factory.mktemp("profile") / "chromium") as tab:
         yield tab
+
+
+@pytest.fixture
+def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
+    """The real run's page, newly opened; at the end it must have reported no error."""
+    chromium.events.clear()
+    open_page(chromium, real_page)
+    yield chromium
+    assert chromium.complaints() == []
+    assert chromium.requests() == [real_page.as_uri()]

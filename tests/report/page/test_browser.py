@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -30,16 +29,6 @@ pytestmark = pytest.mark.needs_chromium
 PLOT = "document.getElementById('front')"
 SHOWN = "document.getElementById('card-title').textContent"
 NAME = "<script>alert(1)</script>"
-
-
-@pytest.fixture
-def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
-    """The real run's page, newly opened; at the end it must have reported no error."""
-    chromium.events.clear()
-    open_page(chromium, real_page)
-    yield chromium
-    assert chromium.complaints() == []
-    assert chromium.requests() == [real_page.as_uri()]
 
 
 def trace(tab: Tab, name: str) -> list[int]:

@@ -6,7 +6,6 @@ import base64
 import csv
 import io
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,23 +19,13 @@ from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
 from tests.report.page.chromium import Tab
-from tests.report.page.reading import open_page, shown_as
+from tests.report.page.reading import shown_as
 
 pytestmark = pytest.mark.needs_chromium
 
 PLOT = "document.getElementById('front')"
 TITLE = "document.getElementById('card-title').textContent"
 SELECTED = "window.evodesign.state.selected"
-
-
-@pytest.fixture
-def page(chromium: Tab, real_page: Path) -> Iterator[Tab]:
-    """The real run's page, newly opened; at the end it must have reported no error."""
-    chromium.events.clear()
-    open_page(chromium, real_page)
-    yield chromium
-    assert chromium.complaints() == []
-    assert chromium.requests() == [real_page.as_uri()]
 
 
 def choose(tab: Tab, key: str, name: str) -> None:
