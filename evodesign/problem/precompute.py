@@ -29,6 +29,7 @@ WORK: Mapping[Subject, float] = {
     Subject.MEETINGS: 0.3,
     Subject.HIGHEST: 1.0,
     Subject.LOWEST: 1.0,
+    Subject.PROGRAM: 2.0,
     Subject.POSTURE: 1.7,
     Subject.WIDER: 0.5,
     Subject.PERSON: 0.3,

@@ -67,11 +67,12 @@ class Subject(StrEnum):
     PERSON_REACH = "the person's reach"
     HIGHEST = "starts of the highest load"
     LOWEST = "starts of the lowest load"
+    PROGRAM = "the program of postures"
     POSTURE = "starts of postures"
     WIDER = "starts of other heights"
 
 
-OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH)
+OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.PROGRAM)
 """Of one person with one load; other pieces serve everyone."""
 
 
@@ -174,6 +175,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
     Subject.HIGHEST: NO_PART_OF_PIECES,
     Subject.LOWEST: NO_PART_OF_PIECES,
+    Subject.PROGRAM: NO_PART_OF_PIECES,
     Subject.POSTURE: NO_PART_OF_PIECES,
     Subject.WIDER: NO_PART_OF_WIDER,
 }
@@ -203,13 +205,21 @@ def stages(
     if not portfolios:
         return [meetings, people]
     middle = setting.middle.pair
+    around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
+    longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
+    # compiled here, side by side, or one worker would wait for another in the stages that solve them
+    programs = [
+        Piece(Subject.PROGRAM, scene.pair)
+        for scene in setting.scenes
+        if not (setting.symmetric and _push_alone(scene, setting.space))
+    ]
     found = [
         meetings,
-        [Piece(Subject.HIGHEST, middle), Piece(Subject.LOWEST, middle), *people],
-        [Piece(Subject.POSTURE, middle, task) for task in tasks],
+        [Piece(Subject.HIGHEST, middle), Piece(Subject.LOWEST, middle), *programs, *people],
+        [Piece(Subject.POSTURE, middle, task) for task in longest],
     ]
     if setting.symmetric and setting.middle.disturbances:
-        found.append([_wider(middle, task, tasks) for task in tasks])
+        found.append([_wider(middle, task, tasks) for task in longest])
     return found
 
 
@@ -261,6 +271,9 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         found = _person(setting, _scene_of(setting, piece), piece.task)
     elif piece.subject is Subject.PERSON_REACH:
         found = person_reach(_scene_of(setting, piece), setting.options, symmetric=setting.symmetric)
+    elif piece.subject is Subject.PROGRAM:
+        _compile(setting, _scene_of(setting, piece))
+        found = None
     else:
         found = _portfolio(setting, piece, known)
     return msgspec.json.encode(found, enc_hook=np.ndarray.tolist)
@@ -280,6 +293,9 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
             reach = msgspec.json.decode(content, type=PersonReach | None)
             reaches = {**known.person_reaches, **({piece.pair: reach} if reach else {})}
             return replace(known, person_reaches=reaches)
+        if piece.subject is Subject.PROGRAM:
+            msgspec.json.decode(content, type=None)
+            return known
         found = msgspec.json.decode(content, type=StartPortfolio)
     except msgspec.DecodeError:
         return None
@@ -301,6 +317,14 @@ def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[B
 def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue | None:
     form = symmetric_forms(scene)[1]
     return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.height_m)
+
+
+def _compile(setting: PrecomputeSetting, scene: Scene) -> None:
+    """Compile a scene's programs, which are found again in the cache of functions."""
+    own = Setting(scene, setting.space, setting.weights, setting.options)
+    problem = PostureProblem(own, setting.symmetry)
+    for task in {type(task): task for task in setting.tasks}.values():
+        _ = problem.landscape(task).solver.parted
 
 
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
@@ -335,7 +359,5 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     settings = [replace(own, scene=each) for each in setting.scenes]
     landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
     few = list(islice(designs, WIDER_DESIGNS))
-    lower = sum(other.height_m < task.height_m for other in piece.beside)
-    first = 2 * lower % len(landscapes)  # so that workers compile different people's programs first
-    cases = ((each, design) for design in few for each in (*landscapes[first:], *landscapes[:first]))
+    cases = ((each, design) for design in few for each in landscapes)
     return widened(known.postures[task], offers, cases, MOST_WIDER)
