@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -11,8 +12,12 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.pieces import Subject, key_of, stages
+from evodesign.nlp.codegen import Library
+from evodesign.nlp.method import MethodName
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, key_of, stages, with_piece
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
@@ -207,5 +212,25 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
     for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False):
         for piece in stage:
             same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
-            of_postures = piece.subject in (Subject.POSTURE, Subject.WIDER)
+            of_postures = piece.subject in (Subject.PROGRAM, Subject.POSTURE, Subject.WIDER)
             assert same is not of_postures, "start portfolios of undisturbed reach do"
+
+
+@pytest.mark.needs_compiler
+def test_programs_of_postures_are_compiled_before_they_are_solved(
+    shaken: DesignProblem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("EVODESIGN_CACHE", str(tmp_path))
+    options = replace(shaken.options, compiled=True, method=MethodName.NATIVE)
+    setting = replace(precompute_setting(shaken), options=options)
+    piece = Piece(Subject.PROGRAM, shaken.scene.pair)
+    assert piece in stages(setting, shaken.tasks, portfolios=True, person_reaches=False)[1]
+    content = compute_piece(setting, piece, NOTHING_PRECOMPUTED)
+    assert with_piece(NOTHING_PRECOMPUTED, piece, content) is NOTHING_PRECOMPUTED
+    assert with_piece(NOTHING_PRECOMPUTED, piece, b"spoilt") is None
+    postures = PostureProblem(
+        Setting(shaken.scene, shaken.space, shaken.weights, options), shaken.symmetry, NOTHING_PRECOMPUTED
+    )
+    functions = postures.landscape(shaken.tasks[0]).solver.functions
+    assert isinstance(functions, Library)
+    assert not functions.fresh
