@@ -23,9 +23,10 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.disturbance import OverCases
+from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import ConstraintBlock, Expression, Program, Start, Variable
 
-__all__ = ["aggregated", "with_worst"]
+__all__ = ["WorstCase", "aggregated"]
 
 
 SHARE_OF_MEAN = 0.01
@@ -56,11 +57,27 @@ def aggregated(program: Program, effort: OverCases, costs: Sequence[Expression])
     )
 
 
-def with_worst(start: Start, program: Program, parameters: Mapping[str, Any]) -> Start:
-    """A solution of a program as its start, with s as its load cases ask for it."""
-    for row in program.constraints:
-        if row.name == WORST:
-            costs = ca.Function("costs", [program.symbols, program.given], [row.expression])
-            found = costs(program.packed({**start, WORST: [0.0]}), program.packed_parameters(parameters))
-            return {**start, WORST: [float(ca.mmax(found))]}
-    return start
+class WorstCase:
+    """The variable s of a program, as its load cases ask for it at a start.
+
+    Args:
+        program: of any load cases; one without s leaves starts as they are.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self._program = program
+        self._above: BufferedFunction | None = None
+        for row in program.constraints:
+            if row.name == WORST:
+                given = [program.symbols, program.given]
+                self._above = BufferedFunction(ca.Function("above", given, [ca.densify(row.expression)]))
+
+    def put(self, start: Start, parameters: Mapping[str, Any]) -> Start:
+        """A start with s as low as it may be."""
+        if self._above is None:
+            return start
+        program = self._program
+        (above,) = self._above(
+            program.packed({**start, WORST: [0.0]}), program.packed_parameters(parameters, start)
+        )
+        return {**start, WORST: [float(above.max())]}

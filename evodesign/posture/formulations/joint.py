@@ -33,7 +33,7 @@ from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.base import Setting, program_key
-from evodesign.posture.load_cases import aggregated, with_worst
+from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
@@ -93,6 +93,10 @@ class JointPostures:
         return JointPostures(self.name, self._forms, setting, self._solvers, self._kind)._solver
 
     @cached_property
+    def _worst(self) -> WorstCase:
+        return WorstCase(self._solver.program)
+
+    @cached_property
     def _fixed(self) -> tuple[Start, ...]:
         starts = fixed_starts(self._solver.program)
         return starts[:1] if self._setting.options.seldom else starts  # docs/benchmarks.md
@@ -136,7 +140,7 @@ class JointPostures:
         """The postures of another design near those of a solution."""
         task, solver = solution.case.task, self._solver
         parameters = {"design": design, **self._beside(task)}
-        start = filled(self._start(solution.instants), solver.program)
+        start = self._begun(self._start(solution.instants), parameters)
         raw = solver.settled(parameters, solver.near.solve(parameters, start))
         if raw.status is not Status.SOLVED:
             return None
@@ -153,9 +157,9 @@ class JointPostures:
     ) -> PostureDerivative | NotDifferentiable:
         """How a posture that this program found moves with the design."""
         program = self._sensitivity.program
-        start = start_from(program, self._forms, solution.instants)
         parameters = {"design": design, **self._beside(solution.case.task)}
-        found = self._sensitivity.at(parameters, with_worst(start, program, parameters), exact=exact)
+        start = self._begun(start_from(program, self._forms, solution.instants), parameters)
+        found = self._sensitivity.at(parameters, start, exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
         own = found.along("design")
@@ -223,12 +227,16 @@ class JointPostures:
             if not optima:
                 return first
             ends = [
-                (name, _after(raw, solver.solve(parameters, filled(raw.values, solver.program))))
+                (name, _after(raw, solver.solve(parameters, self._begun(raw.values, parameters))))
                 for name, raw in optima[:MOST_OPTIMA]
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
-        return [(name, solver.solve(parameters, filled(start, solver.program))) for name, start in starts]
+        return [(name, solver.solve(parameters, self._begun(start, parameters))) for name, start in starts]
+
+    def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:
+        """A start in which disturbed load cases begin as the undisturbed one, and s with them."""
+        return self._worst.put(filled(start, self._solver.program), parameters)
 
 
 def _distinct(ends: Sequence[tuple[str, RawSolution]]) -> list[tuple[str, RawSolution]]:
