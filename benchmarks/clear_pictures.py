@@ -15,9 +15,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from matplotlib.figure import Figure
+from PIL import Image
 
 from benchmarks.clearance import with_table
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.body.placement import Placement
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
@@ -34,21 +35,22 @@ LARGEST = 150_000
 
 
 def alone(models: SceneModels, detail: CaseDetail) -> Iterator[PlacedScene]:
-    """Robot, then person, each without the other and looking along +x."""
-    agents = tuple(replace(agent, facing=0.0) for agent in models.agents)
-    placed = placed_scene(replace(models, agents=agents), detail)
-    for name in (ROBOT, HUMAN):
-        own = replace(placed.models, trees={name: models.trees[name]})
-        wrenches = tuple(wrench for wrench in placed.wrenches if wrench.agent == name)
-        yield replace(placed, models=own, wrenches=wrenches)
+    """Robot, then person, each without the other, the forces, and looking along +x."""
+    placed = placed_scene(models, detail)
+    for agent in models.agents:
+        turn = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, -agent.facing))
+        frames = {link: turn @ frame for link, frame in placed.frames[agent.name].items()}
+        own = replace(models, trees={agent.name: models.trees[agent.name]})
+        yield replace(placed, models=own, frames={agent.name: frames}, wrenches=())
 
 
 def write(figure: Figure, stem: str) -> None:
-    """Write a picture without its SVG."""
+    """Write a picture in its 256 best colours."""
+    path = PICTURES / f"{stem}.png"
     with TemporaryDirectory() as folder:
         _, png = write_figure(figure, Path(folder), stem)
-        path = PICTURES / png.name
-        path.write_bytes(png.read_bytes())
+        seen = Image.open(png).convert("RGB")
+        seen.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
     print(path, path.stat().st_size)
     assert path.stat().st_size < LARGEST, f"{path} is too large"
 

@@ -101,7 +101,7 @@ def figures(result: DesignResult) -> dict[str, Any]:
     return {
         "lowest_m": result.reach.lowest,
         "highest_m": result.reach.highest,
-        "deepest_mm": round(-1e3 * min(0.0, *gaps), 1),
+        "deepest_mm": round(1e3 * max(0.0, *(-gap for gap in gaps)), 1),
         "arms_deg": round(max(arms), 1),
         "not_solved": sum(not solved(case) for case in result.cases),
     }
