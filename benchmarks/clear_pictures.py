@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from benchmarks.clearance import with_table
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, rotate
 from evodesign.problem.build import build_problem
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
@@ -26,7 +26,7 @@ from evodesign.problem.source import read_source
 from evodesign.records import CaseDetail
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
-from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
+from evodesign.report.scene_models import ContactWrench, PlacedScene, SceneModels, placed_scene
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 FRONT, SIDE = Camera(0.0, math.radians(6.0)), Camera(-math.pi / 2.0, math.radians(6.0))
@@ -35,13 +35,20 @@ LARGEST = 150_000
 
 
 def alone(models: SceneModels, detail: CaseDetail) -> Iterator[PlacedScene]:
-    """Robot, then person, each without the other, the forces, and looking along +x."""
+    """Robot, then person, each without the other and looking along +x."""
     placed = placed_scene(models, detail)
     for agent in models.agents:
         turn = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, -agent.facing))
         frames = {link: turn @ frame for link, frame in placed.frames[agent.name].items()}
         own = replace(models, trees={agent.name: models.trees[agent.name]})
-        yield replace(placed, models=own, frames={agent.name: frames}, wrenches=())
+        wrenches = tuple(turned(each, turn) for each in placed.wrenches if each.agent == agent.name)
+        yield replace(placed, models=own, frames={agent.name: frames}, wrenches=wrenches)
+
+
+def turned(wrench: ContactWrench, turn: Placement) -> ContactWrench:
+    """A wrench in a world that is turned."""
+    force, moment = (rotate(turn.rotation, each) for each in (wrench.force, wrench.moment))
+    return replace(wrench, point=turn.apply(wrench.point), force=force, moment=moment)
 
 
 def write(figure: Figure, stem: str) -> None:
