@@ -57,7 +57,7 @@ def write(figure: Figure, stem: str) -> None:
     with TemporaryDirectory() as folder:
         _, png = write_figure(figure, Path(folder), stem)
         seen = Image.open(png).convert("RGB")
-        seen.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
+        seen.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=8).save(path, optimize=True)
     print(path, path.stat().st_size)
     assert path.stat().st_size < LARGEST, f"{path} is too large"
 
