@@ -1,11 +1,12 @@
 """Public humanoids whose bodies keep clear of each other: how near they come, unscaled.
 
-    python -m benchmarks.clear_robots [--robots NAME,...]
+    python -m benchmarks.clear_robots [--robots NAME,...] [--fixed-starts]
 
 Each robot's problem is what `init` writes and the line `[collisions]`, and begins with an empty cache. Told
 are the pairs that are checked, of robot and person; those that have rows (of the robot, of its reach, of the
 person); whether all heights are solved; the smallest distance of two bodies by coal, with the table and
 without it; the reach with it; and processor time until the first evaluation begins, compilers included.
+With `--fixed-starts` no start portfolios are worked out: they take most of that time in whole postures.
 Written to benchmarks/results/clear_robots.json, printed as a table.
 """
 
@@ -61,9 +62,10 @@ def free_of(problem: DesignProblem) -> DesignResult:
     return solved(Evaluator(replace(problem, options=options)))
 
 
-def measured(urdf: Path, folder: Path) -> dict[str, Any]:
+def measured(urdf: Path, folder: Path, *, fixed_starts: bool = False) -> dict[str, Any]:
     """What came of a robot; its problem file is written to a folder."""
     problem, apart = guessed(urdf, folder)
+    apart = replace(apart, start_portfolio=not fixed_starts)
     began = processor_seconds()
     with SerialPool() as pool:
         evaluator = Evaluator(apart, cached_precomputed(apart, pool))
@@ -82,6 +84,7 @@ def measured(urdf: Path, folder: Path) -> dict[str, Any]:
         "free_reach_m": [free.reach.lowest, free.reach.highest],
         "nearest": nearest(result),
         "nearest_free": nearest(free),
+        "fixed_starts": fixed_starts,
         "preparation_seconds": round(prepared - began, 1),
     }
 
@@ -106,15 +109,16 @@ def main() -> None:
     """Measure the robots that are asked for."""
     parser = argparse.ArgumentParser(description="public humanoids whose bodies keep clear of each other")
     parser.add_argument("--robots", default=",".join(HUMANOIDS))
+    parser.add_argument("--fixed-starts", action="store_true")
     options = parser.parse_args()
-    results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     print(f"| {' | '.join(HEAD)} |", "|---" * len(HEAD) + "|", sep="\n")
     for name in options.robots.split(","):
         with tempfile.TemporaryDirectory() as folder:
             os.environ["EVODESIGN_CACHE"] = folder
-            results[name] = measured(HUMANOIDS[name], Path(folder))
-        RESULTS.write_text(json.dumps(results, indent=2) + "\n")
-        print(row(name, results[name]), end="", flush=True)
+            found = measured(HUMANOIDS[name], Path(folder), fixed_starts=options.fixed_starts)
+        known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+        RESULTS.write_text(json.dumps(known | {name: found}, indent=2) + "\n")
+        print(row(name, found), end="", flush=True)
 
 
 if __name__ == "__main__":
