@@ -25,7 +25,14 @@ from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.pieces import NO_PART_OF, Piece, PrecomputeSetting, Subject, key_of
+from evodesign.posture.precompute.pieces import (
+    NO_PART_OF,
+    OF_STARTS,
+    Piece,
+    PrecomputeSetting,
+    Subject,
+    key_of,
+)
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile
@@ -191,7 +198,7 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
 def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, subject: Subject) -> None:
     setting, without = setting_of(problem), NO_PART_OF[subject]
     scene = setting.middle
-    if subject in (Subject.HIGHEST, Subject.LOWEST):  # worked out where nothing disturbs
+    if subject in OF_STARTS:  # worked out where nothing disturbs
         without = {**without, Scene: {"disturbances": "none"}}
     one = replace(setting, scenes=(scene,))
 

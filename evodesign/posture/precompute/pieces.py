@@ -35,7 +35,6 @@ __all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "
 
 REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
-DISTURBED_TRAINING = Training(designs=40, starts=8, crossed=8, rounds=2)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
 
@@ -49,7 +48,7 @@ Whole postures have many optima that lie close to each other; from random starts
 but the optima of other designs lead there.
 """
 
-WIDER_DESIGNS, MOST_WIDER = 24, 8
+WIDER_DESIGNS, MOST_WIDER = 48, 12
 """Designs for which starts of other heights are tried with everyone, and starts of a portfolio with them."""
 
 ITERATIONS = 80
@@ -74,6 +73,9 @@ class Subject(StrEnum):
 
 OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.PROGRAM)
 """Of one person with one load; other pieces serve everyone."""
+
+OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
+"""Portfolios of starts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,22 +236,24 @@ def _push_alone(scene: Scene, space: DesignSpace) -> bool:
     return alone and not shared and not scene.disturbances
 
 
-def _scene_of(setting: PrecomputeSetting, piece: Piece) -> Scene:
-    """The scene that a piece is worked out in.
+def _undisturbed(scene: Scene) -> Scene:
+    return replace(scene, disturbances=Disturbances())
 
-    Where a robot reaches without disturbances its reach with them is found too, for three times less work.
-    """
-    scene = scene_of(setting.scenes, piece.pair)
-    if piece.subject in (Subject.HIGHEST, Subject.LOWEST):
-        return replace(scene, disturbances=Disturbances())
-    return scene
+
+def _calm(setting: PrecomputeSetting) -> PrecomputeSetting:
+    """Without disturbances: portfolios are made so, as postures are solved so first."""
+    scenes = tuple(_undisturbed(scene) for scene in setting.scenes)
+    return replace(setting, scenes=scenes, middle=_undisturbed(setting.middle))
 
 
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     """The digest under which a piece is kept: of all that it may follow from, and of the code."""
-    data = (setting, setting.symmetric, _scene_of(setting, piece), piece)
-    parted = _scene_of(setting, piece).human.collisions is not None and piece.subject is not Subject.MEETINGS
+    apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
+    parted = apart and piece.subject is not Subject.MEETINGS
     without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
+    if piece.subject in OF_STARTS and not parted:
+        setting = _calm(setting)
+    data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
     return digest((data, code_digest(__name__)), without=without)
 
 
@@ -262,17 +266,21 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         known: what earlier stages gave.
     """
     found: HumanValue | PersonReach | StartPortfolio | dict[str, list[BodyPair]] | None
+    scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
-        own = Setting(_scene_of(setting, piece), setting.space, setting.weights, setting.options)
+        own = Setting(scene, setting.space, setting.weights, setting.options)
         return msgspec.json.encode(found_meetings(own, setting.tasks, symmetric=setting.symmetric))
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
+    if piece.subject in OF_STARTS:
+        setting = _calm(setting)
+    scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.PERSON and piece.task is not None:
-        found = _person(setting, _scene_of(setting, piece), piece.task)
+        found = _person(setting, scene, piece.task)
     elif piece.subject is Subject.PERSON_REACH:
-        found = person_reach(_scene_of(setting, piece), setting.options, symmetric=setting.symmetric)
+        found = person_reach(scene, setting.options, symmetric=setting.symmetric)
     elif piece.subject is Subject.PROGRAM:
-        _compile(setting, _scene_of(setting, piece))
+        _compile(setting, scene)
         found = None
     else:
         found = _portfolio(setting, piece, known)
@@ -321,14 +329,15 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 
 def _compile(setting: PrecomputeSetting, scene: Scene) -> None:
     """Compile a scene's programs, which are found again in the cache of functions."""
-    own = Setting(scene, setting.space, setting.weights, setting.options)
-    problem = PostureProblem(own, setting.symmetry)
-    for task in {type(task): task for task in setting.tasks}.values():
-        _ = problem.landscape(task).solver.parted
+    for each in (scene, _undisturbed(scene)) if scene.disturbances else (scene,):
+        own = Setting(each, setting.space, setting.weights, setting.options)
+        problem = PostureProblem(own, setting.symmetry)
+        for task in {type(task): task for task in setting.tasks}.values():
+            _ = problem.landscape(task).solver.parted
 
 
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
-    scene, space, task = _scene_of(setting, piece), setting.space, piece.task
+    scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
     own = Setting(scene, space, setting.weights, options)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
@@ -339,8 +348,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
             training = replace(training, portfolio=PARTED_STARTS)
     else:
         landscape = PostureProblem(own, setting.symmetry, known).landscape(task)
-        training = DISTURBED_TRAINING if scene.disturbances else HALF_TRAINING
-        training = training if setting.symmetric else WHOLE_TRAINING
+        training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
     if not setting.symmetric:
         near = STRICTER * landscape.relative, STRICTER * landscape.absolute
         landscape = replace(landscape, relative=near[0], absolute=near[1])
