@@ -1,10 +1,11 @@
 """Which bodies of an agent must not overlap: all but those that its build brings together.
 
     neighbours     joined links, by way of at most one more with a body (an elbow's cross) or of three axes (a
-                   hip's, a shoulder's); bare frames do not count
+                   hip's, a shoulder's); bare frames do not count; and links between which no joint moves
+                   that the problem names
     always         pairs that overlap in most of the agent's postures
     a hand         may touch the load that it holds, and so may links that begin less than a hand's length
-                   from the grasp, as wrists do
+                   from the grasp, as wrists do, and fingers that stand still
 
 So MoveIt fills its matrix of allowed collisions: adjacent, always, never.
 """
@@ -38,41 +39,51 @@ TURN = np.pi  # [rad], of a joint without limits
 
 
 def checked_pairs(
-    tree: Tree, hands: Mapping[str, str], soles: Mapping[str, str], resized: Sequence[Tree] = ()
+    tree: Tree,
+    joints: Collection[str],
+    hands: Mapping[str, str],
+    soles: Mapping[str, str],
+    resized: Sequence[Tree] = (),
 ) -> tuple[BodyPair, ...]:
     """Pairs of links, and of links with load, floor and partner, that must not overlap, in the tree's order.
 
     Args:
         tree: of the agent, unscaled.
-        resized: trees of some designs: what always overlaps in one of them is a matter of its build.
+        joints: that move; the others stand at zero.
         hands: frames at the grasps, by side.
         soles: frames under the feet, by side.
+        resized: trees of some designs: what always overlaps in one of them is a matter of its build.
     """
     names = tuple(dict.fromkeys(SolidBodies.of_tree(tree).names))
-    holding = holding_links(tree, hands)
-    standing = {link for sole in soles.values() for link in _foot(tree, sole)}
+    holding = holding_links(tree, joints, hands)
+    standing = {link for sole in soles.values() for link in _foot(tree, joints, sole)}
     return (
-        *collision_pairs(tree, resized),
+        *collision_pairs(tree, joints, resized),
         *((name, LOAD) for name in names if name not in holding),
         *((name, FLOOR) for name in names if name not in standing),
         *((name, PARTNER) for name in names if name not in holding),
     )
 
 
-def collision_pairs(tree: Tree, resized: Sequence[Tree] = ()) -> tuple[BodyPair, ...]:
+def collision_pairs(
+    tree: Tree, joints: Collection[str], resized: Sequence[Tree] = ()
+) -> tuple[BodyPair, ...]:
     """Pairs of links that must not overlap, in the tree's order; for the arguments see `checked_pairs`."""
     bodies = SolidBodies.of_tree(tree)
     names = tuple(dict.fromkeys(bodies.names))
-    pairs = [pair for pair in combinations(names, 2) if not _near_by(tree, frozenset(names), *pair)]
-    always = _always_in_touch(tree, pairs).union(*(_always_in_touch(each, pairs) for each in resized))
+    pairs = [pair for pair in combinations(names, 2) if not _near_by(tree, joints, frozenset(names), *pair)]
+    always = frozenset[BodyPair]().union(
+        *(_always_in_touch(each, joints, pairs) for each in (tree, *resized))
+    )
     return tuple(pair for pair in pairs if pair not in always)
 
 
-def holding_links(tree: Tree, hands: Mapping[str, str]) -> frozenset[str]:
+def holding_links(tree: Tree, joints: Collection[str], hands: Mapping[str, str]) -> frozenset[str]:
     """Links that may touch the load: those of hands, and the links near the grasp.
 
     Args:
         tree: of the agent, unscaled.
+        joints: that move.
         hands: frames at the grasp, by side.
     """
     frames = link_frames(tree, Placement(), {})
@@ -80,17 +91,17 @@ def holding_links(tree: Tree, hands: Mapping[str, str]) -> frozenset[str]:
     for hand in hands.values():
         grasp, name = np.array(frames[hand].translation, float), hand
         while np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
-            found |= {name, *_welded_below(tree, name)}
+            found |= {name, *_still_below(tree, joints, name)}
             if name not in tree.parent_joint:
                 break
             name = tree.parent_joint[name].parent
     return frozenset(found)
 
 
-def _foot(tree: Tree, sole: str) -> Iterator[str]:
+def _foot(tree: Tree, joints: Collection[str], sole: str) -> Iterator[str]:
     """All below the last joint that moves above a sole, and what is below that: a toe."""
     name = sole
-    while name in tree.parent_joint and tree.parent_joint[name].kind is JointKind.FIXED:
+    while name in tree.parent_joint and tree.parent_joint[name].name not in joints:
         name = tree.parent_joint[name].parent
     yield name
     yield from _below(tree, name)
@@ -102,21 +113,24 @@ def _below(tree: Tree, name: str) -> Iterator[str]:
         yield from _below(tree, joint.child)
 
 
-def _welded_below(tree: Tree, name: str) -> Iterator[str]:
+def _still_below(tree: Tree, joints: Collection[str], name: str) -> Iterator[str]:
     """Links below one that nothing moves against it: fingers that stay."""
     for joint in tree.child_joints[name]:
-        if joint.kind is JointKind.FIXED:
+        if joint.name not in joints:
             yield joint.child
-            yield from _welded_below(tree, joint.child)
+            yield from _still_below(tree, joints, joint.child)
 
 
-def _near_by(tree: Tree, bodies: frozenset[str], first: str, second: str) -> bool:
+def _near_by(tree: Tree, joints: Collection[str], bodies: frozenset[str], first: str, second: str) -> bool:
     """Whether hardly anything is between two links."""
     above, beyond = _to_root(tree, first), _to_root(tree, second)
     common = next(link for link in above if link in beyond)
     legs = above[: above.index(common)] + beyond[: beyond.index(common)]
-    moving = sum(tree.parent_joint[link].kind is not JointKind.FIXED for link in legs)
-    return moving <= AXES or len({*legs, common} & bodies - {first, second}) <= BETWEEN
+    between = [tree.parent_joint[link] for link in legs]
+    if not any(joint.name in joints for joint in between):
+        return True
+    axes = sum(joint.kind is not JointKind.FIXED for joint in between)
+    return axes <= AXES or len({*legs, common} & bodies - {first, second}) <= BETWEEN
 
 
 def _to_root(tree: Tree, name: str) -> list[str]:
@@ -126,10 +140,10 @@ def _to_root(tree: Tree, name: str) -> list[str]:
     return found
 
 
-def _always_in_touch(tree: Tree, pairs: Collection[BodyPair]) -> frozenset[BodyPair]:
+def _always_in_touch(tree: Tree, joints: Collection[str], pairs: Collection[BodyPair]) -> frozenset[BodyPair]:
     """Pairs that overlap in most postures, drawn from the joints' ranges; always the same ones."""
     rng, bodies = np.random.default_rng(0), SolidBodies.of_tree(tree)
-    moving = [joint for joint in tree.joints if joint.kind is not JointKind.FIXED]
+    moving = [joint for joint in tree.joints if joint.name in joints]
     counts: Counter[tuple[str, str]] = Counter()
     places = places_of(bodies.names, pairs)
     for _ in range(SAMPLES):

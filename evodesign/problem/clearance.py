@@ -94,7 +94,7 @@ class Clearances:
         if agent.collisions is not None:
             return agent.collisions.checked
         if id(agent.tree) not in self._own:
-            self._own[id(agent.tree)] = checked_pairs(agent.tree, agent.hands, agent.soles)
+            self._own[id(agent.tree)] = checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
         return self._own[id(agent.tree)]
 
 

@@ -48,7 +48,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     ignored = {frozenset(pair) for pair in table.ignore}
     checked = [
         pair
-        for pair in checked_pairs(agent.tree, agent.hands, agent.soles, resized)
+        for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles, resized)
         if frozenset(pair) not in ignored
     ]
     own = {frozenset(pair): pair for pair in checked}

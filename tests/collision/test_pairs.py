@@ -13,7 +13,8 @@ from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
 
 def test_joined_links_are_not_watched_and_others_are(problem: DesignProblem) -> None:
-    robot, person = (set(collision_pairs(agent.tree)) for agent in (problem.scene.robot, problem.scene.human))
+    agents = problem.scene.robot, problem.scene.human
+    robot, person = (set(collision_pairs(agent.tree, agent.joints)) for agent in agents)
     for near in (("root_link", "torso_1"), ("root_link", "l_hip_3"), ("chest", "head")):
         assert near not in robot
     for far in (("l_foot_front", "r_foot_front"), ("l_hip_3", "r_hip_3"), ("chest", "l_hip_2")):
@@ -40,15 +41,41 @@ def test_a_pair_that_always_overlaps_is_not_collision_pairs() -> None:
         )
         for a, b in pairwise(names)
     ]
-    checked = collision_pairs(Tree("chain", (shell, *balls), tuple(joints)))
+    tree = Tree("chain", (shell, *balls), tuple(joints))
+    checked = collision_pairs(tree, tree.actuated)
     assert not [pair for pair in checked if "shell" in pair]
     assert ("ball 0", "ball 4") in checked
 
 
 def test_hands_hold_and_forearms_do_not(problem: DesignProblem) -> None:
     robot, person = problem.scene.robot, problem.scene.human
-    holding = holding_links(robot.tree, robot.hands)
+    holding = holding_links(robot.tree, robot.joints, robot.hands)
     assert {"l_hand", "r_hand", "l_wrist_1"} <= holding
     assert not holding & {"l_forearm", "chest"}
-    assert "LeftHand" in holding_links(person.tree, person.hands)
-    assert "LeftForeArm" not in holding_links(person.tree, person.hands)
+    assert "LeftHand" in holding_links(person.tree, person.joints, person.hands)
+    assert "LeftForeArm" not in holding_links(person.tree, person.joints, person.hands)
+
+
+def test_fingers_that_stand_still_are_part_of_the_hand() -> None:
+    """A gripper of two fingers that reach farther than a hand's length and lie in each other."""
+    names = ["arm", "hand", *(f"{side} {part}" for side in ("left", "right") for part in "abc")]
+    links = [Link(n, own_inertia=Inertia(1.0), looks=(Look(Sphere(0.05), Placement()),)) for n in names]
+    parents = {"hand": "arm", "left a": "hand", "right a": "hand"}
+    parents |= {f"{side} {b}": f"{side} {a}" for side in ("left", "right") for a, b in pairwise("abc")}
+    joints = tuple(
+        Joint(
+            each,
+            JointKind.REVOLUTE,
+            parent,
+            each,
+            Placement(translation=(0.0, 0.0, -0.16)),
+            (0.0, 1.0, 0.0),
+            -1.0,
+            1.0,
+        )
+        for each, parent in parents.items()
+    )
+    tree = Tree("gripper", tuple(links), joints)
+    assert holding_links(tree, ["hand"], {"left": "hand"}) == {"hand", *names[2:]}
+    assert not [pair for pair in collision_pairs(tree, ["hand"]) if "arm" not in pair]
+    assert ("left c", "right c") in collision_pairs(tree, tree.actuated)

@@ -127,7 +127,10 @@ def kept_apart(problem: DesignProblem) -> DesignProblem:
     """The problem with pairs of all agents kept apart."""
     people = {
         id(agent): replace(
-            agent, collisions=CollisionRules(MARGIN, checked_pairs(agent.tree, agent.hands, agent.soles))
+            agent,
+            collisions=CollisionRules(
+                MARGIN, checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
+            ),
         )
         for scene in problem.scenes
         for agent in (scene.robot, scene.human)

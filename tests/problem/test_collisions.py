@@ -76,7 +76,10 @@ def test_everyone_keeps_clear_of_the_same(problem: DesignProblem) -> None:
     assert person in problem.source.text
     several = problem.source.text.replace(person, 'population = { sex = "both", percentiles = [5, 95] }')
     built = build_problem(ProblemSource("p.toml", f"{several}\n[collisions]\n", problem.source.files))
-    alone = [set(checked_pairs(each.human.tree, each.human.hands, each.human.soles)) for each in built.scenes]
+    alone = [
+        set(checked_pairs(each.human.tree, each.human.joints, each.human.hands, each.human.soles))
+        for each in built.scenes
+    ]
     assert len(alone) == 4
     assert set.union(*alone) != set.intersection(*alone)
     for scene in built.scenes:
