@@ -37,8 +37,8 @@ __all__ = ["REACH", "found_meetings", "with_meetings"]
 REACH = "reach"
 """Whose pairs are the robot's at extreme heights, beside those of the agents."""
 
-DESIGNS = 16
-"""Whose postures are looked at."""
+DESIGNS, FEWEST = 16, 4
+"""Whose postures are looked at, with all people and loads together, and at least with each."""
 
 NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
@@ -47,14 +47,23 @@ ROUNDS = 16
 """How often the pair that overlaps most in a posture is added."""
 
 
-def found_meetings(setting: Setting, tasks: Sequence[Task], *, symmetric: bool) -> dict[str, list[BodyPair]]:
+def found_meetings(
+    setting: Setting, tasks: Sequence[Task], *, symmetric: bool, part: int = 0, parts: int = 1
+) -> dict[str, list[BodyPair]]:
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
     In a fold everything passes through everything, and a few rows part it all: the pair that overlaps most in
     each posture is kept apart, then the one that does so still, and so on. At the task's heights those that
     are near each other in the end are kept apart as well.
+
+    Args:
+        setting: of one person and load.
+        tasks: of the problem.
+        symmetric: whether postures are.
+        part: of the designs that are looked at.
+        parts: how many there are.
     """
-    finder = _Finder(setting, symmetric=symmetric)
+    finder = _Finder(setting, symmetric, part, parts)
     scene = finder.scene
     held, near = _deepest_first(lambda kept, left: finder.held(tasks, kept, left))
     highest = {met for pairs in finder.at_reach(HIGHEST, set()).values() for met in _overlapping(pairs)}
@@ -102,7 +111,7 @@ def _deepest_first(
 class _Finder:
     """Postures of some designs, and what is near in them."""
 
-    def __init__(self, setting: Setting, *, symmetric: bool) -> None:
+    def __init__(self, setting: Setting, symmetric: bool, part: int, parts: int) -> None:
         scene = setting.scene
         free = replace(
             scene,
@@ -120,7 +129,8 @@ class _Finder:
         def given(genome: tuple[float, ...]) -> tuple[float, ...]:
             return space.given(space.values(genome), {})
 
-        self._designs = [*spread_designs(len(space.parameters), given, lambda _: True, DESIGNS)]
+        count = max(DESIGNS, FEWEST * parts)
+        self._designs = [*spread_designs(len(space.parameters), given, lambda _: True, count)][part::parts]
 
     def held(
         self, tasks: Sequence[Task], parted: Collection[_Met], left: Collection[Hashable] | None

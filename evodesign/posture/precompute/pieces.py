@@ -157,7 +157,9 @@ NO_PART_OF_WIDER: Exceptions = {
 NO_PART_OF_MEETINGS: Exceptions = {
     **NO_PART_OF_PIECES,
     PrecomputeSetting: {
-        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "tasks"
+        name: why
+        for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items()
+        if name not in ("tasks", "scenes")
     },
 }
 
@@ -269,7 +271,10 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
         own = Setting(scene, setting.space, setting.weights, setting.options)
-        return msgspec.json.encode(found_meetings(own, setting.tasks, symmetric=setting.symmetric))
+        pairs = [each.pair for each in setting.scenes]
+        part, parts, symmetric = pairs.index(piece.pair), len(pairs), setting.symmetric
+        found_pairs = found_meetings(own, setting.tasks, symmetric=symmetric, part=part, parts=parts)
+        return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
     if piece.subject in OF_STARTS:
