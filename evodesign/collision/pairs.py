@@ -123,7 +123,7 @@ def _still_below(tree: Tree, joints: Collection[str], name: str) -> Iterator[str
 
 def _near_by(tree: Tree, joints: Collection[str], bodies: frozenset[str], first: str, second: str) -> bool:
     """Whether hardly anything is between two links."""
-    above, beyond = _to_root(tree, first), _to_root(tree, second)
+    above, beyond = tree.to_root(first), tree.to_root(second)
     common = next(link for link in above if link in beyond)
     legs = above[: above.index(common)] + beyond[: beyond.index(common)]
     between = [tree.parent_joint[link] for link in legs]
@@ -131,13 +131,6 @@ def _near_by(tree: Tree, joints: Collection[str], bodies: frozenset[str], first:
         return True
     axes = sum(joint.kind is not JointKind.FIXED for joint in between)
     return axes <= AXES or len({*legs, common} & bodies - {first, second}) <= BETWEEN
-
-
-def _to_root(tree: Tree, name: str) -> list[str]:
-    found = [name]
-    while found[-1] in tree.parent_joint:
-        found.append(tree.parent_joint[found[-1]].parent)
-    return found
 
 
 def _always_in_touch(tree: Tree, joints: Collection[str], pairs: Collection[BodyPair]) -> frozenset[BodyPair]:

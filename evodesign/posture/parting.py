@@ -22,7 +22,6 @@ from evodesign.posture.terms.collisions import (
     SHAPE,
     PlacedShape,
     directed,
-    parted_by,
     placed_pairs,
 )
 
@@ -170,7 +169,7 @@ class Parted:
         switches = program.switches
         bodies = switches._bodies if isinstance(switches, Parted) else ()
         pairs: list[tuple[PlacedShape, PlacedShape]] = []
-        directions: list[Any] = []
+        along: list[Any] = []
         places: list[int] = []
         margins: list[float] = []
         rows: list[int] = []
@@ -182,13 +181,12 @@ class Parted:
                 own = placed_pairs(each.body, meeting)
                 held = each.body.values[PARTING][NUMBERS * number : NUMBERS * (number + 1)]
                 pairs += own
-                directions += [parted_by(held, *own[0])] * len(own)
+                along += [one.apart_along(other, held) for one, other in own]
                 places += [len(margins)] * len(own)
                 margins.append(rules.margin if rules else 0.0)
             first = begins[each.rows]
             rows += range(first, first + len(pairs) - before)
         least = [_least_apart(*pair) for pair in pairs]
-        along = [one.apart(other, way) for way, (one, other) in zip(directions, pairs, strict=True)]
         given = [program.symbols, program.given]
         shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
         return _Meetings(

@@ -128,7 +128,7 @@ def _shortest(one: PlacedShape, other: PlacedShape) -> Expression:
 
 def _nearest_in_box(shape: PlacedShape, point: Expression) -> Expression:
     nearest = shape.centre
-    for side in ca.horzsplit(shape.box):
+    for side in ca.horzsplit(shape.axes @ shape.box):
         square = ca.sumsqr(side)
         share = ca.if_else(square > 0.0, ca.dot(point - shape.centre, side) / (square + SHORT), 0.0)
         nearest += ca.fmin(ca.fmax(share, -1.0), 1.0) * side

@@ -73,6 +73,23 @@ def forward(tree: Tree, base: Pose, positions: Mapping[str, Expression]) -> dict
     return poses
 
 
+def pose_from(tree: Tree, above: str, link: str, positions: Mapping[str, Expression]) -> Pose:
+    """Pose of a link in the frame of one that carries it: it moves with the joints between them alone.
+
+    Args:
+        tree: numbers or expressions.
+        above: the carrying link, or the link itself.
+        link: its name.
+        positions: joint positions [rad or m] by name; joints left out stand at zero.
+    """
+    pose = Pose(ca.DM.eye(3), ca.DM.zeros(3))
+    chain = tree.to_root(link)
+    for name in reversed(chain[: chain.index(above)]):
+        joint = tree.parent_joint[name]
+        pose = _child_pose(pose, joint, positions.get(joint.name, 0.0))
+    return pose
+
+
 def _child_pose(parent: Pose, joint: Joint, position: Expression) -> Pose:
     origin = joint.parent_from_child
     at_rest = parent.rotation @ _matrix(origin)

@@ -213,6 +213,13 @@ class Tree:
         """Names of the joints that can move, parents before children."""
         return tuple(joint.name for joint in self.joints if joint.kind is not JointKind.FIXED)
 
+    def to_root(self, link: str) -> list[str]:
+        """A link and those that carry it, up to the root."""
+        found = [link]
+        while found[-1] in self.parent_joint:
+            found.append(self.parent_joint[found[-1]].parent)
+        return found
+
     def reshaped(self, links: tuple[Link, ...], joints: tuple[Joint, ...]) -> Tree:
         """The same links and joints in the same order with other numbers; nothing is checked again."""
         other = object.__new__(Tree)

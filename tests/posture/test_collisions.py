@@ -22,13 +22,21 @@ from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
+from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, reach_program
 from evodesign.posture.parting import Parted
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.posture.terms.collisions import ROUNDING, SHAPE, PlacedShape, directed, placed_shape
+from evodesign.posture.terms.collisions import (
+    ROUNDING,
+    SHAPE,
+    PlacedShape,
+    directed,
+    placed_pairs,
+    placed_shape,
+)
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.sensitivities import Sensitivities
@@ -168,6 +176,45 @@ def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: De
         assert ("head", other) in checked["robot"]
         assert ("l_hand", LOAD) not in checked["robot"]
     assert ("l_foot_front", FLOOR) not in checked["robot"]
+
+
+def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
+    """Every pair of links of the person, placed in the frame of a link that carries both and in the world."""
+    human, scene = apart.scene.human, apart.scene
+    assert human.collisions is not None
+    rules = replace(human.collisions, parted=human.collisions.checked)
+    form = symmetric_forms(replace(scene, human=replace(human, collisions=rules)))[1]
+    program = human_program(form, scene, 1.0, switched=True)
+    assert isinstance(program.switches, Parted)
+    (parted,) = program.switches._bodies
+    middle = (ca.DM([0.0, 1.0, 0.0]), 0.0)
+    here, there = [], []
+    for meeting in directed(form):
+        if meeting.second == LOAD:
+            continue
+        shapes = [
+            [
+                placed_shape(shape, parted.body.poses[link])
+                for shape in shapes_of(human.tree.link_by_name[link])
+            ]
+            for link in (meeting.first, meeting.second)
+        ]
+        seconds = [each.mirrored(middle) for each in shapes[1]] if meeting.mirrored else shapes[1]
+        direction = ca.DM([1.0, *np.random.default_rng(len(here)).standard_normal(6)])
+        for pairs, found in (
+            (placed_pairs(parted.body, meeting), here),
+            ([(one, other) for one in shapes[0] for other in seconds], there),
+        ):
+            found += [one.apart_along(other, direction) for one, other in pairs]
+    assert any(meeting.mirrored for meeting in directed(form))
+    apart_by = ca.Function("apart", [program.symbols, program.given], [ca.horzcat(*here, *there)])
+    rng = np.random.default_rng(6)
+    for _ in range(5):
+        free = program.bounds[0] < program.bounds[1]  # of the base, what keeps the middle plane where it is
+        at = program.packed({}) + free * rng.uniform(-0.5, 0.5, len(free))
+        relative, world = np.split(np.array(apart_by(at, np.ones(program.given.numel()))).ravel(), 2)
+        assert len(world) > 50
+        assert np.allclose(relative, world, atol=1e-12)
 
 
 def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignProblem) -> None:

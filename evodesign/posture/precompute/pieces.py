@@ -242,7 +242,7 @@ def _undisturbed(scene: Scene) -> Scene:
     return replace(scene, disturbances=Disturbances())
 
 
-def _calm(setting: PrecomputeSetting) -> PrecomputeSetting:
+def _all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
     """Without disturbances: portfolios are made so, as postures are solved so first."""
     scenes = tuple(_undisturbed(scene) for scene in setting.scenes)
     return replace(setting, scenes=scenes, middle=_undisturbed(setting.middle))
@@ -254,7 +254,7 @@ def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     parted = apart and piece.subject is not Subject.MEETINGS
     without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
     if piece.subject in OF_STARTS and not parted:
-        setting = _calm(setting)
+        setting = _all_undisturbed(setting)
     data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
     return digest((data, code_digest(__name__)), without=without)
 
@@ -278,7 +278,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
     if piece.subject in OF_STARTS:
-        setting = _calm(setting)
+        setting = _all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.PERSON and piece.task is not None:
         found = _person(setting, scene, piece.task)

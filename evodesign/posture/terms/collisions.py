@@ -48,7 +48,8 @@ from evodesign.posture.terms.base import (
     Row,
     SystemTerm,
 )
-from evodesign.tree.kinematics import Expression, Pose, vector
+from evodesign.tree.kinematics import Expression, Pose, pose_from, vector
+from evodesign.tree.model import Tree
 
 __all__ = [
     "CLEAR",
@@ -62,7 +63,6 @@ __all__ = [
     "PlacedShape",
     "directed",
     "meetings",
-    "parted_by",
     "placed_pairs",
 ]
 
@@ -73,7 +73,7 @@ CLEAR = "clear"
 """Rows along directions."""
 
 SHAPE = 36
-"""Numbers of a placed shape: centre, box, disc, ball, axes."""
+"""Numbers of a placed shape: centre, axes, box, disc, ball."""
 
 OFF = 10.0
 """What a row that is switched off has added to it [m]."""
@@ -144,35 +144,45 @@ def directed(form: Form) -> tuple[Meeting, ...]:
     return tuple(meeting for meeting in meetings(form) if meeting.kind is MeetingKind.DIRECTION)
 
 
+Plane = tuple[Expression, Expression]
+"""A unit normal n and an offset d [m]: points x with n . x + d = 0."""
+
+
 @dataclass(frozen=True, slots=True)
 class PlacedShape:
-    """A shape somewhere: its centre, columns that span its box, disc and ball, and its link's axes."""
+    """A shape somewhere.
+
+    Args:
+        centre: where it is [m].
+        axes: of its link, as columns; those of a mirror image are mirrored.
+        box, disc, ball: columns that span its box, disc and ball, in these axes [m].
+    """
 
     centre: Expression
+    axes: Expression
     box: Expression
     disc: Expression
     ball: Expression
-    axes: Expression
 
     @property
     def numbers(self) -> Expression:
         """All of it as one column of `SHAPE`."""
         return ca.vertcat(
-            self.centre, *(ca.vec(each) for each in (self.box, self.disc, self.ball, self.axes))
+            self.centre, *(ca.vec(each) for each in (self.axes, self.box, self.disc, self.ball))
         )
 
     @staticmethod
     def of(numbers: Expression) -> PlacedShape:
         """That which a column of numbers stands for."""
         columns = ca.reshape(numbers, 3, SHAPE // 3)
-        return PlacedShape(columns[:, 0], *ca.horzsplit(columns[:, 1:], [0, 3, 5, 8, 11]))
+        return PlacedShape(columns[:, 0], *ca.horzsplit(columns[:, 1:], [0, 3, 6, 8, 11]))
 
-    def mirrored(self) -> PlacedShape:
-        """Its mirror image in the plane y = 0."""
-        mirror = ca.diag(ca.DM([1.0, -1.0, 1.0]))
-        return PlacedShape(
-            *(mirror @ each for each in (self.centre, self.box, self.disc, self.ball, self.axes))
-        )
+    def mirrored(self, plane: Plane) -> PlacedShape:
+        """Its mirror image in a plane."""
+        normal, offset = plane
+        away = ca.dot(normal, self.centre) + offset
+        axes = self.axes - 2.0 * normal @ (normal.T @ self.axes)
+        return PlacedShape(self.centre - 2.0 * away * normal, axes, self.box, self.disc, self.ball)
 
     @property
     def sides(self) -> list[Expression]:
@@ -180,10 +190,14 @@ class PlacedShape:
         columns = [column for column in ca.horzsplit(self.box) if not column.is_zero()]
         if not self.disc.is_zero():
             columns.append(ca.cross(self.disc[:, 0], self.disc[:, 1]))
-        return columns
+        return [self.axes @ column for column in columns]
 
     def support(self, direction: Expression) -> Expression:
         """How far it reaches from its centre along a unit vector, with corners rounded off [m]."""
+        return self.support_within(self.axes.T @ direction)
+
+    def support_within(self, direction: Expression) -> Expression:
+        """The same along a unit vector in the link's axes [m]."""
         reach = 0.0
         for column in ca.horzsplit(self.box):
             if not column.is_zero():
@@ -202,18 +216,25 @@ class PlacedShape:
         between = ca.dot(direction, other.centre - self.centre)
         return between - self.support(direction) - other.support(direction)
 
+    def apart_along(self, other: PlacedShape, numbers: Expression) -> Expression:
+        """How far another one is from this one along the direction of a meeting's numbers [m]."""
+        mine, its = numbers[1:4], numbers[4:7]
+        from_mine, from_its = self.axes @ mine, other.axes @ its
+        between = ca.dot(from_mine + from_its, other.centre - self.centre)
+        within = self.support_within(mine + self.axes.T @ from_its)
+        return between - within - other.support_within(other.axes.T @ from_mine + its)
+
 
 def placed_shape(shape: ConvexShape, pose: Pose) -> PlacedShape:
     """A shape of a link at the link's pose."""
     place = shape.link_from_shape
-    axes = ca.DM([list(row) for row in place.rotation])
-    turn = pose.rotation @ (_matrix(shape) @ axes)
+    turn = _matrix(shape) @ ca.DM([list(row) for row in place.rotation])
     return PlacedShape(
         pose.point(vector(place.translation)),
+        pose.rotation,
         turn @ ca.diag(vector(shape.half_sides)),
         turn[:, :2] * shape.disc,
         turn * shape.ball,
-        pose.rotation,
     )
 
 
@@ -222,18 +243,49 @@ def _matrix(shape: ConvexShape) -> Expression:
 
 
 def placed_pairs(body: Body, meeting: Meeting) -> list[tuple[PlacedShape, PlacedShape]]:
-    """Every shape of the first with every shape of the second."""
-    first = _placed(body, meeting.first)
+    """Every shape of the first with every shape of the second.
+
+    Two links are placed in the frame of the nearest one that carries both, so that they move with the joints
+    between them alone; where that is the root in the world, where their poses are known.
+    """
     if meeting.second == LOAD:
-        second = [_load(body)]
-    else:
-        second = _placed(body, meeting.second)
-        second = [each.mirrored() for each in second] if meeting.mirrored else second
+        return [(one, _load(body)) for one in _placed(body, meeting.first)]
+    tree, links = body.part, body.form.mirror.links if body.form.mirror and meeting.mirrored else {}
+    others = tree.to_root(meeting.second)
+    both = [name for name in tree.to_root(meeting.first) if name in others]
+    above = next(name for name in both if links.get(name, name) == name)
+    first, second = (
+        _shapes_at(body, link, _pose_above(body, above, link)) for link in (meeting.first, meeting.second)
+    )
+    if meeting.mirrored:
+        plane = _middle_plane(tree, above)
+        second = [each.mirrored(plane) for each in second]
     return [(one, other) for one in first for other in second]
 
 
+def _pose_above(body: Body, above: str, link: str) -> Pose:
+    """Of a link in the frame of one that carries it; in the world where that is the root."""
+    if above == body.part.root:
+        return body.poses[link]
+    positions = {name: body.values["joints"][place] for place, name in enumerate(body.form.joints)}
+    return pose_from(body.part, above, link, positions)
+
+
+def _middle_plane(tree: Tree, link: str) -> Plane:
+    """The middle plane of an agent that is its own mirror image, as `_pose_above` places its bodies.
+
+    What carries the link turns about axes across the plane, so that this does not depend on how it stands.
+    """
+    pose = pose_from(tree, tree.root, link, {})
+    return ca.DM(pose.rotation[1, :]).T, pose.position[1]
+
+
 def _placed(body: Body, link: str) -> list[PlacedShape]:
-    return [placed_shape(shape, body.poses[link]) for shape in shapes_of(body.part.link_by_name[link])]
+    return _shapes_at(body, link, body.poses[link])
+
+
+def _shapes_at(body: Body, link: str, pose: Pose) -> list[PlacedShape]:
+    return [placed_shape(shape, pose) for shape in shapes_of(body.part.link_by_name[link])]
 
 
 def _load(body: Body) -> PlacedShape:
@@ -247,11 +299,6 @@ def held(form: Form, scene: Scene) -> Iterator[Held]:
     count = len(directed(form))
     if count:
         yield Held(PARTING, NUMBERS * count)
-
-
-def parted_by(numbers: Expression, one: PlacedShape, other: PlacedShape) -> Expression:
-    """The direction that numbers of a meeting stand for."""
-    return one.axes @ numbers[1:4] + other.axes @ numbers[4:7]
 
 
 def rows(body: Body) -> Iterator[Row]:
@@ -277,9 +324,8 @@ def rows(body: Body) -> Iterator[Row]:
         elif PARTING in body.values:
             place = NUMBERS * parted.index(meeting)
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
-            direction = parted_by(numbers, *pairs[0])
             for one, other in pairs:
-                apart = one.apart(other, direction) + OFF * (1.0 - numbers[0])
+                apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0])
                 found[MeetingKind.DIRECTION].append((meeting.label, apart))
     for kind, name, least in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", rules.margin),
