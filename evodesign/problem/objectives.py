@@ -304,8 +304,8 @@ def paper2023_cost(result: DesignResult) -> float | None:
 
         max over pairs of  sum over heights of  |tau_r|_2 / 160 + |tau_h|_2
 
-    The sequel's fitness is 100 over it: the robot's torques count at the motors, whose ratio is 160 (its models
-    M and L). Source: Sartore et al. 2023, published code (`GA_with_PyGad.py`).
+    The sequel's fitness is 100 over it: the robot's torques count at the motors, whose ratio is 160 (its
+    models M and L). Source: Sartore et al. 2023, published code (`GA_with_PyGad.py`).
     """
     if not all(solution.solved for solution in result.cases):
         return None
