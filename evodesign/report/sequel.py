@@ -26,7 +26,7 @@ class SequelReproduction:
         robots: the sequel's, then those of our search, by name.
         trees: of the robots, by name.
         designs: their parameters, by name.
-        chosen: numbers of our search's robots in its run, by name.
+        chosen: number of our search's robot in its run; None where that has no feasible one.
         run: our search.
         search: what it took and found.
         claims: each with its verdict.
@@ -35,7 +35,7 @@ class SequelReproduction:
     robots: Mapping[str, RobotFigures]
     trees: Mapping[str, Tree]
     designs: Mapping[str, Mapping[str, float]]
-    chosen: Mapping[str, int]
+    chosen: int | None
     run: RunLog
     search: SearchFigures
     claims: tuple[Claim, ...]
@@ -62,12 +62,11 @@ def sequel_json(
                 "fitness": robot.fitness,
                 "logged_fitness": LOGGED.get(name),
                 "parameters": dict(done.designs[name]),
-                "evaluation": done.chosen.get(name),
             }
             for name, robot in done.robots.items()
         },
         "claims": msgspec.to_builtins(list(done.claims)),
-        "search": {"run": str(done.run.directory), **msgspec.to_builtins(done.search)},
+        "search": {"run": str(done.run.directory), "evaluation": done.chosen, **msgspec.to_builtins(done.search)},
         "files": [str(path) for path in files],
         "seconds": seconds,
     }

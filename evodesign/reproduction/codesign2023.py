@@ -1,8 +1,8 @@
 """The sequel's experiment: its robots with its people and loads at their best postures, and our own search.
 
 The search minimises the sequel's cost and, because that counts the robot's torques a hundredth, robot torque
-as well. Three of its designs are shown: of least cost, of least robot torque, and of least robot torque among
-those that cost no more than the robot of the sequel's genetic algorithm.
+as well. Shown is its design of least robot torque among those that cost no more than the robot of the sequel's
+genetic algorithm; where there is none, of least cost.
 
 Source: Sartore et al. 2023, arXiv 2312.07459, and its published code.
 """
@@ -39,6 +39,7 @@ from evodesign.tree.model import Tree
 
 __all__ = ["sequel_reproduction"]
 
+OURS = "search"
 COST, ROBOT_TORQUE = "paper2023_cost", "robot_torque"
 ROBOTS = SHIPPED.parent / "populations" / "sartore2023_robots.toml"
 
@@ -68,18 +69,18 @@ def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
 
     for name, values in designs.items():
         look_at(name, values)
-    run = experiment.logged("search", problem.settings(seed=effort.seed), effort.evaluations, 1.0)
+    run = experiment.logged(OURS, problem.settings(seed=effort.seed), effort.evaluations, 1.0)
     minutes = (time.monotonic() - experiment.began) / 60.0
     chosen = _chosen(run, robots[GA].cost)
-    for name, evaluation in chosen.items():
-        designs[name] = tuple(evaluation.assessment.design.values())
-        look_at(name, designs[name])
+    if chosen is not None:
+        designs[OURS] = tuple(chosen.assessment.design.values())
+        look_at(OURS, designs[OURS])
     search = _search_figures(run, robots[GA], minutes, effort.jobs)
     return SequelReproduction(
         robots=robots,
         trees=trees,
         designs={name: space.named(values) for name, values in designs.items()},
-        chosen={name: evaluation.number for name, evaluation in chosen.items()},
+        chosen=None if chosen is None else chosen.number,
         run=run,
         search=search,
         claims=(
@@ -107,19 +108,13 @@ def _values(evaluation: Evaluation) -> tuple[float, float]:
     return evaluation.assessment.objectives[COST], evaluation.assessment.objectives[ROBOT_TORQUE]
 
 
-def _chosen(run: RunLog, cost: float | None) -> dict[str, Evaluation]:
-    """Designs of a search that are shown, by name; none of a run without feasible ones."""
+def _chosen(run: RunLog, cost: float | None) -> Evaluation | None:
+    """The design of a search that is shown; None of a run without feasible ones."""
     feasible = [evaluation for evaluation in run.evaluations if evaluation.feasible]
-    if not feasible:
-        return {}
-    found = {
-        "search_cost": min(feasible, key=_values),
-        "search_torque": min(feasible, key=lambda evaluation: _values(evaluation)[1]),
-    }
     as_good = [evaluation for evaluation in feasible if cost is not None and _values(evaluation)[0] <= cost]
     if as_good:
-        found["search_both"] = min(as_good, key=lambda evaluation: _values(evaluation)[1])
-    return found
+        return min(as_good, key=lambda evaluation: _values(evaluation)[1])
+    return min(feasible, key=_values, default=None)
 
 
 def _search_figures(run: RunLog, ga: RobotFigures, minutes: float, jobs: int) -> SearchFigures:

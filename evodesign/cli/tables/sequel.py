@@ -44,6 +44,8 @@ def sequel_lines(done: SequelReproduction, directory: Path, seconds: float) -> l
     """A sentence for every verdict, then what was computed and where it lies."""
     return [
         *verdict_lines(done.claims),
-        *(f"{name} is design {number} of {done.run.directory}" for name, number in done.chosen.items()),
+        f"search is design {done.chosen} of {done.run.directory}"
+        if done.chosen is not None
+        else f"no design of {done.run.directory} is feasible",
         f"robots lie in {directory}; {seconds / 60.0:.1f} min",
     ]
