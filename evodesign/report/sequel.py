@@ -66,7 +66,11 @@ def sequel_json(
             for name, robot in done.robots.items()
         },
         "claims": msgspec.to_builtins(list(done.claims)),
-        "search": {"run": str(done.run.directory), "evaluation": done.chosen, **msgspec.to_builtins(done.search)},
+        "search": {
+            "run": str(done.run.directory),
+            "evaluation": done.chosen,
+            **msgspec.to_builtins(done.search),
+        },
         "files": [str(path) for path in files],
         "seconds": seconds,
     }

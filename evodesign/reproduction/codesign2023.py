@@ -1,8 +1,8 @@
 """The sequel's experiment: its robots with its people and loads at their best postures, and our own search.
 
 The search minimises the sequel's cost and, because that counts the robot's torques a hundredth, robot torque
-as well. Shown is its design of least robot torque among those that cost no more than the robot of the sequel's
-genetic algorithm; where there is none, of least cost.
+as well. Shown is its design of least robot torque among those that cost no more than the robot of the
+sequel's genetic algorithm; where there is none, of least cost.
 
 Source: Sartore et al. 2023, arXiv 2312.07459, and its published code.
 """

@@ -138,7 +138,10 @@ def test_figures_from_memory_are_nobodys_strength() -> None:
     everything, published = (joint_strengths(MAN, from_memory=each) for each in (True, False))
     assert set(everything) - set(published) == TRUNK
     assert everything["jL4L3_roty"].negative.moment == 234.0
-    assert (published["jLeftShoulder_rotx"].positive, published["jRightShoulder_rotx"].negative) == (None, None)
+    assert (published["jLeftShoulder_rotx"].positive, published["jRightShoulder_rotx"].negative) == (
+        None,
+        None,
+    )
     assert everything["jLeftShoulder_rotx"].positive.moment == 71.0
     assert everything["jLeftKnee_roty"] == published["jLeftKnee_roty"]
 
