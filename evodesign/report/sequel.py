@@ -24,6 +24,7 @@ class SequelReproduction:
 
     Args:
         robots: the sequel's, then those of our search, by name.
+        stricter: the same with grips and bodies that keep clear of each other.
         trees: of the robots, by name.
         designs: their parameters, by name.
         chosen: number of our search's robot in its run; None where that has no feasible one.
@@ -33,6 +34,7 @@ class SequelReproduction:
     """
 
     robots: Mapping[str, RobotFigures]
+    stricter: Mapping[str, RobotFigures]
     trees: Mapping[str, Tree]
     designs: Mapping[str, Mapping[str, float]]
     chosen: int | None
@@ -61,6 +63,7 @@ def sequel_json(
                 **msgspec.to_builtins(robot),
                 "fitness": robot.fitness,
                 "logged_fitness": LOGGED.get(name),
+                "with_grips_and_collisions": msgspec.to_builtins(done.stricter[name]),
                 "parameters": dict(done.designs[name]),
             }
             for name, robot in done.robots.items()

@@ -33,7 +33,7 @@ from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.problem.shipped import SHIPPED
 from evodesign.records import Evaluation
 from evodesign.report.sequel import SequelReproduction
-from evodesign.reproduction.experiment import Experiment
+from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 
@@ -55,6 +55,7 @@ def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
     if [objective.name for objective in problem.objectives] != [COST, ROBOT_TORQUE]:
         found = ", ".join(objective.name for objective in problem.objectives)
         raise InputError(problem.source.path, "objectives", f"{COST} and {ROBOT_TORQUE}", found)
+    strict = stricter_problem(problem, [*STRICTER.values()][-1])
     space, base = problem.space, problem.scene.robot.tree
     designs = dict(read_designs(read_text(ROBOTS, str(ROBOTS), ""), str(ROBOTS), space, base))
     experiment.display.note("the robots of the sequel")
@@ -75,9 +76,14 @@ def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
     if chosen is not None:
         designs[OURS] = tuple(chosen.assessment.design.values())
         look_at(OURS, designs[OURS])
+    experiment.display.note("the robots with grips and collisions")
+    with experiment.display.precompute() as progress:
+        evaluator = evaluator_of(strict, effort.jobs, progress)
+    stricter = {name: _figures(name, strict, evaluator.solve(values)) for name, values in designs.items()}
     search = _search_figures(run, robots[GA], minutes, effort.jobs)
     return SequelReproduction(
         robots=robots,
+        stricter=stricter,
         trees=trees,
         designs={name: space.named(values) for name, values in designs.items()},
         chosen=None if chosen is None else chosen.number,

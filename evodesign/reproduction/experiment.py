@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import time
+import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import msgspec
+import tomli_w
 
 from evodesign import evolve
 from evodesign.errors import Interrupted
 from evodesign.pool.registry import make_pool
-from evodesign.problem.build import DesignProblem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import evaluation_factory
 from evodesign.records import SearchSettings
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.session import Display
 
-__all__ = ["Effort", "Experiment"]
+__all__ = ["STRICTER", "Effort", "Experiment", "stricter_problem"]
+
+GRIPS: Mapping[str, Mapping[str, Any]] = {"payload": {"grasp_direction": "side"}}
+STRICTER = {"and grips": GRIPS, "and collisions": {**GRIPS, "collisions": {}}}
+"""Tables of a problem that are changed, each setting stricter than the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,3 +85,12 @@ class Experiment:
         run = read_run(directory)
         self.display.note(f"{name}: its time is over after {len(run.evaluations)} of {budget} evaluations")
         return run
+
+
+def stricter_problem(problem: DesignProblem, tables: Mapping[str, Mapping[str, Any]]) -> DesignProblem:
+    """A problem with keys of some tables added; of a list of tables, to each."""
+    changed = tomllib.loads(problem.source.text)
+    for name, keys in tables.items():
+        old = changed.get(name, {})
+        changed[name] = [{**each, **keys} for each in old] if isinstance(old, list) else {**old, **keys}
+    return build_problem(msgspec.structs.replace(problem.source, text=tomli_w.dumps(changed)))

@@ -6,13 +6,8 @@ Source: Sartore et al. 2022, Section IV.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any
-
-import msgspec
-import tomli_w
 
 from evodesign.analysis.front import front
 from evodesign.analysis.paper_claims import (
@@ -28,18 +23,18 @@ from evodesign.analysis.paper_claims import (
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
-from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
 from evodesign.records import Evaluation
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
-from evodesign.reproduction.experiment import Experiment
+from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
 from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_search
 
-__all__ = ["reproduction", "stricter_problem"]
+__all__ = ["reproduction"]
 
 GRADIENT, EVOLUTION, ORIGINAL = "gradient", "evolution", "original"
 
@@ -48,10 +43,6 @@ SHARE_OF_BASELINE = 0.4
 
 PUBLISHED_STARTS = 5
 """Starts of the published setting that are tried until one is solved, the paper's own first."""
-
-GRIPS: Mapping[str, Mapping[str, Any]] = {"payload": {"grasp_direction": "side"}}
-STRICTER = {"and grips": GRIPS, "and collisions": {**GRIPS, "collisions": {}}}
-"""Tables of a problem that are changed, each setting stricter than the one before."""
 
 
 def reproduction(experiment: Experiment, without: DesignProblem, starts: int) -> Reproduction:
@@ -96,15 +87,6 @@ def reproduction(experiment: Experiment, without: DesignProblem, starts: int) ->
     }
     stricter = {name: _torque_norms(experiment, name, problem, robots) for name, problem in problems.items()}
     return Reproduction(published, original, highest, runs, tuple(claims), stricter)
-
-
-def stricter_problem(problem: DesignProblem, tables: Mapping[str, Mapping[str, Any]]) -> DesignProblem:
-    """A problem with keys of some tables added; of a list of tables, to each."""
-    changed = tomllib.loads(problem.source.text)
-    for name, keys in tables.items():
-        old = changed.get(name, {})
-        changed[name] = [{**each, **keys} for each in old] if isinstance(old, list) else {**old, **keys}
-    return build_problem(msgspec.structs.replace(problem.source, text=tomli_w.dumps(changed)))
 
 
 def _torque_norms(

@@ -215,7 +215,7 @@ def test_the_tables_of_the_sequels_reproduction_are_whole(place: Path, both: Bot
         sequel_claims.failure_claim(robots, search),
         sequel_claims.search_claim(search),
     )
-    done = SequelReproduction(robots, {}, {}, 477, read_run(place / "run"), search, claims)
+    done = SequelReproduction(robots, robots, {}, {}, 477, read_run(place / "run"), search, claims)
     output.console().print(robots_table(done))
     output.console().print(claims_table(claims))
     output.print_lines(*sequel_lines(done, Path("runs/reproduce-20260101-120000"), 100.0))

@@ -88,9 +88,7 @@ def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
     people, loads = text.split("[[human]]\n"), text.split("[[payload]]\n")
     one = people[0] + "[[human]]\n" + people[1] + "[[payload]]\n" + loads[3]
     small = folder / "problems" / "sequel.toml"
-    small.write_text(
-        one.replace("[0.8, 1.0, 1.2]", "[1.0]").replace("population = 48", "population = 4") + QUICK
-    )
+    small.write_text(one.replace("[0.8, 1.0, 1.2]", "[1.0]").replace("population = 48", "population = 4"))
     to = tmp_path / "out"
     given = {"problem": str(small), "paper": 2023, "evaluations": 4, "jobs": 1, "pool": "serial"}
     reproduce(to, published=None, starts=None, seed=1, minutes=10.0, json=True, **given)
@@ -102,6 +100,10 @@ def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
     assert robots["nl"]["mass"] == pytest.approx(robots["unscaled"]["mass"], abs=1e-3)
     for robot in robots.values():  # one height of one pair, so that the cost can be had from the means
         assert robot["cost"] == pytest.approx(robot["robot_torque"] / 160.0 + robot["human_torque"])
+    stricter = {name: robot["with_grips_and_collisions"] for name, robot in robots.items()}
+    assert all(robot["held"] == 1 for robot in stricter.values())
+    assert stricter["ga"]["mass"] == robots["ga"]["mass"]
+    assert stricter["ga"]["cost"] != robots["ga"]["cost"]
     run = read_run(to / "search")
     assert len(run.evaluations) == search["evaluations"] == 4
     chosen = run.evaluations[search["evaluation"]].assessment

@@ -14,15 +14,21 @@ __all__ = ["robots_table", "sequel_lines"]
 
 
 def robots_table(done: SequelReproduction) -> FittedTable:
-    """The sequel's robots and ours: fitness there and here, torques, mass, reach."""
+    """The sequel's robots and ours: fitness there and here, torques, mass, reach.
+
+    The columns with a plus are those with grips and collisions.
+    """
     columns = [
         *names("robot"),
         *numbers("logged fitness", "fitness", "cost [N m]", "robot [N m]", "human [N m]", "mass [kg]"),
-        *numbers("reach [m]", "cases held"),
+        *numbers("reach [m]", "held", "+cost [N m]", "+robot [N m]", "+held"),
     ]
-    table = titled("Robots of the sequel and of our search: fitness, mean torque norms", columns)
+    title = "Robots of the sequel and of our search, mean torque norms; +: with grips and collisions"
+    table = titled(title, columns)
     for name, robot in done.robots.items():
-        values = (
+        strict = done.stricter[name]
+        logged = "failed" if name in FAILED else rounded(LOGGED[name]) if name in LOGGED else "-"
+        before = (
             robot.fitness,
             robot.cost,
             robot.robot_torque,
@@ -30,12 +36,13 @@ def robots_table(done: SequelReproduction) -> FittedTable:
             robot.mass,
             robot.highest,
         )
-        logged = "failed" if name in FAILED else rounded(LOGGED[name]) if name in LOGGED else "-"
         table.add_row(
             name,
             logged,
-            *("-" if value is None else rounded(value) for value in values),
-            f"{robot.held} of {robot.cases}",
+            *("-" if value is None else rounded(value) for value in before),
+            f"{robot.held}",
+            *("-" if value is None else rounded(value) for value in (strict.cost, strict.robot_torque)),
+            f"{strict.held}",
         )
     return table
 
