@@ -18,6 +18,7 @@ from evodesign.runlog.run import read_run
 
 pytestmark = pytest.mark.slow
 
+SMALL = "\n[solver]\nsymmetry = 'on'\nstart_portfolio = false\ncompile = false\n"
 QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\ncompile = false\n"
 """Nothing is worked out beforehand; solves take longer, of which there are few."""
 
@@ -88,7 +89,9 @@ def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
     people, loads = text.split("[[human]]\n"), text.split("[[payload]]\n")
     one = people[0] + "[[human]]\n" + people[1] + "[[payload]]\n" + loads[3]
     small = folder / "problems" / "sequel.toml"
-    small.write_text(one.replace("[0.8, 1.0, 1.2]", "[1.0]").replace("population = 48", "population = 4"))
+    small.write_text(
+        one.replace("[0.8, 1.0, 1.2]", "[1.0]").replace("population = 48", "population = 4") + SMALL
+    )
     to = tmp_path / "out"
     given = {"problem": str(small), "paper": 2023, "evaluations": 4, "jobs": 1, "pool": "serial"}
     reproduce(to, published=None, starts=None, seed=1, minutes=10.0, json=True, **given)
