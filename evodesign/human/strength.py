@@ -48,11 +48,15 @@ class Scale(StrEnum):
 
 
 class Source(Record, frozen=True):
-    """Where figures come from, what they are multiplied by, and how far they could be checked."""
+    """Where figures come from, what they are multiplied by, and how far they could be checked.
+
+    Those that are from memory, of no document that was read, are nobody's strength.
+    """
 
     citation: str
     scale: Scale
     checked: str
+    from_memory: bool = False
 
 
 class Direction(Record, frozen=True):
@@ -122,11 +126,18 @@ class RelativeTorque:
     share: float
 
 
-def joint_strengths(person: Person) -> Mapping[str, JointStrength]:
-    """Strengths by joint name, for every joint of the generated person with a published figure."""
-    found = {}
+def joint_strengths(person: Person, *, from_memory: bool = False) -> Mapping[str, JointStrength]:
+    """Strengths by joint name, for every joint of the generated person with a published figure.
+
+    Args:
+        person: whose they are.
+        from_memory: whether figures count that come from no document that was read.
+    """
+    found: dict[str, JointStrength] = {}
     for row in strength_tables().rows:
-        negative, positive = (_strength(way, person) for way in (row.negative, row.positive))
+        negative, positive = (_strength(way, person, from_memory) for way in (row.negative, row.positive))
+        if negative is None and positive is None:
+            continue
         for joint in row.joints:
             found[joint] = JointStrength(negative, positive)
             turns_alike = joint.endswith("y")
@@ -135,8 +146,8 @@ def joint_strengths(person: Person) -> Mapping[str, JointStrength]:
     return found
 
 
-def _strength(way: Direction | None, person: Person) -> Strength | None:
-    if way is None:
+def _strength(way: Direction | None, person: Person, from_memory: bool) -> Strength | None:
+    if way is None or (strength_tables().sources[way.source].from_memory and not from_memory):
         return None
     factor = {
         Scale.N_M: 1.0,

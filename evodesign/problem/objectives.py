@@ -299,6 +299,27 @@ def paper_cost(result: DesignResult) -> float | None:
     return float(cost)
 
 
+def paper2023_cost(result: DesignResult) -> float | None:
+    """The largest sum of torque norms over the heights, of all people with all loads [N m].
+
+        max over pairs of  sum over heights of  |tau_r|_2 / 160 + |tau_h|_2
+
+    The sequel's fitness is 100 over it: the robot's torques count at the motors, whose ratio is 160 (its
+    models M and L). Source: Sartore et al. 2023, published code (`GA_with_PyGad.py`).
+    """
+    if not all(solution.solved for solution in result.cases):
+        return None
+    sums: dict[tuple[str, str], float] = {}
+    for case, postures in result.every_case():
+        if not case.disturbance:
+            norms = postures[ROBOT].torque_norm / MOTOR_RATIO + postures[HUMAN].torque_norm
+            sums[case.pair] = sums.get(case.pair, 0.0) + norms
+    return max(sums.values())
+
+
+MOTOR_RATIO = 160.0
+"""Turns of a motor M or L per turn of its joint in the published code of Sartore et al. 2023."""
+
 HUMAN_EFFORT = "human_effort"
 """The quantity that needs people of known strength."""
 
@@ -324,6 +345,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
+    "paper2023_cost": ObjectiveKind("N m", paper2023_cost),
 }
 """Values of a design as a whole."""
 

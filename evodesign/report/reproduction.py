@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -34,9 +34,18 @@ from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.scene_models import SceneModels, placed_scene
 from evodesign.runlog.run import RunLog
+from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["Found", "Published", "ReproducedRobot", "Reproduction", "reproduction_json", "write_reproduction"]
+__all__ = [
+    "Found",
+    "Published",
+    "ReproducedRobot",
+    "Reproduction",
+    "reproduction_json",
+    "write_reproduction",
+    "write_robot",
+]
 
 PAPER = "paper"
 
@@ -112,6 +121,7 @@ class Reproduction:
         highest: load that it can hold [m]; None when not solved.
         found: the best robots with limits: by gradients, by evolution.
         claims: each with its verdict.
+        stricter: torque norms by setting, each stricter than the one before, and by robot.
     """
 
     published: Published
@@ -119,6 +129,7 @@ class Reproduction:
     highest: float | None
     found: tuple[Found, ...]
     claims: tuple[Claim, ...]
+    stricter: Mapping[str, Mapping[str, TorqueNormsByHeight]]
 
     @property
     def by_setting(self) -> dict[str, dict[str, TorqueNormsByHeight]]:
@@ -135,6 +146,18 @@ class Reproduction:
                 "published": published.optimised.torque_norms,
                 **{f"{limits}, {one.robot.name}": one.robot.torque_norms for one in self.found},
             },
+        }
+
+    @property
+    def by_limits(self) -> dict[str, dict[str, TorqueNormsByHeight]]:
+        """What each robot's torques are under limits, and in the stricter settings, by robot and setting."""
+        robots = (self.original, *(one.robot for one in self.found))
+        return {
+            robot.name: {
+                "with limits": robot.torque_norms,
+                **{name: rows[robot.name] for name, rows in self.stricter.items() if robot.name in rows},
+            }
+            for robot in robots
         }
 
 
@@ -167,14 +190,19 @@ def write_reproduction(
     for robot in (*compared, *others):
         stages = [placed_scene(robot.models, detail) for detail in robot.cases]
         written += write_figure(posture_figure(stages, robot.title), directory, f"postures_{robot.name}")
-        written.append(_urdf(directory, robot))
+        written.append(write_robot(directory, robot.name, robot.models.trees[ROBOT]))
     return tuple(written)
 
 
-def _urdf(directory: Path, robot: ReproducedRobot) -> Path:
-    path = directory / f"{robot.name}.urdf"
+def write_robot(directory: Path, name: str, tree: Tree) -> Path:
+    """Write a robot as NAME.urdf into an existing directory.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    path = directory / f"{name}.urdf"
     try:
-        write_whole(path, urdf_text(robot.models.trees[ROBOT]).encode())
+        write_whole(path, urdf_text(tree).encode())
     except OSError as error:
         wanted = "a directory that can be written"
         raise InputError(str(directory), "", wanted, f"{error.strerror}") from error
@@ -191,6 +219,10 @@ def reproduction_json(
         "torque_norms": {
             model: {setting: _torque_norms(torque_norms) for setting, torque_norms in rows.items()}
             for model, rows in done.by_setting.items()
+        },
+        "stricter": {
+            robot: {setting: _torque_norms(torque_norms) for setting, torque_norms in rows.items()}
+            for robot, rows in done.by_limits.items()
         },
         "claims": msgspec.to_builtins(list(done.claims)),
         "published": {

@@ -22,16 +22,24 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 from rich.console import Console
 
+from evodesign.analysis import sequel_claims
 from evodesign.analysis.paper_claims import human_claim, reach_claim, reduction_claim, table_claim
 from evodesign.cli import output
 from evodesign.cli.main import COMMANDS, app
-from evodesign.cli.tables.reproduction import claims_table, reproduction_lines, torque_table
+from evodesign.cli.tables.reproduction import (
+    claims_table,
+    reproduction_lines,
+    stricter_table,
+    torque_table,
+)
+from evodesign.cli.tables.sequel import robots_table, sequel_lines
 from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
+from evodesign.report.sequel import SequelReproduction
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail
@@ -184,10 +192,33 @@ def test_the_tables_of_a_reproduction_are_whole(place: Path, both: BothWidths) -
             reduction_claim("evolution", norms, norms, 3.0, 7),
             human_claim("evolution", norms, norms),
         ),
+        stricter={"and grips": {"original": norms, "evolution": norms}},
     )
     output.console().print(torque_table(done))
+    output.console().print(stricter_table(done))
     output.console().print(claims_table(done.claims))
     output.print_lines(*reproduction_lines(done, Path("runs/reproduce-20260101-120000"), 100.0))
+    assert_whole(*both.texts)
+
+
+def test_the_tables_of_the_sequels_reproduction_are_whole(place: Path, both: BothWidths) -> None:
+    names = ("unscaled", "nl", "ga", *sequel_claims.LOGGED, *sequel_claims.FAILED, "search")
+    robots = {
+        name: sequel_claims.RobotFigures(name, 44.5 + number, 12.5, 10.6, 58.57, 1.379, 27, 27)
+        for number, name in enumerate(names)
+    }
+    search = sequel_claims.SearchFigures(480, 4, 1.1, 2, 5, 17, 44.48, 48.2)
+    claims = (
+        *(claim(robots) for claim in (sequel_claims.log_claim, sequel_claims.order_claim)),
+        sequel_claims.robot_claim(robots),
+        sequel_claims.gain_claim(robots, search),
+        sequel_claims.failure_claim(robots, search),
+        sequel_claims.search_claim(search),
+    )
+    done = SequelReproduction(robots, robots, {}, {}, 477, read_run(place / "run"), search, claims)
+    output.console().print(robots_table(done))
+    output.console().print(claims_table(claims))
+    output.print_lines(*sequel_lines(done, Path("runs/reproduce-20260101-120000"), 100.0))
     assert_whole(*both.texts)
 
 

@@ -18,6 +18,7 @@ from evodesign.runlog.run import read_run
 
 pytestmark = pytest.mark.slow
 
+SMALL = "\n[solver]\nsymmetry = 'on'\nstart_portfolio = false\ncompile = false\n"
 QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\ncompile = false\n"
 """Nothing is worked out beforehand; solves take longer, of which there are few."""
 
@@ -41,14 +42,26 @@ def test_the_paper_is_reproduced_with_verdicts_and_figures(
 ) -> None:
     to, limited = tmp_path / "out", folder / "problems" / "sartore2022.toml"
     published = folder / "problems" / "sartore2022_as_published.toml"
-    effort = {"starts": 1, "evaluations": 2, "seed": 1, "minutes": 10.0, "jobs": 1, "pool": "serial"}
-    reproduce(to, limited, published, **effort, json=True)
+    effort = {
+        "paper": 2022,
+        "starts": 1,
+        "evaluations": 2,
+        "seed": 1,
+        "minutes": 10.0,
+        "jobs": 1,
+        "pool": "serial",
+    }
+    reproduce(to, problem=limited, published=published, **effort, json=True)
     shown = json.loads(capsys.readouterr().out)
     verdicts = {(claim["subject"], claim["by"]): claim["reproduced"] for claim in shown["claims"]}
     assert len(verdicts) == 7
     assert verdicts["Table II", "published setting"] is False
     assert shown["published"]["torque_difference"] < 1e-5
     assert "joint limits" in shown["published"]["broken_limits"]
+    stricter = shown["stricter"]["original"]
+    assert list(stricter) == ["with limits", "and grips", "and collisions"]
+    assert stricter["with limits"] == shown["torque_norms"]["original"]["with limits"]
+    assert all(rows and rows[0]["human"] > 0.0 for rows in stricter.values())
     assert [row["height_m"] for row in shown["torque_norms"]["original"]["with limits"]] == [1.0]
     assert shown["torque_norms"]["optimised"]["paper"][0]["human"] == 192.4057
     assert shown["found"]["gradient"]["statuses"] == {"infeasible": 1} or shown["found"]["gradient"]["cost"]
@@ -65,7 +78,62 @@ def test_the_paper_is_reproduced_with_verdicts_and_figures(
     robot = ET.parse(to / "original.urdf").getroot()
     assert robot.tag == "robot"
     with pytest.raises(InputError, match="a new or empty folder"):
-        reproduce(to, limited, limited, **effort, json=True)
+        reproduce(to, problem=limited, published=limited, **effort, json=True)
+
+
+def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With one person, one load and one height of three."""
+    text = (Path(__file__).parents[2] / "problems" / "sartore2023.toml").read_text()
+    people, loads = text.split("[[human]]\n"), text.split("[[payload]]\n")
+    one = people[0] + "[[human]]\n" + people[1] + "[[payload]]\n" + loads[3]
+    small = folder / "problems" / "sequel.toml"
+    small.write_text(
+        one.replace("[0.8, 1.0, 1.2]", "[1.0]").replace("population = 48", "population = 4") + SMALL
+    )
+    to = tmp_path / "out"
+    given = {"problem": str(small), "paper": 2023, "evaluations": 4, "jobs": 1, "pool": "serial"}
+    reproduce(to, published=None, starts=None, seed=1, minutes=10.0, json=True, **given)
+    shown = json.loads(capsys.readouterr().out)
+    robots, search = shown["robots"], shown["search"]
+    assert {name: robot["held"] for name, robot in robots.items()} == dict.fromkeys(robots, 1)
+    assert robots["ga"]["fitness"] == pytest.approx(100.0 / robots["ga"]["cost"])
+    assert robots["log_1"]["logged_fitness"] == pytest.approx(0.18622, abs=1e-5)
+    assert robots["nl"]["mass"] == pytest.approx(robots["unscaled"]["mass"], abs=1e-3)
+    for robot in robots.values():  # one height of one pair, so that the cost can be had from the means
+        assert robot["cost"] == pytest.approx(robot["robot_torque"] / 160.0 + robot["human_torque"])
+    stricter = {name: robot["with_grips_and_collisions"] for name, robot in robots.items()}
+    assert all(robot["held"] == 1 for robot in stricter.values())
+    assert stricter["ga"]["mass"] == robots["ga"]["mass"]
+    assert stricter["ga"]["cost"] != robots["ga"]["cost"]
+    run = read_run(to / "search")
+    assert len(run.evaluations) == search["evaluations"] == 4
+    chosen = run.evaluations[search["evaluation"]].assessment
+    assert chosen.objectives["paper2023_cost"] == pytest.approx(robots["search"]["cost"], rel=1e-6)
+    verdicts = {claim["subject"]: claim["reproduced"] for claim in shown["claims"]}
+    assert len(verdicts) == 6
+    assert verdicts["torques of its log"] is False
+    assert sorted(path.name for path in to.glob("*.urdf")) == sorted(f"{name}.urdf" for name in robots)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"paper": 2021}, "--paper: wanted 2022 or 2023, found 2021"),
+        ({"paper": 2023, "starts": 5}, "--starts: wanted no such option with --paper 2023, found 5"),
+        ({"paper": 2023, "published": "sartore2022"}, "--published: wanted no such option"),
+        ({"paper": 2023, "problem": "sartore2022"}, "objectives: wanted paper2023_cost and robot_torque"),
+        ({"paper": 2022, "problem": "sartore2023"}, "objectives: wanted one objective to reproduce, found 2"),
+    ],
+)
+def test_a_reproduction_refuses_what_it_cannot_do(
+    given: dict[str, object], words: str, tmp_path: Path
+) -> None:
+    usual = {"problem": None, "published": None, "starts": None, "evaluations": 1, "seed": 1, "minutes": 1.0}
+    with pytest.raises(InputError, match=words):
+        reproduce(tmp_path / "out", **{**usual, **given}, jobs=1, pool="serial", json=True)
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_baseline_counts_how_its_starts_ended(

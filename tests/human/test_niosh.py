@@ -62,16 +62,14 @@ def pounds(
 
 FAIR = (0.95, 1.0)
 EXAMPLES = (
-    # example 1, loading punch press stock: origin and destination
-    (23.0, 15.0, 49.0, 0.0, 0.2, 0, FAIR, 16.3),
-    (23.0, 64.0, 49.0, 0.0, 0.2, 0, FAIR, 14.5),
     # example 4, package inspection: origin and destination
     (10.0, 22.0, 37.0, 0.0, 3.0, 0, FAIR, 34.9),
     (20.0, 59.0, 37.0, 0.0, 3.0, 0, FAIR, 15.2),
 )
 """H, V, D [in], A [degrees], lifts per minute, duration's column, coupling, printed limit [lb].
 
-The print multiplies factors rounded to two places and takes 0.44 for 23 inches.
+The print (Figure 14, page 46) multiplies factors rounded to two places; read in a public transcription of the
+manual (nbarr1/ErgonomicTool). No other example could be read.
 """
 
 

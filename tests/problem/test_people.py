@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+import msgspec
 import pytest
 
 from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.human.strength import joint_strengths
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult, objective_value
-from evodesign.records import ProblemSource
+from evodesign.records import ProblemSource, Status
 from evodesign.tree.urdf_write import urdf_text
 
 PERSON = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
@@ -125,6 +127,25 @@ def test_effort_is_the_largest_share_of_a_strength_meant_over_the_cases(result: 
     assert objective_value("human_effort", result) == pytest.approx(sum(expected) / 3.0)
     assert objective_value("worst_human_effort", result) == pytest.approx(max(expected))
     assert objective_value("q50_human_effort", result) == pytest.approx(sorted(expected)[1])
+
+
+def test_the_sequels_cost_is_that_of_the_worst_pair(result: DesignResult) -> None:
+    """Written again as a loop: the robot's torques over 160, two people of whom one has a single height."""
+    people = ("first", "second", "first")
+    cases = tuple(
+        replace(solution, case=msgspec.structs.replace(solution.case, person=person))
+        for solution, person in zip(result.cases, people, strict=True)
+    )
+    sums = dict.fromkeys(people, 0.0)
+    for solution, person in zip(result.cases, people, strict=True):
+        robot, human = ([*solution.postures[agent].torques.values()] for agent in (ROBOT, HUMAN))
+        sums[person] += math.sqrt(sum((torque / 160.0) ** 2 for torque in robot)) + math.hypot(*human)
+    assert sums["first"] > sums["second"] > 0.0
+    of_two = replace(result, cases=cases)
+    assert objective_value("paper2023_cost", of_two) == pytest.approx(sums["first"])
+    assert objective_value("paper2023_cost", result) == pytest.approx(sum(sums.values()))
+    lost = replace(cases[0], status=Status.INFEASIBLE, instants=())
+    assert objective_value("paper2023_cost", replace(of_two, cases=(lost, *cases[1:]))) is None
 
 
 def test_a_person_twice_as_strong_has_half_the_effort(result: DesignResult) -> None:

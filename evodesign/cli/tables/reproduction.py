@@ -2,26 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from rich.markup import escape
 
 from evodesign.analysis.failures import causes
-from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim
+from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim, TorqueNormsByHeight
 from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.report.reproduction import Reproduction
 
-__all__ = ["claims_table", "reproduction_lines", "torque_table"]
+__all__ = ["claims_table", "reproduction_lines", "stricter_table", "torque_table", "verdict_lines"]
 
 
 def torque_table(done: Reproduction) -> FittedTable:
     """Table II of the paper with ours beside it, row under row."""
+    return _torque_table("Table II: torque norm [N m] by height of the load", "model", done.by_setting)
+
+
+def stricter_table(done: Reproduction) -> FittedTable:
+    """What the direction of grasps and bodies that keep clear of each other change."""
+    title = "Grips and collisions: torque norm [N m] by height of the load"
+    return _torque_table(title, "robot", done.by_limits)
+
+
+def _torque_table(
+    title: str, of: str, by_setting: Mapping[str, Mapping[str, TorqueNormsByHeight]]
+) -> FittedTable:
     heights = list(PAPER_OPTIMISED)
-    columns = [*names("model", "agent", "setting"), *numbers(*(f"{height:g} m" for height in heights))]
-    table = titled("Table II: torque norm [N m] by height of the load", columns, keys=3)
-    for model, rows in done.by_setting.items():
+    columns = [*names(of, "agent", "setting"), *numbers(*(f"{height:g} m" for height in heights))]
+    table = titled(title, columns, keys=3)
+    for model, rows in by_setting.items():
         for agent in ("human", "robot"):
             for number, (setting, torque_norms) in enumerate(rows.items()):
                 values = [
@@ -41,11 +53,16 @@ def claims_table(claims: Iterable[Claim]) -> FittedTable:
     return table
 
 
+def verdict_lines(claims: Iterable[Claim]) -> list[str]:
+    """A sentence for every verdict."""
+    return [f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in claims]
+
+
 def reproduction_lines(done: Reproduction, directory: Path, seconds: float) -> list[str]:
     """A sentence for every verdict, then what was computed and where it lies."""
     published = done.published
     return [
-        *(f"{claim.subject}, {claim.by}: {_verdict(claim)}; {claim.reason}" for claim in done.claims),
+        *verdict_lines(done.claims),
         f"published setting: starts {causes(published.statuses)}; largest difference of a torque from the "
         f"paper's formula {published.difference:.1e} N m",
         f"the original robot holds loads up to {rounded(done.highest)} m",

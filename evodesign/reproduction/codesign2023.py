@@ -1,0 +1,147 @@
+"""The sequel's experiment: its robots with its people and loads at their best postures, and our own search.
+
+The search minimises the sequel's cost and, because that counts the robot's torques a hundredth, robot torque
+as well. Shown is its design of least robot torque among those that cost no more than the robot of the
+sequel's genetic algorithm; where there is none, of least cost.
+
+Source: Sartore et al. 2023, arXiv 2312.07459, and its published code.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+
+from evodesign.analysis.sequel_claims import (
+    GA,
+    RobotFigures,
+    SearchFigures,
+    failure_claim,
+    gain_claim,
+    log_claim,
+    order_claim,
+    robot_claim,
+    search_claim,
+)
+from evodesign.errors import InputError
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.designs import read_designs
+from evodesign.problem.factory import evaluator_of
+from evodesign.problem.named_files import read_text
+from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.shipped import SHIPPED
+from evodesign.records import Evaluation
+from evodesign.report.sequel import SequelReproduction
+from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
+from evodesign.runlog.run import RunLog
+from evodesign.tree.model import Tree
+
+__all__ = ["sequel_reproduction"]
+
+OURS = "search"
+COST, ROBOT_TORQUE = "paper2023_cost", "robot_torque"
+ROBOTS = SHIPPED.parent / "populations" / "sartore2023_robots.toml"
+
+
+def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
+    """Run everything.
+
+    Raises:
+        InputError: the problem does not minimise the sequel's cost and robot torque, or has other parameters
+            than the sequel's robots.
+    """
+    problem, effort = experiment.problem, experiment.effort
+    if [objective.name for objective in problem.objectives] != [COST, ROBOT_TORQUE]:
+        found = ", ".join(objective.name for objective in problem.objectives)
+        raise InputError(problem.source.path, "objectives", f"{COST} and {ROBOT_TORQUE}", found)
+    strict = stricter_problem(problem, [*STRICTER.values()][-1])
+    space, base = problem.space, problem.scene.robot.tree
+    designs = dict(read_designs(read_text(ROBOTS, str(ROBOTS), ""), str(ROBOTS), space, base))
+    experiment.display.note("the robots of the sequel")
+    with experiment.display.precompute() as progress:
+        evaluator = evaluator_of(problem, effort.jobs, progress)
+    robots: dict[str, RobotFigures] = {}
+    trees: dict[str, Tree] = {}
+
+    def look_at(name: str, values: Sequence[float]) -> None:
+        result = evaluator.solve(values)
+        robots[name], trees[name] = _figures(name, problem, result), result.tree
+
+    for name, values in designs.items():
+        look_at(name, values)
+    run = experiment.logged(OURS, problem.settings(seed=effort.seed), effort.evaluations, 1.0)
+    minutes = (time.monotonic() - experiment.began) / 60.0
+    chosen = _chosen(run, robots[GA].cost)
+    if chosen is not None:
+        designs[OURS] = tuple(chosen.assessment.design.values())
+        look_at(OURS, designs[OURS])
+    experiment.display.note("the robots with grips and collisions")
+    with experiment.display.precompute() as progress:
+        evaluator = evaluator_of(strict, effort.jobs, progress)
+    stricter = {name: _figures(name, strict, evaluator.solve(values)) for name, values in designs.items()}
+    search = _search_figures(run, robots[GA], minutes, effort.jobs)
+    return SequelReproduction(
+        robots=robots,
+        stricter=stricter,
+        trees=trees,
+        designs={name: space.named(values) for name, values in designs.items()},
+        chosen=None if chosen is None else chosen.number,
+        run=run,
+        search=search,
+        claims=(
+            log_claim(robots),
+            order_claim(robots),
+            robot_claim(robots),
+            gain_claim(robots, search),
+            failure_claim(robots, search),
+            search_claim(search),
+        ),
+    )
+
+
+def _figures(name: str, problem: DesignProblem, result: DesignResult) -> RobotFigures:
+    cost, robot, human = (objective_value(each, result) for each in (COST, ROBOT_TORQUE, "human_torque"))
+    held = sum(solution.solved for solution in result.cases)
+    mass = float(result.tree.mass)
+    return RobotFigures(name, cost, robot, human, mass, result.reach.highest, held, len(problem.cases))
+
+
+def _values(evaluation: Evaluation) -> tuple[float, float]:
+    """Cost and robot torque; infinite for a design that is not feasible."""
+    if not evaluation.feasible:
+        return math.inf, math.inf
+    return evaluation.assessment.objectives[COST], evaluation.assessment.objectives[ROBOT_TORQUE]
+
+
+def _chosen(run: RunLog, cost: float | None) -> Evaluation | None:
+    """The design of a search that is shown; None of a run without feasible ones."""
+    feasible = [evaluation for evaluation in run.evaluations if evaluation.feasible]
+    as_good = [evaluation for evaluation in feasible if cost is not None and _values(evaluation)[0] <= cost]
+    if as_good:
+        return min(as_good, key=lambda evaluation: _values(evaluation)[1])
+    return min(feasible, key=_values, default=None)
+
+
+def _search_figures(run: RunLog, ga: RobotFigures, minutes: float, jobs: int) -> SearchFigures:
+    values = [_values(evaluation) for evaluation in run.evaluations]
+    costs = [cost for cost, _ in values if cost < math.inf]
+    reached = dominated = None
+    if ga.cost is not None and ga.robot_torque is not None:
+        reached = next((number for number, (cost, _) in enumerate(values, 1) if cost <= ga.cost), None)
+        better = (
+            number
+            for number, (cost, at_joints) in enumerate(values, 1)
+            if cost <= ga.cost and at_joints < ga.robot_torque
+        )
+        dominated = next(better, None)
+    return SearchFigures(
+        evaluations=len(values),
+        infeasible=len(values) - len(costs),
+        minutes=minutes,
+        jobs=jobs,
+        reached=reached,
+        dominated=dominated,
+        least=min(costs, default=None),
+        most=max(costs, default=None),
+    )

@@ -1,0 +1,182 @@
+"""The paper's experiment: the published setting, the robot as it is, and robots found in two ways.
+
+Source: Sartore et al. 2022, Section IV.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+from evodesign.analysis.front import front
+from evodesign.analysis.paper_claims import (
+    AT,
+    PAPER_ORIGINAL,
+    TorqueNorms,
+    TorqueNormsByHeight,
+    human_claim,
+    reach_claim,
+    reduction_claim,
+    table_claim,
+)
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.posture.formulations.codesign import JointSolution
+from evodesign.problem.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.evaluate import detail_of
+from evodesign.problem.factory import evaluator_of
+from evodesign.records import Evaluation
+from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
+from evodesign.report.scene_models import SceneModels
+from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
+from evodesign.runlog.run import RunLog
+from evodesign.searches.base import JOINT_STARTS
+from evodesign.searches.registry import make_search
+
+__all__ = ["reproduction"]
+
+GRADIENT, EVOLUTION, ORIGINAL = "gradient", "evolution", "original"
+
+SHARE_OF_BASELINE = 0.4
+"""Of the time that is given, for the gradient baseline at most."""
+
+PUBLISHED_STARTS = 5
+"""Starts of the published setting that are tried until one is solved, the paper's own first."""
+
+
+def reproduction(experiment: Experiment, without: DesignProblem, starts: int) -> Reproduction:
+    """Run everything.
+
+    Args:
+        experiment: the problem under physical limits, with one objective, the cost.
+        without: the published setting.
+        starts: of the joint problem.
+    """
+    problems = {name: stricter_problem(experiment.problem, tables) for name, tables in STRICTER.items()}
+    experiment.display.note("the published setting")
+    published = _published(without)
+    by_gradient = _found(experiment, GRADIENT, starts)
+    experiment.display.note("the robot as it is")
+    original, highest = _original(experiment)
+    runs = (by_gradient, _found(experiment, EVOLUTION, starts))
+    claims = [
+        table_claim(
+            "published setting",
+            published.original.torque_norms,
+            published.optimised.torque_norms,
+            published.broken,
+        )
+    ]
+    every = [evaluation for one in runs for evaluation in one.run.evaluations if evaluation.feasible]
+    least = min((_robot_norm(evaluation, AT) for evaluation in every), default=math.inf)
+    for one in runs:
+        torque_norms = (original.torque_norms, one.robot.torque_norms)
+        name = one.robot.name
+        if not one.run.evaluations:
+            experiment.display.note(f"{name}: had no time for a design, so no claim is held against it")
+            continue
+        claims += [
+            reach_claim(name, *torque_norms),
+            reduction_claim(name, *torque_norms, least, len(every)),
+            human_claim(name, *torque_norms),
+        ]
+    space, tree = experiment.problem.space, experiment.problem.scene.robot.tree
+    robots = {ORIGINAL: space.unscaled(tree)} | {
+        one.robot.name: tuple(one.design.values()) for one in runs if one.design
+    }
+    stricter = {name: _torque_norms(experiment, name, problem, robots) for name, problem in problems.items()}
+    return Reproduction(published, original, highest, runs, tuple(claims), stricter)
+
+
+def _torque_norms(
+    experiment: Experiment, name: str, problem: DesignProblem, robots: Mapping[str, Sequence[float]]
+) -> dict[str, TorqueNormsByHeight]:
+    """Torque norms of robots in a stricter setting."""
+    experiment.display.note(f"the robots with limits {name}")
+    with experiment.display.precompute() as progress:
+        evaluator = evaluator_of(problem, experiment.effort.jobs, progress)
+    found: dict[str, TorqueNormsByHeight] = {}
+    for robot, values in robots.items():
+        found[robot] = {
+            solution.case.task.height_m: TorqueNorms(
+                solution.postures[ROBOT].torque_norm, solution.postures[HUMAN].torque_norm
+            )
+            for solution in evaluator.solve(values).cases
+            if solution.solved
+        }
+    return found
+
+
+def _original(experiment: Experiment) -> tuple[ReproducedRobot, float | None]:
+    """The unscaled robot at its own best postures, and its reach [m]."""
+    problem = experiment.problem
+    with experiment.display.precompute() as progress:
+        evaluator = evaluator_of(problem, experiment.effort.jobs, progress)
+    result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
+    cases = tuple(detail_of(case) for case in result.cases if case.solved)
+    models = SceneModels.of(problem.scene, result.tree)
+    return ReproducedRobot(ORIGINAL, "the robot as it is", models, cases), result.reach.highest
+
+
+def _found(experiment: Experiment, name: str, starts: int) -> Found:
+    """The best robot of a new run, with its logged postures: of the joint problem, or of the search."""
+    effort = experiment.effort
+    if name == GRADIENT:
+        settings = experiment.problem.settings(JOINT_STARTS, min(starts, GENERATION), effort.seed)
+        run = experiment.logged(name, settings, starts, SHARE_OF_BASELINE)
+        title = "the best robot found by the joint problem"
+    else:
+        settings = experiment.problem.settings(seed=effort.seed)
+        run = experiment.logged(name, settings, effort.evaluations, 1.0)
+        title = f"the best robot found by {run.header.search.algorithm}"
+    return _best(experiment.problem, run, name, title)
+
+
+def _best(problem: DesignProblem, run: RunLog, name: str, title: str) -> Found:
+    """The feasible evaluation of least cost."""
+    scene = problem.scene
+    best = front(run.header.objectives, run.evaluations)
+    if not best:
+        return Found(ReproducedRobot(name, title, SceneModels.of(scene, scene.robot.tree), ()), run, None, {})
+    design = best[0].assessment.design
+    details = {detail.evaluation: detail.cases for detail in run.details}
+    models = SceneModels.of(scene, problem.space.resized(scene.robot.tree, list(design.values())))
+    robot = ReproducedRobot(name, title, models, details[best[0].number])
+    (objective,) = run.header.objectives
+    return Found(robot, run, best[0].assessment.objectives[objective.name], design)
+
+
+def _robot_norm(evaluation: Evaluation, height: float) -> float:
+    """The robot's torque norm at a height [N m]; infinite where there is none."""
+    norms = {o.case.task.height_m: o.robot_torque_norm for o in evaluation.assessment.cases}
+    found = norms.get(height)
+    return math.inf if found is None else found
+
+
+def _published(problem: DesignProblem) -> Published:
+    """The setting without limits: the unscaled robot at the heights of the paper, and the optimised one."""
+    unscaled = problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))
+    held = held_at(problem, unscaled, [task for task in problem.tasks if task.height_m in PAPER_ORIGINAL])
+    baseline = Baseline(problem)
+    search = make_search(problem.settings(JOINT_STARTS, PUBLISHED_STARTS, problem.search.seed))
+    ended: list[JointSolution] = []
+    for genome in search.ask():
+        ended.append(baseline.solve(genome))
+        if ended[-1].solved:
+            break
+    optimised = ended[-1]
+    solved = [solution for solution in (held, optimised) if solution.solved]
+    return Published(
+        original=_robot(problem, "published_original", "published setting: the robot as it is", held),
+        optimised=_robot(problem, "published_optimised", "published setting: the optimised robot", optimised),
+        broken=broken_limits(solved),
+        difference=max((torque_difference(problem, solution) for solution in solved), default=0.0),
+        statuses=Counter(solution.attempt.status for solution in (held, *ended)),
+    )
+
+
+def _robot(problem: DesignProblem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
+    tree = problem.space.resized(problem.scene.robot.tree, solution.design)
+    cases = tuple(detail_of(case) for case in solution.cases if case.solved)
+    return ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), cases)
