@@ -41,10 +41,10 @@ def leaves(part: Any, path: str = "") -> dict[str, Any]:
     return {at: leaf for key, one in parts for at, leaf in leaves(one, f"{path}/{key}").items()}
 
 
-def check_to_ten_digits(shown: Any, logged: Any) -> None:
-    """Records are the same, but for what lies beyond ten digits of a number."""
+def check_to_seven_digits(shown: Any, logged: Any) -> None:
+    """Records are the same, but for what lies beyond seven digits of a number."""
     assert leaves(shown) == {
-        path: pytest.approx(leaf, rel=5e-10, abs=0.0) if isinstance(leaf, float) else leaf
+        path: pytest.approx(leaf, rel=5e-7, abs=0.0) if isinstance(leaf, float) else leaf
         for path, leaf in leaves(logged).items()
     }
 
