@@ -26,7 +26,7 @@ const cellsOf = (row) => {
 const besideTheMap = (row) => {
   const place = cellsOf(row);
   if (!place) return `Design ${points.number[row]} is not on the map: it lacks a quantity that tells kinds apart.`;
-  const beyond = descriptors.filter((axis, index) => place[index] < 0 || place[index] > axis.cells);
+  const beyond = descriptors.filter(({ cells }, index) => place[index] < -1e-9 || place[index] > cells + 1e-9);
   if (!beyond.length) return "";
   const names = beyond.map(({ name, lower, upper }) => `${words(name)} (${figure(lower)} to ${figure(upper)})`);
   return `Design ${points.number[row]} lies outside the map in ${names.join(" and ")}; its ring is at the edge.`;
