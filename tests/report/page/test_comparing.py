@@ -165,9 +165,7 @@ def test_the_card_saves_csv_urdf_and_replay(page: Tab, problem: DesignProblem, r
     design = open_design(real_run, number, 1, SILENT)
     robot = design.scene_set().robot
     number_or_text = re.compile(r"(-?\d+\.\d+(?:e-?\d+)?)")
-    mine, theirs = (
-        number_or_text.split(text) for text in (saved(page, "urdf").decode(), urdf_text(robot))
-    )
+    mine, theirs = (number_or_text.split(text) for text in (saved(page, "urdf").decode(), urdf_text(robot)))
     assert mine[::2] == theirs[::2]
     assert [float(each) for each in mine[1::2]] == pytest.approx(
         [float(each) for each in theirs[1::2]], rel=5e-7, abs=0.0
@@ -250,8 +248,9 @@ def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
         "return [t.customdata[i], ...at(i)]; })()"
     )
     assert page.value("document.getElementById('card').getBoundingClientRect().top > innerHeight")
-    for kind, points in (("touchStart", [{"x": left + x, "y": top + y}]), ("touchEnd", [])):
-        page.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+    page.call("Emulation.setTouchEmulationEnabled", enabled=True)
+    page.call("Input.synthesizeTapGesture", x=left + x, y=top + y, gestureSourceType="touch")
+    page.call("Emulation.setTouchEmulationEnabled", enabled=False)
     page.wait_for(f"{SELECTED} === {number}")
     page.wait_for("Math.abs(document.getElementById('card').getBoundingClientRect().top) < 40")
     page.resize(1440, 900)
