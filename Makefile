@@ -17,14 +17,14 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot api clean
+.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot api docs clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST) | expand --tabs=20
 
 $(VENV)/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) --editable .
+	$(PIP) --editable '.[mesh]'
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
@@ -33,6 +33,10 @@ $(VENV)/installed-dev: $(VENV)/installed
 
 $(VENV)/installed-robots: $(VENV)/installed-dev
 	$(PIP) --editable '.[robots]'
+	@touch $@
+
+$(VENV)/installed-docs: $(VENV)/installed
+	$(PIP) --editable '.[docs]'
 	@touch $@
 
 install: $(VENV)/installed  ## the virtual environment with evodesign in it
@@ -92,5 +96,8 @@ robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its tab
 api: $(VENV)/installed  ## write docs/api.md from the docstrings
 	$(BIN)/python -m docs.write_api
 
+docs: $(VENV)/installed-docs  ## the documentation as a site, in build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
 clean:  ## remove the virtual environment and caches
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

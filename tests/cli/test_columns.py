@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import json
 import os
 import pty
 import re
@@ -11,6 +12,7 @@ import struct
 import subprocess
 import sys
 import termios
+import tomllib
 from collections import Counter
 from io import StringIO
 from pathlib import Path
@@ -126,11 +128,21 @@ def place(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     return tmp_path
 
 
+THREE = ("--evaluations", 3)
+ENDS = (
+    *("--algorithm", "random", "--symmetry", "auto", "--stagnation-generations", 9),
+    *("--least-growth-percent", 0.1, "--cache"),
+)
 QUICK = ("--jobs", "1", "--pool", "serial")
 LINES: dict[str, tuple[tuple[object, ...], ...]] = {
-    "search": (("search", "small.toml", "--run", "new", "--evaluations", 3, *QUICK),),
+    "search": (
+        ("search", "small.toml", "--run", "new", *THREE, *QUICK),
+        ("search", "small.toml", *THREE, *ENDS, *QUICK),
+    ),
     "resume": (("resume", "run", *QUICK, "--accept-versions"),),
-    "branch": (("branch", "run", "--branch-from", 1, "--run", "new", "--evaluations", 3, *QUICK),),
+    "branch": (
+        ("branch", "run", "--branch-from", 1, "--run", "new", "--algorithm", "random", *THREE, *QUICK),
+    ),
     "front": (("front", "run"), ("front", "toy", "--knee"), ("front", "run", "--where", "reach_height > 9")),
     "report": (("report", "run"),),
     "show": (("show", "run", 1),),
@@ -140,7 +152,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "matters": (("matters", "run"), ("matters", "many", "--design", 3)),
     "families": (("families", "run"), ("families", "many", "--by", "arm.0 + arm.1", "--cells", 5)),
     "evaluate": (("evaluate", "small.toml"),),
-    "lift": (("lift", "small.toml", "--from", 0.9, "--to", 2.5),),
+    "lift": (("lift", "small.toml", "--from", 0.9, "--to", 2.5, "--csv", "lift.csv"),),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (
         ("check", "small.toml"),
@@ -169,6 +181,16 @@ def test_every_command_is_looked_at() -> None:
 def test_what_a_command_prints_is_whole(line: tuple[object, ...], place: Path, both: BothWidths) -> None:
     app([*map(str, line)], standalone_mode=False)
     assert_whole(*both.texts)
+
+
+def test_a_lift_as_json_says_for_every_person_how_it_ended(
+    place: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    app(["lift", "small.toml", "--from", "0.9", "--to", "2.5", "--json"], standalone_mode=False)
+    lifts = json.loads(capsys.readouterr().out)["lifts"]
+    people = tomllib.loads(Path("small.toml").read_text(encoding="utf-8"))["human"]
+    assert [each["person"] for each in lifts] == [person["name"] for person in people]
+    assert {each["status"] for each in lifts} == {"infeasible"}, "nobody lifts it to 2.5 m"
 
 
 def test_the_tables_of_a_reproduction_are_whole(place: Path, both: BothWidths) -> None:

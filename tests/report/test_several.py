@@ -31,7 +31,7 @@ from evodesign.report.opened_design import open_design
 from evodesign.report.page import gather, page_content
 from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
-from tests.report.page.reading import check_to_ten_digits
+from tests.report.page.reading import check_to_seven_digits
 from tests.report.replay.test_replay import frames
 from tests.report.scenes import random_company
 from tests.report.several import CASES, LOADS, PEOPLE, problem_of_several, write_several
@@ -149,7 +149,7 @@ def test_page_holds_everyone_and_every_case(run: RunLog) -> None:
     assert masses == pytest.approx({name: person.mass for name, person in PEOPLE.items()})
     assert {name: load.mass_kg for name, load in content.bodies.payloads.items()} == LOADS
     for number, design in content.designs.items():
-        check_to_ten_digits(design.postures, run.details[number].cases)
+        check_to_seven_digits(design.postures, run.details[number].cases)
 
 
 def test_page_keeps_fewer_designs_of_many_pairs(

@@ -1,6 +1,7 @@
 """What stands in the page, as it is handed to its scripts: JSON in columns, units in the names.
 
-Numbers are the log's; those of postures have ten significant digits. A number that does not exist is None.
+Numbers are the log's; those of designs that can be opened have seven significant digits. A number that
+does not exist is None.
 """
 
 from __future__ import annotations

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 from typing import Any
 
 import msgspec
 
 from evodesign.errors import RunError
 from evodesign.problem.build import DesignProblem
-from evodesign.records import CaseDetail, Detail
+from evodesign.records import Detail
+from evodesign.report.page.content import DesignContent
 from evodesign.report.replay.recording import time_scale, write_replay
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
@@ -26,24 +28,31 @@ __all__ = ["Downloads", "rounded"]
 MOST_BYTES = 300_000
 """Of a replay in the page; one of a robot with many triangles is larger, and left out."""
 
-DIGITS = 10
-"""Of a posture's numbers in the page: more than solvers find."""
+DIGITS = 7
+"""Of the numbers of a design that can be opened: a micrometre in ten metres."""
+
+NUMBER = re.compile(r'(?<=[" ])-?\d+\.\d+(?:e-?\d+)?(?=[" ])')
+"""In a line of a URDF."""
 
 
-def rounded(detail: CaseDetail) -> CaseDetail:
-    """A posture with numbers of ten significant digits, which take half the room."""
-    return msgspec.convert(_rounded(msgspec.to_builtins(detail)), CaseDetail)
+def rounded(design: DesignContent) -> DesignContent:
+    """A design with numbers of seven significant digits, which take half the room."""
+    return msgspec.convert(_rounded(msgspec.to_builtins(design)), DesignContent)
 
 
 def _rounded(part: Any) -> Any:
     match part:
         case float():
-            return float(f"{part:.{DIGITS}g}")
+            return _number(part)
         case dict():
             return {key: _rounded(value) for key, value in part.items()}
         case list() | tuple():
             return [_rounded(value) for value in part]
     return part
+
+
+def _number(number: float) -> float:
+    return float(f"{number:.{DIGITS}g}")
 
 
 class Downloads:
@@ -65,7 +74,11 @@ class Downloads:
         if len(lines) != len(self._unscaled):
             return text
         pairs = enumerate(zip(lines, self._unscaled, strict=True))
-        return {place: line for place, (line, before) in pairs if line != before}
+        return {
+            place: NUMBER.sub(lambda found: repr(_number(float(found[0]))), line)
+            for place, (line, before) in pairs
+            if line != before
+        }
 
     def replay(self, robot: Tree, detail: Detail) -> str:
         """A design's replay as base64; empty if it is too large, or of strangers to the problem."""

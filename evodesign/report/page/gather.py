@@ -235,7 +235,7 @@ def _design(
 ) -> DesignContent:
     cases = evaluation.assessment.cases
     if problem is None or clearances is None or downloads is None or detail is None:
-        return DesignContent(cases=cases)
+        return rounded(DesignContent(cases=cases))
     space, assessment = problem.space, evaluation.assessment
     design = [assessment.design[parameter.name] for parameter in space.parameters]
     values = space.given(design, assessment.rated_torques)
@@ -248,15 +248,17 @@ def _design(
     nearest = tuple(
         ClearanceContent(first=each.first, second=each.second, distance_m=each.distance) for each in found
     )
-    return DesignContent(
-        cases=cases,
-        postures=tuple(rounded(each) for each in detail.cases),
-        clearances=nearest,
-        links=links,
-        joints=joints,
-        hardware=hardware_content(problem, robot, detail.cases),
-        urdf=downloads.urdf(robot),
-        replay=downloads.replay(robot, detail) if evaluation.number in recorded else "",
+    return rounded(
+        DesignContent(
+            cases=cases,
+            postures=tuple(detail.cases),
+            clearances=nearest,
+            links=links,
+            joints=joints,
+            hardware=hardware_content(problem, robot, detail.cases),
+            urdf=downloads.urdf(robot),
+            replay=downloads.replay(robot, detail) if evaluation.number in recorded else "",
+        )
     )
 
 

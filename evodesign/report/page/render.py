@@ -80,8 +80,20 @@ def _in_columns(content: Content) -> dict[str, Any]:
     told: dict[str, Any] = msgspec.to_builtins(content)
     fields = DesignContent.__struct_fields__
     designs = told["designs"].items()
-    told["designs"] = {field: {number: design[field] for number, design in designs} for field in fields}
+    columns = {field: {number: design[field] for number, design in designs} for field in fields}
+    told["designs"] = {**columns, "urdf": _by_line(columns["urdf"])}
     return told
+
+
+def _by_line(urdfs: dict[int, Any]) -> dict[str, Any]:
+    """URDFs that are told by line with the same line of all designs side by side; whole texts by number."""
+    by_line = {number: lines for number, lines in urdfs.items() if lines and not isinstance(lines, str)}
+    places = sorted({place for lines in by_line.values() for place in lines})
+    return {
+        "numbers": list(by_line),
+        "lines": {place: [lines.get(place) for lines in by_line.values()] for place in places},
+        "whole": {number: text for number, text in urdfs.items() if isinstance(text, str)},
+    }
 
 
 @cache

@@ -188,7 +188,7 @@ def test_links_stand_where_our_kinematics_puts_them(
                 f"const posture = d.postures[{place}].instants[0].agents.{name};"
                 f"return e.linkPoses('{name}', e.treeOf('{name}', d, ''), posture); }})()"
             )
-            check_poses(page, script, tree, posture.agents[name], turn)
+            check_poses(page, script, tree, posture.agents[name], turn, within=2e-6)
 
 
 def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: DesignProblem) -> None:

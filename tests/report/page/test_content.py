@@ -23,7 +23,7 @@ from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
-from tests.report.page.reading import check_to_ten_digits
+from tests.report.page.reading import check_to_seven_digits
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_generation, toy_header
 
 NAME = "</script><script>alert(1)</script>"
@@ -66,8 +66,8 @@ def test_every_posture_is_the_logs(real_run: RunLog, content: Content) -> None:
     on_front = {evaluation.number for evaluation in front(real_run.header.objectives, real_run.evaluations)}
     assert on_front <= set(content.designs)
     for number, design in content.designs.items():
-        check_to_ten_digits(design.postures, details[number].cases if number in details else ())
-        assert design.cases == real_run.evaluations[number].assessment.cases
+        check_to_seven_digits(design.postures, details[number].cases if number in details else ())
+        check_to_seven_digits(design.cases, real_run.evaluations[number].assessment.cases)
 
 
 def test_every_posture_has_its_nearest_bodies(
@@ -81,8 +81,10 @@ def test_every_posture_has_its_nearest_bodies(
         own = problem.space.values(real_run.evaluations[number].genome)
         robot = problem.space.resized(problem.scene.robot.tree, own)
         found = Clearances(problem.scenes).of(robot, details[number])
-        told = [(each.first, each.second, each.distance_m) for each in design.clearances]
-        assert told == [(each.first, each.second, each.distance) for each in found]
+        check_to_seven_digits(
+            [(each.first, each.second, each.distance_m) for each in design.clearances],
+            [(each.first, each.second, each.distance) for each in found],
+        )
         break
 
 
@@ -94,7 +96,7 @@ def test_masses_are_the_resized_robots(real_run: RunLog, content: Content, probl
             tree = problem.space.resized(problem.scene.robot.tree, values)
             links = content.bodies.robot.links
             masses = {link.name: design.links.get(index, link).mass_kg for index, link in enumerate(links)}
-            assert masses == {link.name: float(link.inertia.mass) for link in tree.links}
+            check_to_seven_digits(masses, {link.name: float(link.inertia.mass) for link in tree.links})
 
 
 def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: RunLog, content: Content) -> None:
@@ -147,9 +149,16 @@ def embedded(page: str) -> Content:
     block = page.split('<script type="text/plain" id="content">')[1].split("</script>")[0]
     told = msgspec.json.decode(gzip.decompress(base64.b64decode(block)))
     designs: dict[str, dict[str, Any]] = {}
+    urdfs = told["designs"].pop("urdf")
     for field, column in told["designs"].items():
         for number, value in column.items():
-            designs.setdefault(number, {})[field] = value
+            designs.setdefault(number, {"urdf": {}})[field] = value
+    for place, lines in urdfs["lines"].items():
+        for number, line in zip(urdfs["numbers"], lines, strict=True):
+            if line is not None:
+                designs[str(number)]["urdf"][place] = line
+    for number, text in urdfs["whole"].items():
+        designs[number]["urdf"] = text
     return msgspec.convert({**told, "designs": designs}, Content, strict=False)
 
 

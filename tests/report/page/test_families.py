@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from evodesign.analysis.families import families
+from evodesign.records import Descriptor
 from evodesign.report.page import page_content, page_html
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
@@ -17,6 +19,27 @@ from tests.runlog.toys import toy_evaluations, toy_header
 pytestmark = pytest.mark.needs_chromium
 
 MAP = "document.getElementById('families')"
+
+
+def test_a_design_outside_the_map_is_said_to_be(tmp_path: Path, chromium: Tab) -> None:
+    header = toy_header(budget=60)
+    described = (Descriptor("arm.0", 1.0, 1.5, 5), Descriptor("arm.1", None, None, 5))
+    header = msgspec.structs.replace(
+        header, search=msgspec.structs.replace(header.search, descriptors=described)
+    )
+    evaluations = toy_evaluations(header, 60)
+    with RunWriter(tmp_path / "run", header) as log:
+        for evaluation in evaluations:
+            log.evaluation(evaluation)
+    path = tmp_path / "report.html"
+    path.write_text(page_html(page_content(read_run(tmp_path / "run"))), encoding="utf-8")
+    open_page(chromium, path)
+    for evaluation in evaluations:
+        chromium.value(f"window.evodesign.select({evaluation.number})")
+        said = chromium.value("document.getElementById('families-beyond').textContent")
+        place = evaluation.assessment.design["arm.0"]
+        sentence = f"Design {evaluation.number} lies outside the map in arm.0 (1 to 1.5)"
+        assert (sentence in said) == (not 1.0 <= place <= 1.5)
 
 
 def test_the_map_shows_the_elites_and_relatives_open_by_a_click(tmp_path: Path, chromium: Tab) -> None:

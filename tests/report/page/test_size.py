@@ -9,7 +9,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from evodesign.problem.build import DesignProblem
+from evodesign.problem.build import build_problem
+from evodesign.problem.source import read_source
 from evodesign.records import Detail
 from evodesign.report.page import page_content, page_html
 from evodesign.runlog.header import header_of
@@ -34,21 +35,30 @@ def jittered(part: Any, generator: random.Random) -> Any:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["icub_lifting", "icub_hardware"])
 def test_a_page_of_a_thousand_designs_is_smaller_than_4_mb(
-    problem: DesignProblem, real_run: RunLog, tmp_path: Path
+    name: str, repository: Path, real_run: RunLog, tmp_path: Path
 ) -> None:
+    """Postures are those of the default problem, whose robot and person that of hardware has too."""
     generator = random.Random(3)
+    problem = build_problem(read_source(repository / "problems" / f"{name}.toml"))
+    sized = {each.name: 20.0 for each in problem.space.parameters if each.name.startswith("margin.")}
     known = msgspec.to_builtins(real_run.details[0])
     found = real_run.evaluations[real_run.details[0].evaluation]
     settings = problem.settings("nsga2", 40, 1)
     with RunWriter(tmp_path / "run", header_of(problem, settings, DESIGNS)) as log:
         for number in range(DESIGNS):
-            genome = tuple(generator.random() for _ in found.genome)
+            genome = tuple(generator.random() for _ in problem.space.parameters)
             values = problem.space.named(problem.space.values(genome))
             share = number / DESIGNS
-            objectives = dict.fromkeys(found.assessment.objectives, 10.0 + share)
-            objectives["robot_torque"] = 11.0 - share + 0.5 * share**2
-            assessment = msgspec.structs.replace(found.assessment, design=dict(values), objectives=objectives)
+            first, *others = (each.name for each in problem.objectives)
+            objectives = dict.fromkeys(others, 10.0 + share) | {first: 11.0 - share + 0.5 * share**2}
+            assessment = msgspec.structs.replace(
+                found.assessment,
+                design=dict(values),
+                objectives=objectives,
+                rated=jittered(sized, generator) if sized else msgspec.UNSET,
+            )
             changed = msgspec.structs.replace(
                 found, number=number, genome=genome, generation=number // 40, assessment=assessment
             )

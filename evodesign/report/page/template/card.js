@@ -140,6 +140,13 @@ const drawWithPostures = (row, design) => {
   showHeight(false);
 };
 
+// Choose a design where a reader points at it: on a screen so narrow that its card stands below, go there.
+const stacked = window.matchMedia("(max-width: 900px)");
+const pick = (number) => {
+  select(number);
+  if (stacked.matches) byId("card").scrollIntoView({ behavior: stillness.matches ? "instant" : "smooth" });
+};
+
 const drawCard = () => {
   const row = rowOf.get(state.selected);
   if (row === undefined) return;

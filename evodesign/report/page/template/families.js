@@ -22,6 +22,16 @@ const cellsOf = (row) => {
   return places.includes(null) ? null : places;
 };
 
+// A sentence where the ring of a design cannot stand where the design lies.
+const besideTheMap = (row) => {
+  const place = cellsOf(row);
+  if (!place) return `Design ${points.number[row]} is not on the map: it lacks a quantity that tells kinds apart.`;
+  const beyond = descriptors.filter(({ cells }, index) => place[index] < -1e-9 || place[index] > cells + 1e-9);
+  if (!beyond.length) return "";
+  const names = beyond.map(({ name, lower, upper }) => `${words(name)} (${figure(lower)} to ${figure(upper)})`);
+  return `Design ${points.number[row]} lies outside the map in ${names.join(" and ")}; its ring is at the edge.`;
+};
+
 // The elites of other cells, the nearest first.
 const relativesOf = (row) => {
   const place = cellsOf(row);
@@ -60,7 +70,11 @@ const drawFamilies = () => {
   const values = kinds.map((kind) => kind.objectives[name]);
   const ends = [quantile(values, sign > 0 ? 0 : 0.05), quantile(values, sign > 0 ? 0.95 : 1)];
   const beyond = values.filter((value) => value < ends[0] || value > ends[1]).length;
-  byId("families-beyond").textContent = beyond ? `Beyond the scale of colours: ${beyond} designs.` : "";
+  const remarks = [
+    beyond ? `Beyond the scale of colours: ${beyond} designs.` : "",
+    rowOf.has(state.selected) ? besideTheMap(rowOf.get(state.selected)) : "",
+  ];
+  byId("families-beyond").textContent = remarks.filter(Boolean).join(" ");
   const scale = strength();
   const chosen = rowOf.has(state.selected) ? cellsOf(rowOf.get(state.selected)) : null;
   const at = (axis, value) =>
@@ -121,7 +135,7 @@ const drawRelatives = () => {
           ...found.map((kind) =>
             element(
               "button",
-              { type: "button", class: "chip", "data-relative": kind.design, onclick: () => select(kind.design) },
+              { type: "button", class: "chip", "data-relative": kind.design, onclick: () => pick(kind.design) },
               `${kind.design}`,
               element("small", { text: `${exact(kind.objectives[name], 3)} ${unit}` }),
             ),
@@ -147,7 +161,7 @@ const startFamilies = () => {
   byId("families").on("plotly_click", ({ points: [point] }) => {
     if (point.customdata === null || point.customdata === undefined) return;
     document.activeElement.blur(); // so that arrow keys walk on
-    select(point.customdata);
+    pick(point.customdata);
   });
   on("theme", drawFamilies);
   on("selected", () => {

@@ -206,7 +206,7 @@ const wireFront = () => {
   const plot = byId("front");
   plot.on("plotly_click", (event) => {
     plot.focus({ preventScroll: true });
-    select(event.points[0].customdata);
+    pick(event.points[0].customdata);
   });
   plot.on("plotly_relayout", sayOutside);
   plot.on("plotly_selected", (event) => {
@@ -259,7 +259,7 @@ const startChips = () => {
     const marks = marksOf(number);
     const chip = element(
       "button",
-      { type: "button", class: "chip", "data-number": number, onclick: () => select(number) },
+      { type: "button", class: "chip", "data-number": number, onclick: () => pick(number) },
       element("i", { text: symbolOf[marks[0].kind], "aria-hidden": "true" }),
       element("span", { text: [...new Set(marks.map((mark) => mark.label))].join(", ") }),
       element("small", { text: `${number}` }),

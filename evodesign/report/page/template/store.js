@@ -8,10 +8,16 @@ const unpacked = (letters) => {
 
 new Function(await unpacked(byId("plotly").textContent)).call(window);
 const content = JSON.parse(await unpacked(byId("content").textContent));
-const columnsOfDesigns = content.designs;
+const { urdf: urdfColumns, ...columnsOfDesigns } = content.designs;
 content.designs = {};
 for (const [field, column] of Object.entries(columnsOfDesigns))
   for (const [number, value] of Object.entries(column)) (content.designs[number] ??= {})[field] = value;
+for (const design of Object.values(content.designs)) design.urdf = {};
+for (const [place, texts] of Object.entries(urdfColumns.lines))
+  texts.forEach((text, row) => {
+    if (text !== null) content.designs[urdfColumns.numbers[row]].urdf[place] = text;
+  });
+for (const [number, text] of Object.entries(urdfColumns.whole)) content.designs[number].urdf = text;
 const { objectives, constraints, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));

@@ -38,7 +38,7 @@ const drawTable = () => {
     const number = points.number[row];
     return element(
       "tr",
-      { "aria-current": number === state.selected ? "true" : null, onclick: () => select(number) },
+      { "aria-current": number === state.selected ? "true" : null, onclick: () => pick(number) },
       element(
         "td",
         { class: "number" },

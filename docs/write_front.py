@@ -1,0 +1,55 @@
+"""Draws docs/pictures/front.png, the picture of the README: `python -m docs.write_front RUN`.
+
+RUN is a search of the default problem. The picture is the front of its page, with the robots of some marked
+designs beside it. Chromium is needed.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PIL import Image
+
+from benchmarks.your_robot_pictures import COMMAND, choose, part_of, write
+from tests.report.page.chromium import Tab, browser
+from tests.report.page.reading import open_page
+
+MARKS = ("unscaled robot", "least robot torque", "greatest reach height")
+SHOWN = (0.2, 0.12, 0.6, 0.87)
+"""Left, top, width and height of the part of the posture's canvas that holds robot and person [share]."""
+
+
+def draw(tab: Tab) -> Image.Image:
+    """The front, and under it the robots side by side."""
+    tab.call("Emulation.setDeviceMetricsOverride", width=1240, height=900, deviceScaleFactor=1, mobile=False)
+    tab.value("document.querySelector('.chip').scrollIntoView()")
+    front = part_of(tab, tab.place("document.getElementById('front')"))
+    robots = []
+    for mark in MARKS:
+        choose(tab, mark)
+        left, top, width, height = tab.place("document.getElementById('posture')")
+        x, y, w, h = SHOWN
+        robots.append(part_of(tab, (left + x * width, top + y * height, w * width, h * height)))
+    across = max(front.width, sum(each.width for each in robots))
+    whole = Image.new("RGB", (across, front.height + robots[0].height), "white")
+    whole.paste(front, (0, 0))
+    for place, each in enumerate(robots):
+        whole.paste(each, (place * across // len(robots), front.height))
+    return whole
+
+
+def main(run: Path) -> None:
+    """Write the page of a run, and what it shows."""
+    with TemporaryDirectory() as name, browser(Path(name) / "profile") as tab:
+        page = Path(name) / "report.html"
+        subprocess.run([*COMMAND, "report", str(run), "--output", str(page)], check=True)
+        open_page(tab, page)
+        choose(tab, MARKS[0])
+        write(draw(tab), "front.png")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]).resolve())
