@@ -18,8 +18,15 @@ from tests.report.page.chromium import Tab, browser
 from tests.report.page.reading import open_page
 
 MARKS = ("unscaled robot", "least robot torque", "greatest reach height")
-SHOWN = (0.2, 0.12, 0.6, 0.87)
+SHOWN = (0.2, 0.02, 0.6, 0.97)
 """Left, top, width and height of the part of the posture's canvas that holds robot and person [share]."""
+
+WITHOUT_BUTTONS = """
+[...document.querySelectorAll('#card button')]
+  .filter((button) => ['Oblique', 'Side', 'Behind robot'].includes(button.textContent))
+  .forEach((button) => (button.style.visibility = 'hidden'));
+"""
+"""Hides what stands before the tallest robots."""
 
 
 def draw(tab: Tab) -> Image.Image:
@@ -30,6 +37,7 @@ def draw(tab: Tab) -> Image.Image:
     robots = []
     for mark in MARKS:
         choose(tab, mark)
+        tab.value(WITHOUT_BUTTONS)
         left, top, width, height = tab.place("document.getElementById('posture')")
         x, y, w, h = SHOWN
         robots.append(part_of(tab, (left + x * width, top + y * height, w * width, h * height)))

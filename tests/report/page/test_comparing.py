@@ -235,23 +235,19 @@ def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
     page.resize(390, 844)
     page.wait_for("document.documentElement.scrollWidth <= 390")
     page.wait_for(f"{PLOT}._fullLayout.width < 390")
+    page.value("document.getElementById('show-all').click()")
     before = page.value(SELECTED)
     left, top, _, _ = page.place(PLOT)
-    number, x, y = page.value(
-        f"(() => {{ const p = {PLOT}, t = p.data.find(t => t.name === 'front'), l = p._fullLayout;"
-        "const at = (i) => [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t];"
-        "const apart = (i, j) => Math.hypot(at(i)[0] - at(j)[0], at(i)[1] - at(j)[1]);"
-        "const inside = (i) => at(i)[0] > l._size.l && at(i)[0] < l.width - l._size.r;"
-        "const all = t.customdata.map((_, i) => i);"
-        f"const i = all.find(i => t.customdata[i] !== {before} && inside(i) && "
-        "all.every(j => j === i || apart(i, j) > 8));"
-        "return [t.customdata[i], ...at(i)]; })()"
+    x, y = page.value(  # the place of another design of the front
+        f"(() => {{ const t = {PLOT}.data.find(t => t.name === 'front'), l = {PLOT}._fullLayout;"
+        f"const i = t.customdata.findIndex(number => number !== {before});"
+        "return [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t]; })()"
     )
     assert page.value("document.getElementById('card').getBoundingClientRect().top > innerHeight")
     page.call("Emulation.setTouchEmulationEnabled", enabled=True)
     page.call("Input.synthesizeTapGesture", x=left + x, y=top + y, gestureSourceType="touch")
     page.call("Emulation.setTouchEmulationEnabled", enabled=False)
-    page.wait_for(f"{SELECTED} === {number}")
+    page.wait_for(f"{SELECTED} !== {before}")
     page.wait_for("Math.abs(document.getElementById('card').getBoundingClientRect().top) < 40")
     page.resize(1440, 900)
     page.value("scrollTo(0, 0)")

@@ -49,7 +49,7 @@ def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: 
             "return e.linkPoses('human', tree, posture.instants[0].agents.human); })()"
         )
         posture = run.details[1].cases[place].agents[HUMAN]
-        check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi)
+        check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi, within=2e-6)
 
 
 def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog) -> None:
