@@ -51,7 +51,6 @@ NOT_RUN = {
     "python -m tests.fuzz.fuzzer": "takes hours; run for seconds in tests/fuzz/test_fuzzer.py",
     "evodesign search --scheduler": "needs machines; see tests/conformance/test_pools.py",
     "evodesign report --sensitivities": "tests/report/page/test_gradients.py makes that page",
-    "evodesign reproduce --minutes": "run by .ci/run, from the wheel",
     "evodesign reproduce": "takes minutes; tests/cli/test_reproduce.py runs it with small budgets",
 }
 """Commands that no test runs as they stand, and why; a module's name stands for all in it."""
