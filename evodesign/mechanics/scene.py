@@ -235,6 +235,11 @@ class Scene:
         """Who holds what, where there are several people or loads."""
         return ", ".join(name for name in self.pair if name)
 
+    @property
+    def undisturbed(self) -> Scene:
+        """The same without disturbances."""
+        return replace(self, disturbances=Disturbances())
+
     def case(self, task: Task) -> Case:
         """Its person with its load at a task, undisturbed."""
         return Case(person=self.human.label, payload=self.payload.label, task=task)

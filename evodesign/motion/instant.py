@@ -16,14 +16,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.disturbance import Disturbances
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.nlp.blocks import Block
 from evodesign.nlp.program import Expression, Variable
 from evodesign.posture.allocation import shared_scene, shared_weights
@@ -44,7 +43,7 @@ from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.tree.model import Tree
 
-__all__ = ["FastestJoint", "KnotBlocks", "fastest_joints", "undisturbed"]
+__all__ = ["FastestJoint", "KnotBlocks", "fastest_joints"]
 
 SPEED = 6.0
 """Largest speed of a joint whose file or actuator says none [rad/s]."""
@@ -59,11 +58,6 @@ CLOSURE_UNIT = 0.1
 """Of the rows between knots, in which their bounds are of the size of other rows."""
 
 FastestJoint = Mapping[str, Expression]
-
-
-def undisturbed(scene: Scene) -> Scene:
-    """The scene in which nothing happens but the lift."""
-    return replace(scene, disturbances=Disturbances())
 
 
 def fastest_joints(form: Form, part: Tree) -> FastestJoint:
@@ -114,7 +108,7 @@ class KnotBlocks:
         self.forms, self._setting = forms, setting
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
-        scene, self._mass = any_load(undisturbed(setting.scene))
+        scene, self._mass = any_load(setting.scene.undisturbed)
         values = ca.vertsplit(self.design)
         self._scene = shared_scene(scene, setting.space, values)
         self._weights = shared_weights(setting.weights, setting.space, values)

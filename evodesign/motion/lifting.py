@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import Lift, LiftCourse
-from evodesign.motion.instant import KnotBlocks, undisturbed
+from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.solver import status_of
@@ -130,7 +130,7 @@ class LiftProblem:
 
     def __init__(self, setting: Setting, *, symmetric: bool) -> None:
         self._setting = setting
-        self._scene = undisturbed(setting.scene)
+        self._scene = setting.scene.undisturbed
         agents = (self._scene.robot, self._scene.human)
         forms = symmetric_forms(self._scene) if symmetric else (whole(agents[0]), whole(agents[1]))
         self._blocks = KnotBlocks(forms, setting)

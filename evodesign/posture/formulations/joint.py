@@ -21,7 +21,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
@@ -89,7 +88,7 @@ class JointPostures:
         scene = self._setting.scene
         if not scene.disturbances:
             return None
-        setting = replace(self._setting, scene=replace(scene, disturbances=Disturbances()))
+        setting = replace(self._setting, scene=scene.undisturbed)
         return JointPostures(self.name, self._forms, setting, self._solvers, self._kind)._solver
 
     @cached_property

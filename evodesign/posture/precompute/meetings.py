@@ -13,7 +13,6 @@ from dataclasses import replace
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
 from evodesign.collision.scene_bodies import SceneBodies
-from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
@@ -114,10 +113,9 @@ class _Finder:
     def __init__(self, setting: Setting, symmetric: bool, part: int, parts: int) -> None:
         scene = setting.scene
         free = replace(
-            scene,
+            scene.undisturbed,
             robot=replace(scene.robot, collisions=None),
             human=replace(scene.human, collisions=None),
-            disturbances=Disturbances(),
         )
         options = replace(setting.options, compiled=False, method=MethodName.IPOPT)
         self.scene = scene

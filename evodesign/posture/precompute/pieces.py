@@ -17,7 +17,6 @@ import numpy as np
 from evodesign.collision.rules import BodyPair
 from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, code_digest, digest
-from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Grasp, Payload, Scene, scene_of
 from evodesign.nlp.solver import SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio, widened
@@ -238,14 +237,10 @@ def _push_alone(scene: Scene, space: DesignSpace) -> bool:
     return alone and not shared and not scene.disturbances
 
 
-def _undisturbed(scene: Scene) -> Scene:
-    return replace(scene, disturbances=Disturbances())
-
-
 def _all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
     """Without disturbances: portfolios are made so, as postures are solved so first."""
-    scenes = tuple(_undisturbed(scene) for scene in setting.scenes)
-    return replace(setting, scenes=scenes, middle=_undisturbed(setting.middle))
+    scenes = tuple(scene.undisturbed for scene in setting.scenes)
+    return replace(setting, scenes=scenes, middle=setting.middle.undisturbed)
 
 
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
@@ -334,7 +329,7 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 
 def _compile(setting: PrecomputeSetting, scene: Scene) -> None:
     """Compile a scene's programs, which are found again in the cache of functions."""
-    for each in (scene, _undisturbed(scene)) if scene.disturbances else (scene,):
+    for each in (scene, scene.undisturbed) if scene.disturbances else (scene,):
         own = Setting(each, setting.space, setting.weights, setting.options)
         problem = PostureProblem(own, setting.symmetry)
         for task in {type(task): task for task in setting.tasks}.values():

@@ -246,7 +246,7 @@ def placed_pairs(body: Body, meeting: Meeting) -> list[tuple[PlacedShape, Placed
     """Every shape of the first with every shape of the second.
 
     Two links are placed in the frame of the nearest one that carries both, so that they move with the joints
-    between them alone; where that is the root in the world, where their poses are known.
+    between them alone. Where that one is the root, they are placed in the world, where poses are known.
     """
     if meeting.second == LOAD:
         return [(one, _load(body)) for one in _placed(body, meeting.first)]
@@ -302,7 +302,7 @@ def held(form: Form, scene: Scene) -> Iterator[Held]:
 
 
 def rows(body: Body) -> Iterator[Row]:
-    """Distances [m], and the directions' squared lengths."""
+    """Distances [m]."""
     rules = body.agent.collisions
     if rules is None:
         return
