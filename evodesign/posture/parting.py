@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.solver import has_any
+from evodesign.posture.placed_shape import SHAPE, PlacedShape
 from evodesign.posture.separating_axes import Ways, ways_of
 from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
     NUMBERS,
     PARTING,
-    SHAPE,
-    PlacedShape,
     directed,
     placed_pairs,
 )

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.codegen import compiled_function
-from evodesign.posture.terms.collisions import NUMBERS, SHAPE, PlacedShape
+from evodesign.posture.placed_shape import SHAPE, PlacedShape
+from evodesign.posture.terms.collisions import NUMBERS
 
 __all__ = ["Ways", "ways_of"]
 

@@ -25,14 +25,12 @@ from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, reach_program
 from evodesign.posture.parting import Parted
+from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.collisions import (
-    ROUNDING,
-    SHAPE,
-    PlacedShape,
     directed,
     placed_pairs,
     placed_shape,
