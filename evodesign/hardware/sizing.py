@@ -30,7 +30,7 @@ __all__ = ["ROUNDS", "TOLERANCE", "Sizing", "sized"]
 TOLERANCE = 1e-4
 """Largest change of a size, as a share of it, that ends the rounds."""
 
-ROUNDS = 4
+ROUNDS = 10
 """How often the demand is asked for."""
 
 PREDICTIONS, SETTLED = 200, 1e-5

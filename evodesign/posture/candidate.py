@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from evodesign.nlp.solver import RawSolution
 from evodesign.posture.check import TOLERANCE, sizes
+from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.terms.base import Residual
 from evodesign.records import Case, Status, worst_status
@@ -22,24 +23,39 @@ class Candidate:
         attempt: how it ended; solved only if the check agrees.
         instants: its postures; none unless the solver succeeded.
         residuals: what the check found.
+        raw: the solve; the robot's, where the person's is another one.
     """
 
     attempt: Attempt
     instants: tuple[Instant, ...]
     residuals: tuple[Residual, ...]
+    raw: RawSolution
 
     @property
     def solved(self) -> bool:
         """Whether the solver and the check agree on it."""
         return self.attempt.status is Status.SOLVED
 
+    @property
+    def overlaps(self) -> bool:
+        """Whether the check refuses it for its bodies."""
+        worst = max(self.residuals, key=lambda residual: residual.size, default=None)
+        return not self.solved and worst is not None and worst.group is LimitGroup.COLLISIONS
+
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What the starts of one program led to: every attempt, and the cheapest that the check agrees with."""
+    """What the starts of one program led to.
+
+    Args:
+        attempts: all of them.
+        best: the cheapest that the check agrees with.
+        overlaps: whether the check refused one for bodies that no row of the program keeps apart.
+    """
 
     attempts: tuple[Attempt, ...]
     best: Candidate | None
+    overlaps: bool = False
 
 
 def checked(formulation: str, start: str, raw: RawSolution, residuals: Sequence[Residual]) -> Attempt:
@@ -71,6 +87,7 @@ def cheapest(
     attempts = [checked(formulation, start, raw, ()) for start, raw in ends]
     left = {place for place, raw in enumerate(raws) if raw.status is Status.SOLVED}
     settled: set[int] = set()
+    overlaps = False
     while left:
         place = min(left, key=lambda place: (raws[place].cost, place))
         if place not in settled:
@@ -82,10 +99,11 @@ def cheapest(
             attempts[place] = candidate.attempt
             if candidate.solved:
                 return Trial(tuple(attempts), candidate)
+            overlaps = overlaps or candidate.overlaps
             left.remove(place)
         if raws[place].status is not Status.SOLVED:
             left.discard(place)
-    return Trial(tuple(attempts), None)
+    return Trial(tuple(attempts), None, overlaps)
 
 
 def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:
@@ -105,4 +123,5 @@ def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:
         residuals=sizes(best.residuals),
         attempts=attempts,
         attempt=best.attempt,
+        raw=best.raw,
     )

@@ -16,7 +16,7 @@ from enum import StrEnum
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import SolverCache
+from evodesign.nlp.solver import RawSolution, SolverCache
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.candidate import Trial, case_solution
 from evodesign.posture.check import Checker
@@ -142,11 +142,11 @@ class PostureProblem:
 
         They ask of the robot's actuators what the design's own postures will, where these are near.
         """
-        if solution.attempt is None:
+        if solution.attempt is None or solution.raw is None:
             return None
         name = solution.attempt.formulation
         formulation = self._formulation(name, solution.case.task, self._methods(name)[0])
-        return formulation.followed(design, solution)
+        return formulation.followed(design, solution, solution.raw)
 
     def derivative(
         self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
@@ -172,16 +172,20 @@ class PostureProblem:
         """What each formulation leads to, in turn.
 
         Where all starts ended at postures that violate the constraints no more than any near them, no other
-        method is asked: IPOPT solves no such height either (docs/benchmarks.md).
+        method is asked: IPOPT solves no such height either (docs/benchmarks.md). Nor where bodies overlap
+        that no row keeps apart.
         """
         for name, portfolio in self._in_turn(task):
             for method in self._methods(name):
                 formulation = self._formulation(name, task, method)
                 if neighbour is not None:
-                    yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
+                    if not neighbour.unchecked:
+                        yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
+                    elif (raw := _raw_of(neighbour.solution, name)) is not None:
+                        yield formulation.finished(design, task, raw, checker)
                 trial = formulation.solve(design, task, portfolio, checker)
                 yield trial
-                if all(attempt.status is Status.INFEASIBLE for attempt in trial.attempts):
+                if trial.overlaps or all(each.status is Status.INFEASIBLE for each in trial.attempts):
                     break
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
@@ -229,3 +233,9 @@ class PostureProblem:
         compiled = options.compiled and method is options.method and (native or not refuge)
         changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
         return replace(self._setting, options=changed)
+
+
+def _raw_of(solution: CaseSolution, formulation: str) -> RawSolution | None:
+    """The solve that gave a solution, where it is of a formulation."""
+    attempt = solution.attempt
+    return solution.raw if attempt is not None and attempt.formulation == formulation else None

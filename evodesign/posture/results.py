@@ -106,7 +106,7 @@ class CaseSolution:
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         attempt: that led to the postures; None unless solved.
-        unchecked: the robot's solve that gave the instants, where nothing has been checked.
+        raw: the solve that gave the instants; the robot's, where the person's is another one.
     """
 
     case: Case
@@ -116,7 +116,7 @@ class CaseSolution:
     residuals: Mapping[str, float] = field(default_factory=dict)
     attempts: tuple[Attempt, ...] = ()
     attempt: Attempt | None = None
-    unchecked: RawSolution | None = None
+    raw: RawSolution | None = None
 
     @property
     def solved(self) -> bool:
@@ -143,7 +143,9 @@ class Neighbour:
     Args:
         solution: solved; its person has the joints of the one sought.
         same_load: whether only the person differs.
+        unchecked: whether nothing differs, and the solution is to be checked.
     """
 
     solution: CaseSolution
     same_load: bool
+    unchecked: bool = False

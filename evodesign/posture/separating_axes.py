@@ -19,6 +19,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.codegen import compiled_function
 from evodesign.posture.placed_shape import SHAPE, PlacedShape
 from evodesign.posture.terms.collisions import NUMBERS
@@ -66,27 +67,20 @@ def ways_of(meetings: Sequence[Array]) -> list[Ways]:
             (pairs, 2, SHAPE).
     """
     candidates, apart = _functions()
-    pairs = np.concatenate(meetings).reshape(-1, 2 * SHAPE)
-    found = [np.array(each).T for each in candidates(pairs.T)]
-    numbers = found[1].reshape(len(pairs), -1, NUMBERS)
-    ends = np.cumsum([len(meeting) for meeting in meetings]).tolist()
     ways = []
-    for first, end in zip([0, *ends], ends, strict=False):
-        least = found[2][first:end]
-        if end - first > 1:  # along the directions of every pair of shapes, all of them
-            each = [np.array(apart(pairs[first:end].T, found[0][place])) for place in range(first, end)]
-            least = np.array([along.min(axis=1) for along in each])
-        ways.append(
-            Ways(
-                numbers[first:end].reshape(-1, NUMBERS),
-                np.where(np.isfinite(found[2][first:end]), least, -np.inf).ravel(),
-            )
-        )
+    for pairs in meetings:
+        columns = [pair.ravel() for pair in pairs]
+        units, numbers, distances = zip(*map(candidates, columns), strict=True)
+        found = np.concatenate(distances)
+        if len(columns) > 1:  # along the directions of every pair of shapes, all of them
+            along = [np.min([apart(column, unit)[0] for column in columns], axis=0) for unit in units]
+            found = np.where(np.isfinite(found), np.concatenate(along), -np.inf)
+        ways.append(Ways(np.concatenate(numbers).reshape(-1, NUMBERS), found))
     return ways
 
 
 @cache
-def _functions() -> tuple[Any, Any]:
+def _functions() -> tuple[BufferedFunction, BufferedFunction]:
     """Of two shapes: directions, their numbers and distances along them; and distances along given ones."""
     pair = ca.SX.sym("pair", 2 * SHAPE)
     one, other = (PlacedShape.of(pair[half * SHAPE : (half + 1) * SHAPE]) for half in range(2))
@@ -110,12 +104,13 @@ def _functions() -> tuple[Any, Any]:
         distances.append(ca.if_else(square > 4.0 * SHORT, one.apart(other, unit), -np.inf))
     given = ca.SX.sym("directions", 3 * len(units))
     along = [one.apart(other, given[3 * place : 3 * place + 3]) for place in range(len(units))]
-    columns = [ca.vertcat(*each) for each in (units, numbers, distances)]
-    options = {"cse": True}
-    return (
-        compiled_function(ca.Function("ways", [pair], [ca.densify(each) for each in columns], options)),
-        compiled_function(ca.Function("apart", [pair, given], [ca.vertcat(*along)], options)),
+    columns = [ca.densify(ca.vertcat(*each)) for each in (units, numbers, distances)]
+    functions = (
+        ca.Function("ways", [pair], columns, {"cse": True}),
+        ca.Function("apart", [pair, given], [ca.vertcat(*along)], {"cse": True}),
     )
+    ways, apart = (BufferedFunction(compiled_function(each)) for each in functions)
+    return ways, apart
 
 
 def _shortest(one: PlacedShape, other: PlacedShape) -> Expression:

@@ -164,7 +164,9 @@ class _OneDesign:
                 continue
             scene = shared_scene(problem.scene_of(case), problem.space, values)
             checker = check.elsewhere(scene, self._solver.people[case.person])
-            near = Neighbour(before[number], same_load=True) if before else self._neighbour(found, case)
+            near = self._neighbour(found, case)
+            if before:
+                near = Neighbour(before[number], same_load=True, unchecked=True)
             lost = any(each.attempts and not each.solved for each in found)
             found.append(self._in_case(values, case, reach, checker, near, lost=lost))
         return tuple(found)

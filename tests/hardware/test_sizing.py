@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evodesign.hardware.actuators import actuator_law
-from evodesign.hardware.sizing import sized
+from evodesign.hardware.sizing import ROUNDS, sized
 from evodesign.records import Status
 
 WIDE = {"elbow": (0.1, 500.0), "shoulder": (0.1, 500.0)}
@@ -52,7 +52,7 @@ def test_a_demand_that_grows_with_the_size_is_met_within_four_rounds() -> None:
 def test_a_demand_that_never_settles_says_so() -> None:
     found = sized(lambda s: {"x": 1.9 * s["x"]}, {"x": 1.0}, {"x": 1.0}, {"x": (0.1, 1e9)})
     assert found.status is Status.ITERATION_LIMIT
-    assert "4 rounds" in found.reason
+    assert f"{ROUNDS} rounds" in found.reason
     assert found.change > 0.1
 
 

@@ -26,7 +26,9 @@ from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, reach_program
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
+from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
@@ -262,6 +264,21 @@ def test_no_bodies_of_a_solved_posture_overlap(
                 assert other.residuals["overlap"] == 0.0
                 changed += other.attempt.cost > one.attempt.cost + 1e-6
     assert changed > 0
+
+
+def test_bodies_that_no_row_keeps_apart_are_no_matter_of_the_method(
+    problem: DesignProblem, apart: DesignProblem
+) -> None:
+    """With rows for nothing, what overlaps is refused by the check, and IPOPT is not asked for the same."""
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    without = replace(apart, symmetry=Symmetry.ON)
+    refused = [
+        case for case in Evaluator(without, NOTHING_PRECOMPUTED).solve(values).cases if not case.solved
+    ]
+    assert refused
+    for case in refused:
+        assert "overlap" in case.reason
+        assert {attempt.method for attempt in case.attempts} == {problem.options.method}
 
 
 def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(

@@ -16,7 +16,7 @@ from evodesign.identity import Exceptions, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.solver import RawSolution, SolverOptions
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.candidate import Trial
@@ -75,8 +75,13 @@ class Formulation(Protocol):
     ) -> Trial:
         """What the solution in a similar scene leads to, and the first starts of a portfolio."""
 
-    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+    def followed(
+        self, design: Sequence[float], solution: CaseSolution, raw: RawSolution
+    ) -> CaseSolution | None:
         """The robot's postures of another design near those of a solution, not checked; a person may stay."""
+
+    def finished(self, design: Sequence[float], task: Task, raw: RawSolution, checker: Checker) -> Trial:
+        """A solve for this design that was not checked, checked."""
 
     def landscape(self, task: Task) -> Landscape:
         """The cost, of which a portfolio of starts is made."""

@@ -129,25 +129,22 @@ class DecoupledPostures:
     ) -> Trial:
         """What the robot's posture in a similar scene leads to: it is close; and the first starts.
 
-        With the same load the other person's V(X) is all that differs, and no other start is needed. What
-        `followed` gave is only finished.
+        With the same load the other person's V(X) is all that differs, and no other start is needed.
         """
         parameters = {"design": design, **self._beside(task)}
-        raw = neighbour.solution.unchecked
-        if raw is None:
-            known = start_from(self._robot.program, self._forms, neighbour.solution.instants)
-            raw = self._robot.near.solve(parameters, known)
-        ends = [("neighbour", raw)]
+        known = start_from(self._robot.program, self._forms, neighbour.solution.instants)
+        ends = [("neighbour", self._robot.near.solve(parameters, known))]
         if not neighbour.same_load:
             starts = named_starts(self._robot, portfolio, self._fixed)[:STARTS_BESIDE]
             ends += [(name, self._robot.solve(parameters, start)) for name, start in starts]
         return self._trial(task, parameters, ends, checker)
 
-    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+    def followed(
+        self, design: Sequence[float], solution: CaseSolution, raw: RawSolution
+    ) -> CaseSolution | None:
         """The robot's postures of another design near those of a solution; the person stays."""
         parameters = {"design": design, **self._beside(solution.case.task)}
-        known = start_from(self._robot.program, self._forms, solution.instants)
-        raw = self._robot.settled(parameters, self._robot.near.solve(parameters, known))
+        raw = self._robot.settled(parameters, self._robot.near.solve(parameters, raw.values))
         if raw.status is not Status.SOLVED:
             return None
         robots = instants_of(
@@ -155,7 +152,11 @@ class DecoupledPostures:
         )
         pairs = zip(solution.instants, robots, strict=True)
         instants = tuple(old.with_postures(new.postures) for old, new in pairs)
-        return replace(solution, instants=instants, unchecked=raw)
+        return replace(solution, instants=instants, raw=raw)
+
+    def finished(self, design: Sequence[float], task: Task, raw: RawSolution, checker: Checker) -> Trial:
+        """A solve for this design that was not checked, with the person beside it, checked."""
+        return self._trial(task, {"design": design, **self._beside(task)}, [("neighbour", raw)], checker)
 
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The robot's parameters beside the design."""
@@ -176,10 +177,10 @@ class DecoupledPostures:
             human = self._human.best(task.height_m, internal, value)
             both = _joined(robot, human, float(value.cost(internal)))
             if human.status is not Status.SOLVED:
-                return Candidate(checked(self.name, start, both, ()), (), ())
+                return Candidate(checked(self.name, start, both, ()), (), (), robot)
             instants = instants_of(self._layout, self._forms, self._setting.scene, both.values)
             residuals = checker.task_residuals(instants, task.heights)
-            return Candidate(checked(self.name, start, both, residuals), instants, residuals)
+            return Candidate(checked(self.name, start, both, residuals), instants, residuals, robot)
 
         return cheapest(self.name, ends, lambda raw: self._robot.settled(parameters, raw), finish)
 

@@ -135,15 +135,21 @@ class JointPostures:
         others = named_starts(self._solver, portfolio, self._fixed)
         return self._trial(design, task, [("neighbour", known), *others], checker)
 
-    def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
+    def followed(
+        self, design: Sequence[float], solution: CaseSolution, raw: RawSolution
+    ) -> CaseSolution | None:
         """The postures of another design near those of a solution."""
         task, solver = solution.case.task, self._solver
         parameters = {"design": design, **self._beside(task)}
-        start = self._begun(self._start(solution.instants), parameters)
+        start = self._begun(raw.values, parameters)
         raw = solver.settled(parameters, solver.near.solve(parameters, start))
         if raw.status is not Status.SOLVED:
             return None
-        return replace(solution, instants=self._instants(raw, task))
+        return replace(solution, instants=self._instants(raw, task), raw=raw)
+
+    def finished(self, design: Sequence[float], task: Task, raw: RawSolution, checker: Checker) -> Trial:
+        """A solve for this design that was not checked, checked."""
+        return self._cheapest({"design": design, **self._beside(task)}, task, [("neighbour", raw)], checker)
 
     def polish(
         self, design: Sequence[float], task: Task, known: Sequence[Instant], checker: Checker
@@ -204,11 +210,21 @@ class JointPostures:
                 (f"{name}, person {number}", self._solver.solve(parameters, {**best.values, **person}))
                 for number, person in enumerate(people, 1)
             ]
+        return self._cheapest(parameters, task, ends, checker)
+
+    def _cheapest(
+        self,
+        parameters: Mapping[str, Any],
+        task: Task,
+        ends: Sequence[tuple[str, RawSolution]],
+        checker: Checker,
+    ) -> Trial:
+        """The best of where starts led, settled and checked."""
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             instants = self._instants(raw, task)
             residuals = checker.task_residuals(instants, task.heights)
-            return Candidate(checked(self.name, start, raw, residuals), instants, residuals)
+            return Candidate(checked(self.name, start, raw, residuals), instants, residuals, raw)
 
         return cheapest(self.name, ends, lambda raw: self._solver.settled(parameters, raw), finish)
 
@@ -223,11 +239,12 @@ class JointPostures:
         if begun is not None:
             first = [(name, begun.solve(parameters, start)) for name, start in starts]
             optima = _distinct(first)
-            if not optima:
-                return first
+            settled = [(name, begun.settled(parameters, raw)) for name, raw in optima[:MOST_OPTIMA]]
+            if not any(raw.status is Status.SOLVED for _, raw in settled):
+                return settled or first
             ends = [
                 (name, _after(raw, solver.solve(parameters, self._begun(raw.values, parameters))))
-                for name, raw in optima[:MOST_OPTIMA]
+                for name, raw in _distinct(settled)
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends

@@ -36,8 +36,9 @@ __all__ = ["REACH", "found_meetings", "with_meetings"]
 REACH = "reach"
 """Whose pairs are the robot's at extreme heights, beside those of the agents."""
 
-DESIGNS, FEWEST = 16, 4
-"""Whose postures are looked at, with all people and loads together, and at least with each."""
+DESIGNS, AT_REACH, FEWEST = 40, 16, 4
+"""Whose postures are looked at, at the tasks and at extreme heights, with all people and loads together, and
+at least with each."""
 
 NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
@@ -127,8 +128,12 @@ class _Finder:
         def given(genome: tuple[float, ...]) -> tuple[float, ...]:
             return space.given(space.values(genome), {})
 
-        count = max(DESIGNS, FEWEST * parts)
-        self._designs = [*spread_designs(len(space.parameters), given, lambda _: True, count)][part::parts]
+        def own(count: int) -> list[tuple[float, ...]]:
+            all_together = max(count, FEWEST * parts)
+            every = spread_designs(len(space.parameters), given, lambda _: True, all_together)
+            return [*every][part::parts]
+
+        self._held, self._at_reach = own(DESIGNS), own(AT_REACH)
 
     def held(
         self, tasks: Sequence[Task], parted: Collection[_Met], left: Collection[Hashable] | None
@@ -146,7 +151,7 @@ class _Finder:
         problem = JointPostures(name, forms, replace(self._setting, scene=scene), SolverCache())
         human = AgentModel.of(free.human, free.human.tree)
         found: dict[Hashable, _Near] = {}
-        for number, values in enumerate(self._designs):
+        for number, values in enumerate(self._held):
             robot = AgentModel.of(free.robot, space.resized(free.robot.tree, values))
             checker = Checker(free, robot, human)
             for place, task in enumerate(tasks):
@@ -168,7 +173,7 @@ class _Finder:
         scene = self._parting(parted)
         problem = ReachProblem(replace(self._setting, scene=scene), symmetric=self._symmetric)
         found: dict[Hashable, _Near] = {}
-        for number, values in enumerate(self._designs):
+        for number, values in enumerate(self._at_reach):
             height, raw = problem.extreme(values, sense)
             if height is not None:
                 parts = {name.partition(".")[2]: value for name, value in raw.values.items()}
