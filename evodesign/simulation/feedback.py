@@ -39,7 +39,7 @@ class Feedback:
         InputError: a number that is not positive.
     """
 
-    frequency: float = 15.0
+    frequency: float = 8.0
     damping: float = 1.0
 
     def __post_init__(self) -> None:
@@ -99,4 +99,5 @@ def set_gains(found: SimulatedScene, feedback: Feedback) -> None:
         damping = 2.0 * feedback.damping * feedback.frequency * inertias
         found.model.actuator_biasprm[parts.actuators, 1] = -stiffness
         found.model.actuator_biasprm[parts.actuators, 2] = -damping
+        # of no body: it makes the step implicit in the damping (`rollout`)
         found.model.dof_armature[parts.rates] += found.model.opt.timestep * damping

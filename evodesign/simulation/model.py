@@ -1,8 +1,9 @@
 """Robot, person and load as one MuJoCo model, made of the trees that evodesign itself works with.
 
-    sole      a box as large as the sole under its frame; it alone touches the floor, with the problem's friction
-    hand      a site at its frame; a point grasp joins it to a site of the load (`connect`: the hand is free to
-              turn), a rigid one also keeps it from turning (`weld`)
+    sole      a box as large as the sole under its frame; it alone touches the floor, with the problem's
+              friction
+    hand      a site at its frame; a point grasp joins it to a site of the load (`connect`: the hand is free
+              to turn), a rigid one also keeps it from turning (`weld`)
     joint     those that the problem moves, within the ranges of the file; the others are welded at zero
     actuator  tau = u - k q - d dq/dt, with u = tau_plan + k q_plan + d dq_plan/dt as its input; limited where
               file or actuator has a limit, and k and d from `feedback`
@@ -18,36 +19,37 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import mujoco
 import numpy as np
 
 from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Payload, Scene
-from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.model import JointKind, Tree
 
-if TYPE_CHECKING:
-    import mujoco
-
 __all__ = ["LOAD", "STEP", "AgentParts", "SimulatedScene", "simulated_scene"]
 
 LOAD = "load"
 
-STEP = 1e-3
+STEP = 5e-4
 """Of the integration [s]."""
 
 SOLE_HALF_THICKNESS = 0.005  # [m]
-NEARLY_RIGID = (0.999, 0.9999, 0.001, 0.5, 2.0)
-"""`solimp` of contacts and grasps: they give way by micrometres."""
 
-FRICTION_FIRST = 10.0
+MARGIN = 1e-6
+"""Height above the floor [m] from which a sole touches it: a posture's soles are on it to within rounding."""
+
+NEARLY_RIGID = (0.995, 0.995, 0.001, 0.5, 2.0)
+"""`solimp` of contacts and grasps, which give way by micrometres; at 0.999 feet begin to chatter."""
+
+FRICTION_FIRST = 1000.0
 """`impratio`: by how much harder friction is than the normal force, so that feet do not creep."""
 
 
@@ -90,10 +92,15 @@ class SimulatedScene:
     agents: Mapping[str, AgentParts]
     load: int
 
+    def sole_origin(self, sole: int) -> Array:
+        """Of the sole frame of a sole's geom, in the world [m]."""
+        down = self.data.geom_xmat[sole].reshape(3, 3)[:, 2] * SOLE_HALF_THICKNESS
+        return np.asarray(self.data.geom_xpos[sole] - down)
+
 
 def simulated_scene(
     scene: Scene,
-    models: Mapping[str, AgentModel],
+    trees: Mapping[str, Tree],
     postures: Mapping[str, AgentPosture],
     height: float,
     step: float = STEP,
@@ -102,51 +109,48 @@ def simulated_scene(
 
     Args:
         scene: undisturbed.
-        models: robot and person by name, with the trees of a design.
+        trees: of robot and person by name, of a design.
         postures: by agent name, with which it begins.
         height: of the load's centre [m].
         step: of the integration [s].
     Raises:
         ModelError: MuJoCo cannot hold a tree: a link that moves has no mass.
     """
-    import mujoco
-
     spec = mujoco.MjSpec()
     spec.option.timestep, spec.option.gravity = step, [0.0, 0.0, -GRAVITY]
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER
     spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, FRICTION_FIRST
     spec.option.tolerance = 1e-12
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # whose rows `contact_wrenches` reads
+    give = {"solref": [2.0 * step, 1.0], "solimp": NEARLY_RIGID}
     spec.worldbody.add_geom(
         name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[3.0, 3.0, 0.1], rgba=[0.9, 0.9, 0.9, 1.0]
     )
     spec.worldbody.add_light(pos=[0.0, -2.0, 4.0], dir=[0.0, 0.5, -1.0])
     load = _add_load(spec, scene.payload)
     frames = {}
-    for name, model in models.items():
-        frames[name] = _frames(model, postures[name])
-        _add_agent(spec, model, scene.ground, step)
+    for agent in (scene.robot, scene.human):
+        frames[agent.name] = _frames(agent, trees[agent.name], postures[agent.name])
+        _add_agent(spec, agent, trees[agent.name], scene.ground, give)
         for side in SIDES:
-            _add_grasp(spec, load, scene.payload, model, side, frames[name], step)
+            _add_grasp(spec, load, scene.payload, agent, side, frames[agent.name], give)
     compiled = spec.compile()
     data = mujoco.MjData(compiled)
-    found = SimulatedScene(
-        compiled, data, {name: _parts(compiled, m.agent) for name, m in models.items()}, compiled.body(LOAD).id
-    )
-    _place(found, models, postures, frames, height)
+    parts = {agent.name: _parts(compiled, agent) for agent in (scene.robot, scene.human)}
+    found = SimulatedScene(compiled, data, parts, compiled.body(LOAD).id)
+    _place(found, postures, frames, height)
     mujoco.mj_forward(compiled, data)
     return found
 
 
-def _frames(model: AgentModel, posture: AgentPosture) -> Mapping[str, Placement]:
+def _frames(agent: Agent, tree: Tree, posture: AgentPosture) -> Mapping[str, Placement]:
     """world_from_link of an agent's links."""
-    world_from_agent = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, model.agent.facing))
+    world_from_agent = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, agent.facing))
     base = Placement.from_xyz_rpy(posture.base_position.tolist(), posture.base_angles.tolist())
-    return link_frames(model.tree, world_from_agent @ base, posture.joints)
+    return link_frames(tree, world_from_agent @ base, posture.joints)
 
 
 def _add_load(spec: Any, payload: Payload) -> Any:
-    import mujoco
-
     body = spec.worldbody.add_body(name=LOAD, mass=payload.mass, ipos=payload.center_of_mass)
     body.inertia, body.explicitinertial = np.diag(payload.inertia.about_center), True
     body.add_freejoint(name=LOAD)
@@ -165,11 +169,8 @@ def _moving_only(tree: Tree, joints: tuple[str, ...]) -> Tree:
     )
 
 
-def _add_agent(spec: Any, model: AgentModel, ground: Ground, step: float) -> None:
-    import mujoco
-
-    agent = model.agent
-    part = mujoco.MjSpec.from_string(mjcf_text(_moving_only(model.tree, agent.joints), GRAVITY, {}))
+def _add_agent(spec: Any, agent: Agent, tree: Tree, ground: Ground, give: Mapping[str, Any]) -> None:
+    part = mujoco.MjSpec.from_string(mjcf_text(_moving_only(tree, agent.joints), GRAVITY, {}))
     for each in (*part.worldbody.geoms, *part.worldbody.lights, *part.actuators):
         part.delete(each)
     for geom in part.geoms:
@@ -186,16 +187,15 @@ def _add_agent(spec: Any, model: AgentModel, ground: Ground, step: float) -> Non
             friction=[ground.friction, 0.0, 0.0],
             priority=1,
             condim=3,
-            margin=1e-6,
-            solref=[2.0 * step, 1.0],
-            solimp=NEARLY_RIGID,
+            margin=MARGIN,
             contype=0,
             conaffinity=1,
             group=3,
+            **give,
         )
         part.body(agent.hands[side]).add_site(name=f"{side}_hand")
     for joint in agent.joints:
-        limit = _torque_limit(model, joint)
+        limit = _torque_limit(agent, tree, joint)
         part.add_actuator(
             name=joint,
             target=joint,
@@ -209,27 +209,25 @@ def _add_agent(spec: Any, model: AgentModel, ground: Ground, step: float) -> Non
     spec.attach(part, prefix=f"{agent.name}/", frame=spec.worldbody.add_frame())
 
 
-def _torque_limit(model: AgentModel, joint: str) -> float:
+def _torque_limit(agent: Agent, tree: Tree, joint: str) -> float:
     """The peak torque of a joint's actuator, else its limit in the problem or the file [N m]."""
-    driven = actuators_of(model.tree)
+    driven = actuators_of(tree)
     if joint in driven:
         return float(driven[joint].peak)
-    return float(model.agent.torque_limits.get(joint, math.inf))
+    return float(agent.torque_limits.get(joint, math.inf))
 
 
 def _add_grasp(
     spec: Any,
     load: Any,
     payload: Payload,
-    model: AgentModel,
+    agent: Agent,
     side: str,
     frames: Mapping[str, Placement],
-    step: float,
+    give: Mapping[str, Any],
 ) -> None:
     """A hand on the load: its place, and with rigid grasps its turn in the first posture."""
-    import mujoco
-
-    agent, name = model.agent, f"{model.agent.name}/{side}_hand"
+    name = f"{agent.name}/{side}_hand"
     along, across, up = payload.grasp_point(agent, side)
     turn = quaternion_wxyz(frames[agent.hands[side]].rotation)
     site = load.add_site(name=f"{name}_grip", pos=[agent.sign * along, agent.sign * across, up], quat=turn)
@@ -240,8 +238,7 @@ def _add_grasp(
         objtype=mujoco.mjtObj.mjOBJ_SITE,
         name1=name,
         name2=site.name,
-        solref=[2.0 * step, 1.0],
-        solimp=NEARLY_RIGID,
+        **give,
     )
 
 
@@ -260,7 +257,6 @@ def _parts(model: mujoco.MjModel, agent: Agent) -> AgentParts:
 
 def _place(
     found: SimulatedScene,
-    models: Mapping[str, AgentModel],
     postures: Mapping[str, AgentPosture],
     frames: Mapping[str, Mapping[str, Placement]],
     height: float,
@@ -269,7 +265,7 @@ def _place(
     model, qpos = found.model, found.data.qpos
     qpos[model.joint(LOAD).qposadr[0] :][:7] = [0.0, 0.0, height, 1.0, 0.0, 0.0, 0.0]
     for name, parts in found.agents.items():
-        root = frames[name][models[name].tree.root]
+        root = frames[name][parts.agent.tree.root]
         free = model.jnt_qposadr[model.body_jntadr[parts.root]]
         qpos[free : free + 3], qpos[free + 3 : free + 7] = root.translation, quaternion_wxyz(root.rotation)
         qpos[parts.positions] = [postures[name].joints[joint] for joint in parts.agent.joints]
