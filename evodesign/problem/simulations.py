@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from evodesign.errors import InputError
@@ -53,18 +53,24 @@ def picked_cases(
     Raises:
         InputError: there is none of them.
     """
-    found = cases
-    for key, wanted, value_of in (
-        ("--height", heights, lambda detail: detail.case.task.height_m),
-        ("--person", () if person is None else (person,), lambda detail: detail.case.person),
-        ("--payload", () if payload is None else (payload,), lambda detail: detail.case.payload),
-    ):
-        there = list(dict.fromkeys(value_of(detail) for detail in cases))
-        missing = next((each for each in wanted if each not in there), None)
-        if missing is not None:
-            raise InputError(key, "", f"one of {', '.join(map(str, there)) or 'none'}", f"{missing}")
-        found = [detail for detail in found if not wanted or value_of(detail) in wanted]
-    return tuple(found)
+    found = tuple(cases)
+    found = _picked("--height", found, heights, lambda detail: detail.case.task.height_m)
+    people, loads = ([] if name is None else [name] for name in (person, payload))
+    found = _picked("--person", found, people, lambda detail: detail.case.person)
+    return _picked("--payload", found, loads, lambda detail: detail.case.payload)
+
+
+def _picked(
+    key: str,
+    cases: tuple[CaseDetail, ...],
+    wanted: Sequence[float | str],
+    value_of: Callable[[CaseDetail], float | str],
+) -> tuple[CaseDetail, ...]:
+    there = list(dict.fromkeys(map(value_of, cases)))
+    missing = next((each for each in wanted if each not in there), None)
+    if missing is not None:
+        raise InputError(key, "", f"one of {', '.join(map(str, there))}", f"{missing}")
+    return tuple(detail for detail in cases if not wanted or value_of(detail) in wanted)
 
 
 def simulated_holds(

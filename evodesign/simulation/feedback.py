@@ -65,7 +65,7 @@ def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
         if _carries_a_sole(model, parts, int(model.dof_bodyid[joint])):
             still = _all_but_what_is_beyond(found, parts, int(joint), free)
             inertias[place] = still @ mass @ still / 2.0
-    return inertias
+    return np.asarray(inertias)
 
 
 def _carries_a_sole(model: mujoco.MjModel, parts: AgentParts, body: int) -> bool:

@@ -137,7 +137,8 @@ def _agent(plan: AgentPlan, rollout: AgentRollout, times: Array, *, fell: bool) 
     count, names = len(times), list(plan.first.joints)
     off = np.abs(rollout.torques - plan.torques[:count])
     worst = off[times >= min(SETTLED, times[-1])].max(axis=0)
-    limited = (np.abs(rollout.torques) >= rollout.limits * (1.0 - 1e-9)).any(axis=0)
+    most = np.abs(rollout.torques).max(axis=0)
+    limited = most >= rollout.limits * (1.0 - 1e-9)
     moved = rollout.soles[:, :, :2] - rollout.soles[0, :, :2]
     return AgentOutcome(
         tracking=float(np.abs(rollout.positions - plan.positions[:count]).max()),

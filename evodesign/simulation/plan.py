@@ -62,7 +62,7 @@ class Plan:
     @property
     def times(self) -> Array:
         """Of the samples [s], shape (n,)."""
-        return self.step * np.arange(len(self.heights))
+        return np.asarray(self.step * np.arange(len(self.heights)))
 
 
 def hold_plan(postures: Mapping[str, AgentPosture], height: float, seconds: float, step: float) -> Plan:
