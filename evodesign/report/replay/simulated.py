@@ -13,7 +13,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from evodesign.body.placement import Placement
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent
+from evodesign.errors import InputError
+from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.simulations import SimulatedCase
 from evodesign.records import AgentDetail, Case, CaseDetail, InstantDetail
 from evodesign.report.replay.recording import NANOSECONDS, Frame, write_frames
@@ -35,9 +36,13 @@ def write_simulations(stream: IO[bytes], scene_set: SceneSet, simulations: Seque
         stream: to an empty file.
         scene_set: the design's robot with all people and loads.
         simulations: in the order in which they are shown.
+    Raises:
+        InputError: there is none.
     """
-    names = [ROBOT, HUMAN]
-    attachments = {f"{name}.urdf": urdf_text(simulations[0].trees[name]) for name in names if simulations}
+    if not simulations:
+        raise InputError("--mcap", "", "a simulation to be shown", "none")
+    people = {name: tree for name, (_, tree) in scene_set.people_files.items()}
+    attachments = {name: urdf_text(tree) for name, tree in {"robot.urdf": scene_set.robot, **people}.items()}
     about = {f"simulation {number}": each.name for number, each in enumerate(simulations)}
     write_frames(stream, scene_set, _frames(scene_set, simulations), attachments, about)
 
