@@ -1,10 +1,11 @@
 """Designs of fronts in MuJoCo: how far holds and lifts are from their plans at most.
 
 Every hold of the first designs of each run's front is simulated for 2 s, and their lift from 0.8 to 1.2 m in
-1.5 s, as `evodesign simulate` does it. What is printed is the worst of each run; all of it goes to
+1.5 s, as `evodesign simulate` does it. Where no run is named, two are made: 60 evaluations of NSGA-II for
+icub-lifting and icub-hardware. What is printed is the worst of each run; all of it goes to
 benchmarks/results/simulation.json.
 
-    python -m benchmarks.simulation RUN [RUN ..] [--designs 11] [--knots 24]
+    python -m benchmarks.simulation [RUN ..] [--designs 11] [--knots 24]
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ import argparse
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import evodesign
 from benchmarks.inner_problem import HERE
 from evodesign.analysis.front import front
 from evodesign.motion.course import Lift
@@ -63,22 +66,34 @@ def worst(found: list[dict[str, Any]]) -> str:
     )
 
 
+def made(folder: Path) -> Iterator[Path]:
+    """Small runs of both problems."""
+    for problem in ("icub-lifting", "icub-hardware"):
+        evodesign.search(problem, folder / problem, evaluations=60, algorithm="nsga2")
+        yield folder / problem
+
+
+def _add(results: dict[str, list[dict[str, Any]]], run: Path, designs: int, knots: int) -> None:
+    name = read_run(run).header.problem_name
+    results[name] = found = list(simulations(run, designs, knots))
+    for kind in ("holds", "lifts"):
+        some = [each for each in found if each["kind"] == kind]
+        print(f"{name}, {kind}: {worst(some) if some else 'none'}", flush=True)
+
+
 def main() -> None:
     """Simulate, print and keep."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("runs", nargs="+", type=Path)
+    parser.add_argument("runs", nargs="*", type=Path)
     parser.add_argument("--designs", type=int, default=11)
     parser.add_argument("--knots", type=int, default=24)
     asked = parser.parse_args()
-    results = {}
-    for run in asked.runs:
-        name = read_run(run).header.problem_name
-        results[name] = found = list(simulations(run, asked.designs, asked.knots))
-        for kind in ("holds", "lifts"):
-            some = [each for each in found if each["kind"] == kind]
-            print(f"{name}, {kind}: {worst(some) if some else 'none'}", flush=True)
+    results: dict[str, list[dict[str, Any]]] = {}
+    with TemporaryDirectory() as folder:
+        for run in asked.runs or made(Path(folder)):
+            _add(results, run, asked.designs, asked.knots)
     text = json.dumps(results, indent=1, sort_keys=True) + "\n"
     (HERE / "results" / "simulation.json").write_text(text, encoding="utf-8")
 

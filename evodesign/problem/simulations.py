@@ -13,7 +13,7 @@ from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import CaseDetail
 from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.model import STEP
-from evodesign.simulation.outcome import Outcome, Rollout, outcome_of
+from evodesign.simulation.outcome import Rollout, SimulationOutcome, outcome_of
 from evodesign.simulation.plan import Plan, hold_plan, lift_plan
 from evodesign.simulation.rollout import rolled_out
 from evodesign.tree.model import Tree
@@ -42,7 +42,7 @@ class SimulatedCase:
     trees: Mapping[str, Tree]
     plan: Plan
     rollout: Rollout
-    outcome: Outcome
+    outcome: SimulationOutcome
 
 
 def picked_cases(
@@ -105,12 +105,12 @@ def simulated_lifts(
     """Every lift that was found; arguments and errors as for holds."""
     for pair, solution in solutions.items():
         if solution.course is not None:
-            name = ", ".join([*(part for part in pair if part), f"{_told(solution.lift)}"])
+            name = ", ".join([*(part for part in pair if part), f"{_lift_name(solution.lift)}"])
             plan = lift_plan(solution.course, STEP)
             yield _followed(scene_of(scenes, pair), name, robot, plan, feedback)
 
 
-def _told(lift: Lift) -> str:
+def _lift_name(lift: Lift) -> str:
     return f"{lift} ({lift.knots} knots)"
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from evodesign.posture.results import Array
 from evodesign.simulation.plan import AgentPlan, Plan
 
-__all__ = ["FALLEN", "SETTLED", "AgentOutcome", "AgentRollout", "Outcome", "Rollout", "outcome_of"]
+__all__ = ["FALLEN", "SETTLED", "AgentOutcome", "AgentRollout", "Rollout", "SimulationOutcome", "outcome_of"]
 
 FALLEN = 0.2
 """How far the root link of somebody who fell is from its place [m]."""
@@ -95,7 +95,7 @@ class AgentOutcome:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class SimulationOutcome:
     """What a simulation says of a hold or lift.
 
     Args:
@@ -116,13 +116,13 @@ class Outcome:
         return not any(agent.fell for agent in self.agents.values())
 
 
-def outcome_of(plan: Plan, rollout: Rollout) -> Outcome:
+def outcome_of(plan: Plan, rollout: Rollout) -> SimulationOutcome:
     """What a rollout says beside its plan."""
     count = len(rollout.times)
     path = np.zeros((count, 3))
     path[:, 2] = plan.heights[:count]
     upright = 1.0 - 2.0 * (rollout.loads[:, 4] ** 2 + rollout.loads[:, 5] ** 2)
-    return Outcome(
+    return SimulationOutcome(
         seconds=float(rollout.times[-1]),
         drift=float(np.linalg.norm(rollout.loads[:, :3] - path, axis=1).max()),
         tilt=float(np.arccos(np.clip(upright, -1.0, 1.0)).max()),

@@ -64,7 +64,7 @@ def rolled_out(scene: Scene, trees: Mapping[str, Tree], plan: Plan, feedback: Fe
         if fallen:
             break
         mujoco.mj_Euler(model, data)
-    return _told(found, plan, rows, frames, every, fallen)
+    return _collected(found, plan, rows, frames, every, fallen)
 
 
 def _inputs(found: SimulatedScene, plan: Plan, name: str) -> Array:
@@ -104,7 +104,7 @@ def _fell(found: SimulatedScene, plan: Plan, name: str, place: int) -> bool:
     return not np.linalg.norm(found.data.xpos[parts.root] - planned) < FALLEN
 
 
-def _told(
+def _collected(
     found: SimulatedScene,
     plan: Plan,
     rows: list[dict[str, Array]],

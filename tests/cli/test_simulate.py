@@ -48,14 +48,15 @@ def test_a_hold_is_told_in_si_units_and_recorded_with_its_own_times(
 
 
 @pytest.mark.slow
-def test_a_film_is_drawn_where_mujoco_draws(tmp_path: Path) -> None:
+def test_a_film_is_drawn_or_a_sentence_says_that_mujoco_cannot_draw(tmp_path: Path) -> None:
     film = tmp_path / "hold.gif"
     try:
         simulated(*SHORT, "--video", str(film))
     except InputError as error:
-        pytest.skip(str(error))
-    with Image.open(film) as opened:
-        assert opened.size == (480, 360)
+        assert "MUJOCO_GL" in str(error)  # noqa: PT017 - which of both it is, the machine decides
+    else:
+        with Image.open(film) as opened:
+            assert opened.size == (480, 360)
 
 
 @pytest.mark.parametrize(
@@ -63,9 +64,11 @@ def test_a_film_is_drawn_where_mujoco_draws(tmp_path: Path) -> None:
     [
         (("--height", "0.7"), "--height"),
         (("--person", "nobody"), "--person: wanted one of .*tall"),
+        (("--payload", "feather"), "--payload"),
         (("--from", "0.8"), "both --from and --to"),
         (("--seconds", "-1"), "a positive number"),
         (("--frequency", "0"), "frequency"),
+        (("--damping", "0"), "damping"),
     ],
 )
 def test_what_there_is_not_is_refused(options: tuple[str, ...], words: str) -> None:

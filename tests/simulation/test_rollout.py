@@ -12,7 +12,7 @@ from evodesign.errors import InputError
 from evodesign.mechanics.scene import SIDES, Grasp
 from evodesign.posture.results import AgentPosture
 from evodesign.simulation.feedback import Feedback
-from evodesign.simulation.outcome import Outcome, Rollout, outcome_of
+from evodesign.simulation.outcome import Rollout, SimulationOutcome, outcome_of
 from evodesign.simulation.plan import hold_plan, lift_plan
 from evodesign.simulation.rollout import rolled_out
 from tests.motion.lifted import LIFT, Lifted
@@ -23,7 +23,7 @@ STEP = 5e-4
 
 def holding(
     held: Held, seconds: float, feedback: Feedback | None = None, **changed: AgentPosture
-) -> tuple[Rollout, Outcome]:
+) -> tuple[Rollout, SimulationOutcome]:
     plan = hold_plan({**held.solution.postures, **changed}, HEIGHT, seconds, STEP)
     rollout = rolled_out(held.scene, held.trees, plan, feedback or Feedback())
     return rollout, outcome_of(plan, rollout)
