@@ -195,18 +195,23 @@ def _add_agent(spec: Any, agent: Agent, tree: Tree, ground: Ground, give: Mappin
         )
         part.body(agent.hands[side]).add_site(name=f"{side}_hand")
     for joint in agent.joints:
-        limit = _torque_limit(agent, tree, joint)
-        part.add_actuator(
-            name=joint,
-            target=joint,
-            trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-            gainprm=[1.0] + [0.0] * 9,
-            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-            forcelimited=math.isfinite(limit),
-            forcerange=[-limit, limit] if math.isfinite(limit) else [0.0, 0.0],
-        )
+        _add_motor(part, joint, _torque_limit(agent, tree, joint))
     spec.attach(part, prefix=f"{agent.name}/", frame=spec.worldbody.add_frame())
+
+
+def _add_motor(part: Any, joint: str, limit: float) -> None:
+    """An actuator of a joint, whose gains of feedback are still zero."""
+    limited = math.isfinite(limit)
+    part.add_actuator(
+        name=joint,
+        target=joint,
+        trntype=mujoco.mjtTrn.mjTRN_JOINT,
+        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+        gainprm=[1.0] + [0.0] * 9,
+        biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        forcelimited=limited,
+        forcerange=[-limit, limit] if limited else [0.0, 0.0],
+    )
 
 
 def _torque_limit(agent: Agent, tree: Tree, joint: str) -> float:
