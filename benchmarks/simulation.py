@@ -5,7 +5,7 @@ Every hold of the first designs of each run's front is simulated for 2 s, and th
 icub-lifting and icub-hardware. What is printed is the worst of each run; all of it goes to
 benchmarks/results/simulation.json.
 
-    python -m benchmarks.simulation [RUN ..] [--designs 11] [--knots 24]
+    python -m benchmarks.simulation [RUN ..] [--designs 5] [--knots 24]
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("runs", nargs="*", type=Path)
-    parser.add_argument("--designs", type=int, default=11)
+    parser.add_argument("--designs", type=int, default=5)
     parser.add_argument("--knots", type=int, default=24)
     asked = parser.parse_args()
     results: dict[str, list[dict[str, Any]]] = {}

@@ -38,7 +38,7 @@ __all__ = ["LOAD", "STEP", "AgentParts", "SimulatedScene", "simulated_scene"]
 
 LOAD = "load"
 
-STEP = 5e-4
+STEP = 2.5e-4
 """Of the integration [s]."""
 
 SOLE_HALF_THICKNESS = 0.005  # [m]
@@ -46,8 +46,8 @@ SOLE_HALF_THICKNESS = 0.005  # [m]
 MARGIN = 1e-6
 """Height above the floor [m] from which a sole touches it: a posture's soles are on it to within rounding."""
 
-NEARLY_RIGID = (0.995, 0.995, 0.001, 0.5, 2.0)
-"""`solimp` of contacts and grasps, which give way by micrometres; at 0.999 feet begin to chatter."""
+NEARLY_RIGID = (0.97, 0.97, 0.001, 0.5, 2.0)
+"""`solimp` of contacts and grasps, which give way by micrometres; the stiffer, the sooner feet chatter."""
 
 FRICTION_FIRST = 1000.0
 """`impratio`: by how much harder friction is than the normal force, so that feet do not creep."""
