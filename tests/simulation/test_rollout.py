@@ -12,13 +12,12 @@ from evodesign.errors import InputError
 from evodesign.mechanics.scene import SIDES, Grasp
 from evodesign.posture.results import AgentPosture
 from evodesign.simulation.feedback import Feedback
+from evodesign.simulation.model import STEP
 from evodesign.simulation.outcome import Rollout, SimulationOutcome, outcome_of
 from evodesign.simulation.plan import hold_plan, lift_plan
 from evodesign.simulation.rollout import rolled_out
 from tests.motion.lifted import LIFT, Lifted
 from tests.simulation.conftest import HEIGHT, Held
-
-STEP = 5e-4
 
 
 def holding(
