@@ -39,7 +39,7 @@ def test_a_hold_stands_with_the_torques_and_wrenches_of_its_plan(
     assert outcome.drift < 1e-3
     for name, agent in outcome.agents.items():
         assert agent.slip < 1e-3
-        assert agent.torque_share < 0.05
+        assert agent.torque < max(0.05 * agent.peak, 0.02), "a rigid grasp leaves the robot next to nothing"
         posture = held.solution.postures[name]
         for row, side in enumerate(SIDES):
             foot, hand = rollout.agents[name].feet[-1, row], rollout.agents[name].hands[-1, row]
