@@ -46,7 +46,7 @@ def _pictures(rollout: Rollout) -> Iterator[Image.Image]:
     camera.lookat, camera.distance, camera.azimuth, camera.elevation = [0.0, 0.0, 0.9], 3.2, 115.0, -12.0
     try:
         renderer = mujoco.Renderer(model, HEIGHT, WIDTH)
-    except (ImportError, AttributeError, RuntimeError, mujoco.FatalError) as error:  # of its OpenGL
+    except (ImportError, AttributeError, RuntimeError, Warning, mujoco.FatalError) as error:  # of OpenGL
         wanted = "a machine on which MuJoCo draws (MUJOCO_GL=egl or osmesa without a screen)"
         raise InputError("--video", "", wanted, f"{error}") from error
     with renderer:
