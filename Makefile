@@ -83,6 +83,7 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python -m benchmarks.lift_speed
 	$(BIN)/python -m benchmarks.lift_quality
 	$(BIN)/python -m benchmarks.lift_ranking
+	$(BIN)/python -m benchmarks.simulation
 
 faults: $(VENV)/installed-dev  ## kill searches and commands 1,000 times, damage logs (KILLS=, FOLDER= to go on)
 	$(BIN)/python -m tests.faults.campaign --kills $(KILLS) $(if $(FOLDER),--folder $(FOLDER))

@@ -6,6 +6,7 @@
     run = evodesign.open_run("runs/first")              front, table, designs, postures of any run
     problem = evodesign.open_problem("problem.toml")    designs evaluated one at a time
     evodesign.lift(problem, from_m=0.8, to_m=1.2)       the load lifted in time
+    evodesign.simulate(problem)                         holds or lifts in MuJoCo, as a referee
     evodesign.as_pymoo_problem(problem)                 for pymoo's algorithms
 
 What a name needs is loaded when it is used: opening a run loads no solver.
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from evodesign.api.pymoo_problem import as_pymoo_problem
     from evodesign.api.run import Run, open_run
     from evodesign.api.search import resume, search
+    from evodesign.api.simulate import simulate
 
 HOMES = {
     "Design": "evodesign.api.design",
@@ -34,6 +36,7 @@ HOMES = {
     "problems": "evodesign.api.problem",
     "resume": "evodesign.api.search",
     "search": "evodesign.api.search",
+    "simulate": "evodesign.api.simulate",
 }
 """Where each public name lives."""
 
@@ -49,6 +52,7 @@ __all__ = [
     "problems",
     "resume",
     "search",
+    "simulate",
 ]
 
 

@@ -36,6 +36,7 @@ from evodesign.cli.reproduce import reproduce
 from evodesign.cli.resume import resume
 from evodesign.cli.search import search
 from evodesign.cli.show import show
+from evodesign.cli.simulate import simulate
 from evodesign.cli.starts import starts
 from evodesign.cli.verify import verify
 from evodesign.cli.watch import watch
@@ -60,6 +61,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "families": families,
     "evaluate": evaluate,
     "lift": lift,
+    "simulate": simulate,
     "polish": polish,
     "check": check,
     "problems": problems,

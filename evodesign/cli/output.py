@@ -28,6 +28,7 @@ __all__ = [
     "printable",
     "rounded",
     "show_notes",
+    "write_bytes",
     "write_text",
 ]
 
@@ -105,7 +106,12 @@ def write_text(path: Path, text: str, option: str, *, follow: bool = True) -> No
     Raises:
         InputError: it cannot be written.
     """
+    write_bytes(path, text.encode(), option, follow=follow)
+
+
+def write_bytes(path: Path, content: bytes, option: str, *, follow: bool = True) -> None:
+    """The same for a file that is no text."""
     try:
-        write_whole(path, text.encode(), follow=follow)
+        write_whole(path, content, follow=follow)
     except OSError as error:
         raise InputError(option, "", "a file that can be written", f"'{path}' ({error.strerror})") from error

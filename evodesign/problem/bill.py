@@ -18,8 +18,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from evodesign.design.space import DesignSpace
 from evodesign.hardware.actuators import Actuator
 from evodesign.mechanics.scene import ROBOT, Agent
@@ -27,7 +25,8 @@ from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.hardware_objectives import StanceModel, link_safety
-from evodesign.records import AgentDetail, CaseDetail, LoadCaseDetail
+from evodesign.problem.logged_posture import logged_posture
+from evodesign.records import CaseDetail
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
@@ -73,20 +72,9 @@ def _postures(cases: Sequence[CaseDetail]) -> Iterator[tuple[str, AgentPosture]]
         name = ", ".join(part for part in (str(detail.case.task), detail.case.label) if part)
         for instant in detail.instants:
             own = instant.agents[ROBOT]
-            yield name, _posture(own, own)
+            yield name, logged_posture(own, own)
             for disturbance, agents in instant.disturbed.items():
-                yield f"{name}, {disturbance}", _posture(own, agents[ROBOT])
-
-
-def _posture(own: AgentDetail, carried: AgentDetail | LoadCaseDetail) -> AgentPosture:
-    return AgentPosture(
-        base_position=np.array(own.base_position_m),
-        base_angles=np.array(own.base_rpy_rad),
-        joints=own.joints_rad,
-        torques=carried.torques_n_m,
-        hand_wrenches={side: np.array(wrench) for side, wrench in carried.hand_wrenches.items()},
-        foot_wrenches={side: np.array(wrench) for side, wrench in carried.foot_wrenches.items()},
-    )
+                yield f"{name}, {disturbance}", logged_posture(own, agents[ROBOT])
 
 
 def _safety(robot: Agent, tree: Tree, cases: Sequence[CaseDetail]) -> dict[str, dict[str, Any]]:

@@ -213,6 +213,17 @@ class SceneSet:
         return tuple(found.values())
 
     @property
+    def people_files(self) -> dict[str, tuple[str, Tree]]:
+        """By file name: each person's label and tree. Several people are numbered, whatever their labels."""
+        if len(self.people) == 1:
+            ((person, tree),) = self.people
+            return {"human.urdf": (person.label, tree)}
+        return {
+            f"human_{number}.urdf": (person.label, tree)
+            for number, (person, tree) in enumerate(self.people, 1)
+        }
+
+    @property
     def payloads(self) -> tuple[Payload, ...]:
         """Each load once, in the problem's order."""
         return tuple({models.payload.label: models.payload for models in self.models}.values())

@@ -153,6 +153,10 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "families": (("families", "run"), ("families", "many", "--by", "arm.0 + arm.1", "--cells", 5)),
     "evaluate": (("evaluate", "small.toml"),),
     "lift": (("lift", "small.toml", "--from", 0.9, "--to", 2.5, "--csv", "lift.csv"),),
+    "simulate": (
+        ("simulate", "run", 1, "--height", 0.8, "--seconds", 0.3, "--mcap", "hold.mcap"),
+        ("simulate", "run", 1, "--from", 0.9, "--to", 2.5, "--knots", 8, "--profile", "free"),
+    ),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (
         ("check", "small.toml"),

@@ -54,17 +54,6 @@ class ExportedDesign:
     cases: tuple[CaseDetail, ...]
     notes: tuple[str, ...] = ()
 
-    @property
-    def people(self) -> dict[str, tuple[str, Tree]]:
-        """By file name: each person's label and tree. Several people are numbered, whatever their labels."""
-        people = self.scene_set.people
-        if len(people) == 1:
-            ((person, tree),) = people
-            return {"human.urdf": (person.label, tree)}
-        return {
-            f"human_{number}.urdf": (person.label, tree) for number, (person, tree) in enumerate(people, 1)
-        }
-
 
 def design_json(
     header: RunHeader, evaluation: Evaluation, cases: tuple[CaseDetail, ...], *, on_front: bool

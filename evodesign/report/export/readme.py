@@ -104,8 +104,8 @@ def _texts(design: ExportedDesign, files: Sequence[str]) -> dict[str, str]:
     texts = dict(FILES)
     if any(name.startswith(f"{MESHES}/") for name in files):
         texts |= WITH_MESHES
-    if len(design.people) > 1:
-        for name, (label, _) in design.people.items():
+    if len(design.scene_set.people) > 1:
+        for name, (label, _) in design.scene_set.people_files.items():
             texts[name] = f"The person {_code(label)}, for kinematics and viewing."
     if several(design.cases):
         texts["robot.xml"] = FILES["robot.xml"].replace("per load height", "per case")
@@ -118,7 +118,7 @@ def _cases(design: ExportedDesign) -> tuple[str, ...]:
     """The cases that were solved with their times in the recording, of several people or loads."""
     if not several(design.cases):
         return ()
-    files = {label: name for name, (label, _) in design.people.items()}
+    files = {label: name for name, (label, _) in design.scene_set.people_files.items()}
     rows = [
         f"| {time / 1e9:g} s | {_cell(case.person)} | `{files[case.person]}` "
         f"| {_cell(case.payload)} | {case.task} |"

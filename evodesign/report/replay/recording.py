@@ -12,7 +12,7 @@ Source: MCAP registry, schema encoding `protobuf`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import IO, Any, Final
 
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
@@ -21,16 +21,19 @@ from mcap.writer import CompressionType, Writer
 from evodesign.records import CaseDetail
 from evodesign.report.replay.messages import messages
 from evodesign.report.replay.surfaces import MESHES, mesh_message, topics_of
-from evodesign.report.scene_models import SceneSet
+from evodesign.report.scene_models import PlacedScene, SceneSet
 
 __all__ = [
+    "NANOSECONDS",
     "SECONDS_PER_CASE",
+    "Frame",
     "Timed",
     "descriptor_set",
     "nanoseconds_at",
     "several",
     "time_scale",
     "timed",
+    "write_frames",
     "write_replay",
 ]
 
@@ -40,6 +43,9 @@ SECONDS_PER_CASE: Final = 2
 
 Timed = tuple[int, CaseDetail]
 """Time [ns] and what is shown from then on."""
+
+Frame = tuple[int, PlacedScene, CaseDetail]
+"""Time [ns], where everything is, and the postures of it."""
 
 HOLD: Final = 1_000_000_000
 """How long the last posture stays [ns]."""
@@ -86,17 +92,29 @@ def write_replay(
         attachments: URDF texts by file name.
         about: what the recording is of, kept as the metadata record `evodesign`.
     """
+    shown = timed(cases)
+    held = [(time + HOLD, last) for time, last in shown[-1:]]
+    frames = ((time, scene_set.placed_scene(detail), detail) for time, detail in (*shown, *held))
+    write_frames(stream, scene_set, frames, attachments, about)
+
+
+def write_frames(
+    stream: IO[bytes],
+    scene_set: SceneSet,
+    frames: Iterable[Frame],
+    attachments: Mapping[str, str],
+    about: Mapping[str, str],
+) -> None:
+    """Write a recording of frames in rising order of time; the other arguments are those of a replay."""
     writer = Writer(stream, compression=CompressionType.ZSTD)
     writer.start(profile="", library="evodesign")
     writer.add_metadata("evodesign", dict(about))
     for name, text in attachments.items():
         writer.add_attachment(0, 0, name, "application/xml", text.encode())
     channels = _channels(writer, topics_of(scene_set))
-    shown = timed(cases)
-    held = [(time + HOLD, last) for time, last in shown[-1:]]
-    for sequence, (time, detail) in enumerate((*shown, *held)):
+    for sequence, (time, stage, detail) in enumerate(frames):
         once = [(MESHES, mesh_message(scene_set, time))] if sequence == 0 and MESHES in channels else []
-        for topic, message in (*once, *messages(scene_set.placed_scene(detail), detail, time)):
+        for topic, message in (*once, *messages(stage, detail, time)):
             writer.add_message(
                 channel_id=channels[topic],
                 log_time=time,

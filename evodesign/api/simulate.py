@@ -1,0 +1,70 @@
+"""Holds and lifts in MuJoCo from a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from evodesign.api.problem import Problem
+from evodesign.errors import InputError
+from evodesign.motion.course import Lift, profile_named
+from evodesign.simulation.installed import refuse_without_mujoco
+
+if TYPE_CHECKING:
+    from evodesign.problem.simulations import SimulatedCase
+
+__all__ = ["simulate"]
+
+
+def simulate(
+    problem: Problem,
+    design: Mapping[str, float] | Sequence[float] = (),
+    *,
+    heights_m: Sequence[float] = (),
+    from_m: float | None = None,
+    to_m: float | None = None,
+    seconds: float | None = None,
+    profile: str = "minimum_jerk",
+    knots: int = 24,
+    frequency: float = 8.0,
+    damping: float = 1.0,
+) -> tuple[SimulatedCase, ...]:
+    """A design's holds, or with `from_m` and `to_m` its lift, in MuJoCo with every person and load.
+
+    Args:
+        problem: opened.
+        design: as for `Problem.evaluate`; left out, the unscaled robot.
+        heights_m: of the holds, each one of the problem's [m]; left out, all of them.
+        from_m: height of the load at the beginning of a lift [m].
+        to_m: at its end [m].
+        seconds: of a hold or lift [s]; left out, 2 for a hold and 1.5 for a lift.
+        profile: of a lift, as for `lift`.
+        knots: of a lift.
+        frequency: natural frequency of the joints' feedback [rad/s].
+        damping: its damping ratio [1].
+    Returns:
+        Plan, rollout and outcome of every hold or lift that was found.
+    Raises:
+        InputError: a design, height or lift that there is not, or MuJoCo is not installed.
+    Example:
+        >>> simulated = evodesign.simulate(problem, heights_m=[0.8], seconds=0.3)
+        >>> [(each.name, each.outcome.stands, each.outcome.drift < 0.01) for each in simulated]
+        [('short, 0.8 m', True, True), ('tall, 0.8 m', True, True)]
+    """
+    refuse_without_mujoco()
+    from evodesign.problem.simulations import HOLD_SECONDS, picked_cases, simulated_holds, simulated_lifts
+    from evodesign.simulation.feedback import Feedback
+
+    if (from_m is None) != (to_m is None):
+        raise InputError("simulate", "from_m", "both from_m and to_m, or neither", "one of them")
+    given: Any = design if len(design) else {}
+    values, feedback = problem.values(given), Feedback(frequency, damping)
+    found = problem._evaluator.assess_values(values)
+    built, space = problem.built, problem.built.space
+    robot = space.resized(built.scene.robot.tree, space.given(values, found.assessment.rated_torques))
+    if from_m is None or to_m is None:
+        cases = picked_cases(found.cases, heights_m, None, None)
+        time = HOLD_SECONDS if seconds is None else seconds
+        return tuple(simulated_holds(built.scenes, robot, cases, time, feedback))
+    asked = Lift(from_m, to_m, 1.5 if seconds is None else seconds, profile_named(profile), knots)
+    return tuple(simulated_lifts(built.scenes, robot, problem._lifts.solve(values, asked), feedback))

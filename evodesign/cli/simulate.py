@@ -1,0 +1,148 @@
+"""`simulate`: a design's holds, or a lift, by Newton's laws alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from evodesign.cli import damage
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
+from evodesign.errors import InputError
+
+if TYPE_CHECKING:
+    from evodesign.motion.course import Lift
+    from evodesign.motion.lifting import LiftSolution
+    from evodesign.problem.progress import PrecomputeProgress
+    from evodesign.problem.simulations import SimulatedCase
+    from evodesign.report.opened_design import OpenedDesign
+
+__all__ = ["simulate"]
+
+
+def simulate(
+    run: RunPath,
+    design: Design,
+    height: Annotated[
+        list[float] | None,
+        typer.Option(metavar="M", help="Only holds at this height [m]; again for more.", show_default="all"),
+    ] = None,
+    person: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only with this person.", show_default="all")
+    ] = None,
+    payload: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only with this load.", show_default="all")
+    ] = None,
+    begin: Annotated[
+        float | None,
+        typer.Option("--from", metavar="M", help="A lift: height of the load at the start [m]."),
+    ] = None,
+    end: Annotated[float | None, typer.Option("--to", metavar="M", help="Height at the end [m].")] = None,
+    seconds: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="Time [s].", show_default="2 for a hold, 1.5 for a lift"),
+    ] = None,
+    profile: Annotated[
+        str, typer.Option(metavar="NAME", help="Height in time: minimum_jerk or free.")
+    ] = "minimum_jerk",
+    knots: Annotated[int, typer.Option(metavar="N", help="Knots of the lift.")] = 24,
+    frequency: Annotated[
+        float, typer.Option(metavar="RAD_S", help="Natural frequency of the joints' feedback [rad/s].")
+    ] = 8.0,
+    damping: Annotated[float, typer.Option(metavar="RATIO", help="Its damping ratio.")] = 1.0,
+    mcap: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a recording for Foxglove and Lichtblick.")
+    ] = None,
+    video: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a film (GIF), drawn by MuJoCo.")
+    ] = None,
+    jobs: Jobs = CORES,
+    json: Json = False,
+    damaged: Damaged = False,
+) -> None:
+    """Simulate holds or a lift of a design in MuJoCo: contacts, motors, feedback; how far from the plan."""
+    from evodesign.simulation.installed import draw_without_a_screen, refuse_without_mujoco
+
+    if (begin is None) != (end is None):
+        raise InputError("--from", "", "both --from and --to, or neither", "one of them")
+    refuse_without_mujoco()
+    draw_without_a_screen()
+    from evodesign.cli.output import console, print_json, show_notes
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.cli.tables.simulation import simulation_table
+    from evodesign.problem.simulation_json import simulations_json
+    from evodesign.problem.simulations import (
+        HOLD_SECONDS,
+        picked_cases,
+        simulated_holds,
+        simulated_lifts,
+    )
+    from evodesign.report.opened_design import open_design
+    from evodesign.runlog.run import read_run
+    from evodesign.simulation.feedback import Feedback
+
+    feedback, logged = Feedback(frequency, damping), read_run(run)
+    show_notes(logged.notes)
+    with precompute_progress() as progress:
+        opened = open_design(logged, design, jobs, progress)
+        cases = picked_cases(opened.cases, height or (), person, payload)
+        scenes, robot = opened.rebuilt.problem.scenes, opened.scene_set().robot
+        if begin is None or end is None:
+            time = HOLD_SECONDS if seconds is None else seconds
+            simulations = tuple(simulated_holds(scenes, robot, cases, time, feedback))
+        else:
+            from evodesign.motion import course
+
+            time = 1.5 if seconds is None else seconds
+            asked = course.Lift(begin, end, time, course.profile_named(profile), knots)
+            pairs = {detail.case.pair for detail in cases}
+            lifts = {p: s for p, s in _lifts(opened, asked, jobs, progress).items() if p in pairs}
+            show_notes(f"no lift {s.lift}: {s.reason}" for s in lifts.values() if not s.solved)
+            simulations = tuple(simulated_lifts(scenes, robot, lifts, feedback))
+    if mcap is not None:
+        _write_recording(mcap, opened, simulations)
+    if video is not None:
+        _write_film(video, simulations)
+    if json:
+        print_json({"run": str(run), "design": design, **simulations_json(simulations, feedback)})
+    else:
+        title = f"{logged.header.problem_name}: design {design} in MuJoCo"
+        console().print(simulation_table(title, simulations, feedback))
+        show_notes(
+            f"{name} in case {each.name}: torque at its limit in {', '.join(agent.at_limit)}"
+            for each in simulations
+            for name, agent in each.outcome.agents.items()
+            if agent.at_limit
+        )
+    damage.end(logged, accepted=damaged)
+
+
+def _lifts(
+    opened: OpenedDesign, asked: Lift, jobs: int, progress: PrecomputeProgress
+) -> dict[tuple[str, str], LiftSolution]:
+    """The lift with every person and load, solved."""
+    from evodesign.problem.factory import evaluator_of
+    from evodesign.problem.lifts import Lifts
+
+    problem, values = opened.rebuilt.problem, opened.evaluation.assessment.design
+    evaluator = evaluator_of(problem, jobs, progress)
+    return Lifts(evaluator).solve([values[each.name] for each in problem.space.parameters], asked)
+
+
+def _write_recording(path: Path, opened: OpenedDesign, simulations: tuple[SimulatedCase, ...]) -> None:
+    from io import BytesIO
+
+    from evodesign.cli.output import write_bytes
+    from evodesign.report.replay.simulated import write_simulations
+
+    stream = BytesIO()
+    write_simulations(stream, opened.scene_set(), simulations)
+    write_bytes(path, stream.getvalue(), "--mcap")
+
+
+def _write_film(path: Path, simulations: tuple[SimulatedCase, ...]) -> None:
+    from evodesign.cli.output import write_bytes
+    from evodesign.simulation.film import film
+
+    write_bytes(path, film([each.rollout for each in simulations]), "--video")

@@ -1,0 +1,22 @@
+"""A posture of the log as the one that it was made of."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evodesign.posture.results import AgentPosture
+from evodesign.records import AgentDetail, LoadCaseDetail
+
+__all__ = ["logged_posture"]
+
+
+def logged_posture(own: AgentDetail, carried: AgentDetail | LoadCaseDetail) -> AgentPosture:
+    """An agent's posture with what it carries, in it or under a disturbance."""
+    return AgentPosture(
+        base_position=np.array(own.base_position_m),
+        base_angles=np.array(own.base_rpy_rad),
+        joints=own.joints_rad,
+        torques=carried.torques_n_m,
+        hand_wrenches={side: np.array(wrench) for side, wrench in carried.hand_wrenches.items()},
+        foot_wrenches={side: np.array(wrench) for side, wrench in carried.foot_wrenches.items()},
+    )

@@ -1,0 +1,1 @@
+"""Holds and lifts in MuJoCo: robot, person and load as bodies that move by Newton's laws alone."""

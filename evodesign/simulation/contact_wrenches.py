@@ -1,0 +1,55 @@
+"""What MuJoCo's contacts and grasps pass on, as evodesign tells wrenches.
+
+    foot   sum of the forces of the floor's contacts with the sole, and of their moments about its origin
+    hand   J_load^T f of the grasp's rows: its generalised force on the load, moved to the grasp point
+
+Source: MuJoCo computation chapter (constraint forces J^T f; `mj_contactForce`).
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from evodesign.mechanics.scene import SIDES
+from evodesign.posture.results import Array
+from evodesign.simulation.model import AgentParts, SimulatedScene
+
+__all__ = ["foot_wrenches", "hand_wrenches"]
+
+
+def foot_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
+    """On the left and right foot, force [N] and moment [N m], in the sole frame, shape (2, 6)."""
+    model, data = found.model, found.data
+    wrenches, rows = np.zeros((2, 6)), {geom: row for row, geom in enumerate(parts.soles.values())}
+    for number in range(data.ncon):
+        contact, force = data.contact[number], np.zeros(6)
+        row = rows.get(int(contact.geom[1]))
+        if row is None:
+            continue
+        mujoco.mj_contactForce(model, data, number, force)
+        in_world = contact.frame.reshape(3, 3).T @ force[:3]
+        sole = int(contact.geom[1])
+        turn = data.geom_xmat[sole].reshape(3, 3)
+        lever = contact.pos - found.sole_origin(sole)
+        wrenches[row] += np.r_[turn.T @ in_world, turn.T @ np.cross(lever, in_world)]
+    return wrenches
+
+
+def hand_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
+    """On the left and right hand, in the agent's frame and about the grasp point, likewise."""
+    model, data = found.model, found.data
+    first = int(model.body_dofadr[found.load])
+    jacobian = data.efc_J.reshape(data.nefc, model.nv)[:, first : first + 6]
+    grasps = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    turned = np.array([parts.agent.sign, parts.agent.sign, 1.0])
+    wrenches = np.zeros((2, 6))
+    for row, side in enumerate(SIDES):
+        number = model.equality(f"{parts.agent.name}/{side}_hand").id
+        mine = grasps & (data.efc_id == number)
+        force, moment = np.split(jacobian[mine].T @ data.efc_force[mine], 2)
+        moment = data.xmat[found.load].reshape(3, 3) @ moment  # a free body turns in its own axes
+        lever = data.site_xpos[parts.hands[side]] - data.xpos[found.load]
+        moment = moment - np.cross(lever, force)
+        wrenches[row] = np.r_[-turned * force, -turned * moment]
+    return wrenches

@@ -1,0 +1,103 @@
+"""The joint feedback of a simulation: gains from one natural frequency and each joint's own inertia.
+
+    k = w^2 I        d = 2 z w I
+
+so that every joint by itself, all others locked, is an oscillator of natural frequency w and damping ratio z.
+I is the inertia about the joint's axis of what the joint moves in a stance: beyond a joint of the legs lies
+the rest of the body, which both legs share; beyond any other joint what hangs on it. A quarter of the load
+counts as a point mass at each hand.
+
+An upright body of height l needs w^2 > g / l to stand by feedback of its ankles at all: w > 3.5 rad/s.
+
+Source: Craig, Introduction to Robotics (2005), section 9.5 (gains of a joint's control from its inertia).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from evodesign.errors import InputError
+from evodesign.mechanics.floating_base import ROOT
+from evodesign.mechanics.scene import SIDES
+from evodesign.posture.results import Array
+from evodesign.simulation.model import AgentParts, SimulatedScene
+
+__all__ = ["Feedback", "joint_inertias", "set_gains"]
+
+
+@dataclass(frozen=True, slots=True)
+class Feedback:
+    """Of all joints of both agents.
+
+    Args:
+        frequency: natural frequency w [rad/s].
+        damping: ratio z [1]; 1 is critical.
+    Raises:
+        InputError: a number that is not positive.
+    """
+
+    frequency: float = 8.0
+    damping: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no feedback."""
+        for name in ("frequency", "damping"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError("feedback", name, "a positive number", f"{getattr(self, name)}")
+
+
+def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
+    """Inertia I about each of an agent's joints in the posture that the data hold [kg m^2], shape (j,)."""
+    model, data = found.model, found.data
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    at_hand = float(model.body_mass[found.load]) / 4.0
+    for side in SIDES:
+        jacobian = np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, jacobian, None, parts.hands[side])
+        mass += at_hand * jacobian.T @ jacobian
+    inertias = mass[parts.rates, parts.rates].copy()
+    free = int(model.body_dofadr[parts.root])
+    for place, joint in enumerate(parts.rates):
+        if _carries_a_sole(model, parts, int(model.dof_bodyid[joint])):
+            still = _all_but_what_is_beyond(found, parts, int(joint), free)
+            inertias[place] = still @ mass @ still / 2.0
+    return np.asarray(inertias)
+
+
+def _carries_a_sole(model: mujoco.MjModel, parts: AgentParts, body: int) -> bool:
+    """Whether a sole is on a body or beyond it."""
+    for geom in parts.soles.values():
+        above = int(model.geom_bodyid[geom])
+        while above > body:
+            above = int(model.body_parentid[above])
+        if above == body:
+            return True
+    return False
+
+
+def _all_but_what_is_beyond(found: SimulatedScene, parts: AgentParts, joint: int, free: int) -> Array:
+    """Velocities with which the body turns about a joint's axis while what is beyond stays in place."""
+    model, data = found.model, found.data
+    number = int(model.dof_jntid[joint])
+    axis, anchor = data.xaxis[number], data.xanchor[number]
+    velocity = np.zeros(model.nv)
+    velocity[free : free + 3] = np.cross(axis, data.xpos[parts.root] - anchor)
+    velocity[free + 3 : free + ROOT] = data.xmat[parts.root].reshape(3, 3).T @ axis
+    velocity[joint] = -1.0
+    return velocity
+
+
+def set_gains(found: SimulatedScene, feedback: Feedback) -> None:
+    """Give the model's actuators the gains of a feedback, from the inertias in its present posture."""
+    for parts in found.agents.values():
+        inertias = joint_inertias(found, parts)
+        stiffness = feedback.frequency**2 * inertias
+        damping = 2.0 * feedback.damping * feedback.frequency * inertias
+        found.model.actuator_biasprm[parts.actuators, 1] = -stiffness
+        found.model.actuator_biasprm[parts.actuators, 2] = -damping
+        # of no body: it makes the step implicit in the damping (`rollout`)
+        found.model.dof_armature[parts.rates] += found.model.opt.timestep * damping
