@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
-from evodesign.motion.course import Lift, LiftCourse
+from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
@@ -23,7 +25,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.records import Status, worst_status
+from evodesign.records import Case, Lift, Status, worst_status
 
 __all__ = ["AgentEffort", "LiftProblem", "LiftSolution"]
 
@@ -97,6 +99,27 @@ class LiftSolution:
         """Whether there is a checked motion."""
         return self.status is Status.SOLVED
 
+    def in_case(self, case: Case) -> CaseSolution:
+        """The same as the result of a case, whose instants are the knots asked for and half-way between them.
+
+        Args:
+            case: whose task is the lift, with the knots that were asked for.
+        """
+        solution = CaseSolution(case, self.status, self.reason, attempts=self.attempts)
+        if self.course is None or self.checked is None or not isinstance(case.task, Lift):
+            return solution
+        times = np.linspace(0.0, case.task.seconds, 2 * case.task.knots - 1)
+        return replace(
+            solution,
+            instants=self.course.instants(times),
+            residuals=self.checked.knots,
+            attempt=min(
+                (each for each in self.attempts if each.status is Status.SOLVED), key=lambda each: each.cost
+            )
+            if self.lift.knots == case.task.knots
+            else self.attempts[-1],
+        )
+
     @property
     def times(self) -> Array:
         """Of all that is told over time [s]; none unless solved."""
@@ -129,12 +152,15 @@ class LiftProblem:
     """
 
     def __init__(self, setting: Setting, *, symmetric: bool) -> None:
-        self._setting = setting
+        self._setting, self._symmetric = setting, symmetric
         self._scene = setting.scene.undisturbed
-        agents = (self._scene.robot, self._scene.human)
-        forms = symmetric_forms(self._scene) if symmetric else (whole(agents[0]), whole(agents[1]))
-        self._blocks = KnotBlocks(forms, setting)
         self._programs: dict[int, LiftProgram] = {}
+
+    @cached_property
+    def _blocks(self) -> KnotBlocks:
+        scene = self._scene
+        halves = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
+        return KnotBlocks(halves, self._setting)
 
     def solve(
         self,
@@ -143,6 +169,8 @@ class LiftProblem:
         holds: Sequence[CaseSolution],
         robot: AgentModel,
         human: AgentModel,
+        *,
+        slowly: bool = True,
     ) -> LiftSolution:
         """The best checked motion of a design; where the check finds it too coarse, with more knots.
 
@@ -152,6 +180,7 @@ class LiftProblem:
             holds: the design's posture at the beginning and at the end.
             robot: the design's, for the check.
             human: the person's.
+            slowly: whether the same lift is found infinitely slowly, too.
         """
         ends = dict(zip(("beginning", "end"), holds, strict=True))
         for name, posture in ends.items():
@@ -174,9 +203,11 @@ class LiftProblem:
             return self._none(design, lift, list(starts.values()), attempts)
         name, best, _ = min(solved, key=lambda end: end[1].cost)
         start = replace(starts[name], symbols=best.symbols)
-        return self._checked(design, _Motion(lift, start, best, attempts), checker)
+        return self._checked(design, _Motion(lift, start, best, attempts), checker, slowly=slowly)
 
-    def _checked(self, design: Sequence[float], motion: _Motion, checker: LiftChecker) -> LiftSolution:
+    def _checked(
+        self, design: Sequence[float], motion: _Motion, checker: LiftChecker, *, slowly: bool
+    ) -> LiftSolution:
         """A motion that the check accepts, with more knots where it has to; or what it found."""
         mass = self._scene.payload.mass
         for further in range(REFINEMENTS, -1, -1):
@@ -185,7 +216,7 @@ class LiftProblem:
             checked = checker.check(course)
             if not (checked.wrong and further):
                 break
-            finer = replace(lift, knots=2 * lift.knots)
+            finer = msgspec.structs.replace(lift, knots=2 * lift.knots)
             start = self._program(finer.knots).refined(finer, course, motion.start)
             ending, seconds = self._program(finer.knots).solve(finer, start, design, mass)
             attempt = _attempt(f"motion of {lift.knots} knots", ending, seconds, program.method)
@@ -195,7 +226,7 @@ class LiftProblem:
             motion = _Motion(finer, replace(start, symbols=ending.symbols), ending, attempts)
         if checked.wrong:
             return LiftSolution(lift, Status.NUMERICAL_FAILURE, checked.wrong, motion.attempts)
-        slow, _ = program.solve(lift, motion.start, design, mass, 0.0)
+        slow = program.solve(lift, motion.start, design, mass, 0.0)[0] if slowly else None
         return LiftSolution(
             lift=lift,
             status=Status.SOLVED,
@@ -257,12 +288,12 @@ def _attempt(name: str, ending: Ending, seconds: float, method: MethodName) -> A
 
 
 def _efforts(
-    course: LiftCourse, checked: CheckedLift, slow: Ending, program: LiftProgram
+    course: LiftCourse, checked: CheckedLift, slow: Ending | None, program: LiftProgram
 ) -> dict[str, AgentEffort]:
     times = fine_times(course)
     instants = course.instants(times)
     slowly = None
-    if status_of(slow.word) is Status.SOLVED:
+    if slow is not None and status_of(slow.word) is Status.SOLVED:
         slowly = program.course(course.lift, slow.symbols).instants(times)
     return {
         name: AgentEffort(

@@ -11,13 +11,15 @@ import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
 
-from evodesign.motion.course import Lift, LiftCourse, LoadProfile
+from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.spline import RestingSpline
 from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.results import AgentPosture
+from evodesign.records import Lift
+from evodesign.tasks.lift import LoadProfile
 
 __all__ = ["LiftProgram", "LiftStart"]
 
@@ -136,7 +138,7 @@ class LiftProgram:
             (-1.0, [v.lower / v.scale for v in seen.moving], [v.lower / v.scale for v in seen.others]),
             (1.0, [v.upper / v.scale for v in seen.moving], [v.upper / v.scale for v in seen.others]),
         ):
-            height = RestingSpline(self._knots).through(lift.heights)
+            height = RestingSpline(self._knots).through(np.array(lift.knot_heights))
             if lift.profile is LoadProfile.FREE:
                 height = self._free_heights(lift, sign)
             soles = [sign * FARTHEST, sign * FARTHEST, sign] * self._soles
@@ -173,12 +175,12 @@ class LiftProgram:
         order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
         hands = np.asarray(self._blocks.hands(moving, design)).ravel()
         shared = np.array([*design, lift.step, 0.0, 0.0, *hands])  # of which a place does not ask the rest
-        places, worst = self._places_of(moving, lift.heights[begin], shared), 0.0
+        places, worst = self._places_of(moving, lift.knot_heights[begin], shared), 0.0
         for knot in order:
-            moving, open_by = self._closed(closure, moving, lift.heights[knot], places, shared)
+            moving, open_by = self._closed(closure, moving, lift.knot_heights[knot], places, shared)
             path[knot], worst = moving, max(worst, open_by)
         coefficients = RestingSpline(self._knots).through(path)
-        load = RestingSpline(self._knots).through(lift.heights)
+        load = RestingSpline(self._knots).through(np.array(lift.knot_heights))
         symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
         return LiftStart(np.concatenate(symbols), hands, worst)
 
@@ -190,7 +192,7 @@ class LiftProgram:
             course: the motion.
             start: where its solve began.
         """
-        seen, free, times = self._blocks.symbols, self._blocks.free, lift.times
+        seen, free, times = self._blocks.symbols, self._blocks.free, lift.knot_times
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
         others = self._sampled(course.carriage(times), seen.others)
         spline = RestingSpline(self._knots)

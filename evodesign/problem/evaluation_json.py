@@ -54,7 +54,7 @@ from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
-from evodesign.records import Assessment, hold_names, materials_of
+from evodesign.records import Assessment, materials_of, task_names
 from evodesign.violations import constraints_json
 
 __all__ = ["evaluation_json"]
@@ -94,7 +94,7 @@ def evaluation_json(
             {"person": "", "payload": ""} | msgspec.to_builtins(each.case) | of
             for each, of in zip(result.cases, shown, strict=True)
         ],
-        "heights": [hold_names(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
+        "heights": [task_names(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
         "sensitivities": {
             name: {"gradient": found.gradient, "notes": list(found.notes)}
             for name, found in sensitivities.items()

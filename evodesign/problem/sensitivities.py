@@ -33,7 +33,7 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.inner import InnerProblems, inner_problems
 from evodesign.problem.objectives import DesignResult, objective_value
 from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
-from evodesign.records import Status
+from evodesign.records import Lift, Status
 
 __all__ = [
     "STEP",
@@ -180,7 +180,9 @@ class Sensitivities:
     def of_case(
         self, values: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
-        """How the posture of a case moves with what programs are given."""
+        """How the posture of a case moves with what programs are given; a motion has no derivative."""
+        if isinstance(solution.case.task, Lift):
+            return NotDifferentiable("a lift is solved without one")
         return self._inner.postures[solution.case.pair].derivative(values, solution, exact=exact)
 
     def of_reach(

@@ -89,7 +89,7 @@ def _slope(
 
 
 def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
-    """Numbers of case, instant and load case, in the order of `every_case`."""
+    """Numbers of case, instant and load case, one after the other."""
     for number, solution in enumerate(result.cases):
         for instant, each in enumerate(solution.instants):
             for load_case in range(1 + len(each.disturbed)):

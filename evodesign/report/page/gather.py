@@ -155,8 +155,8 @@ def _facts(run: RunLog, on_front: int) -> Facts:
 
 def _heights(cases: Iterable[Case], problem: DesignProblem | None) -> tuple[float, ...]:
     if problem is not None:
-        return tuple(task.height_m for task in problem.tasks)
-    return tuple(sorted({case.task.height_m for case in cases}))
+        return tuple(task.height_m for task in problem.holds)
+    return tuple(sorted({height for case in cases for height in case.task.heights}))
 
 
 def _thinned_note(run: RunLog, shown: Sequence[Evaluation]) -> tuple[str, ...]:
