@@ -54,6 +54,7 @@ __all__ = [
     "Turn",
     "choice_at",
     "design_of",
+    "evenly",
     "materials_of",
     "middle_of",
     "task_names",
@@ -358,8 +359,9 @@ class InstantDetail(Record, frozen=True, omit_defaults=True):
     load_height_m: float | None = None
 
 
-MOMENTS = 5
-"""Moments of a lift that stand for all of it where there is room for few."""
+def evenly(count: int, most: int) -> tuple[int, ...]:
+    """So many places at most of a list of some length: both ends, and what lies evenly between."""
+    return tuple(dict.fromkeys(round((count - 1) * share / (most - 1)) for share in range(most)))
 
 
 class CaseDetail(Record, frozen=True):
@@ -403,12 +405,15 @@ class CaseDetail(Record, frozen=True):
         """The moment at which the person's torques are largest; the only one of a load held still."""
         return max(self.moments, key=lambda moment: math.hypot(*moment.agents["human"].torques_n_m.values()))
 
+    def thinned(self, most: int) -> CaseDetail:
+        """The same with so many instants at most: both ends, and what lies evenly between."""
+        places = evenly(len(self.instants), most)
+        return CaseDetail(case=self.case, instants=tuple(self.instants[place] for place in places))
+
     @property
     def few_moments(self) -> tuple[CaseDetail, ...]:
-        """All instants of a load held still; of a lift both ends and what lies evenly between."""
-        last = len(self.instants) - 1
-        places = dict.fromkeys(round(last * share / (MOMENTS - 1)) for share in range(MOMENTS))
-        return tuple(self.moments[place] for place in places)
+        """All instants of a load held still; five of a lift, for where there is room for few."""
+        return self.thinned(5).moments
 
 
 class Assessed(Record, frozen=True):

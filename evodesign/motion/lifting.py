@@ -108,10 +108,9 @@ class LiftSolution:
         solution = CaseSolution(case, self.status, self.reason, attempts=self.attempts)
         if self.course is None or self.checked is None or not isinstance(case.task, Lift):
             return solution
-        times = np.linspace(0.0, case.task.seconds, 2 * case.task.knots - 1)
         return replace(
             solution,
-            instants=self.course.instants(times),
+            instants=self.course.instants(case.task.told_times),
             residuals=self.checked.knots,
             attempt=min(
                 (each for each in self.attempts if each.status is Status.SOLVED), key=lambda each: each.cost
