@@ -110,7 +110,7 @@ class LiftSolution:
             return solution
         return replace(
             solution,
-            instants=self.course.instants(case.task.told_times),
+            instants=self.course.instants(case.task.result_times),
             residuals=self.checked.knots,
             attempt=min(
                 (each for each in self.attempts if each.status is Status.SOLVED), key=lambda each: each.cost

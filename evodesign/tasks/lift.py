@@ -107,7 +107,7 @@ class Lift(TaskRecord, frozen=True, tag="lift"):
         return tuple(self.step * knot for knot in range(self.knots))
 
     @property
-    def told_times(self) -> tuple[float, ...]:
+    def result_times(self) -> tuple[float, ...]:
         """Of the instants that results hold [s]: knots, and half-way between them."""
         last = 2 * (self.knots - 1)
         return tuple(self.seconds * place / last for place in range(last + 1))

@@ -97,20 +97,20 @@ def design_json(
         "violation": outcome["violation"],
         **({"constraints": constraints_json(constraints, assessment)} if constraints else {}),
         "reach": outcome["reach"],
-        "heights": [_told(each) for each in assessment.cases if isinstance(each.case.task, Hold)],
-        "postures": [_told(each) for each in cases if isinstance(each.case.task, Hold)],
+        "heights": [_case_json(each) for each in assessment.cases if isinstance(each.case.task, Hold)],
+        "postures": [_case_json(each) for each in cases if isinstance(each.case.task, Hold)],
         **_lifts(assessment.cases, cases),
     }
 
 
 def _lifts(outcomes: Sequence[CaseOutcome], cases: Sequence[CaseDetail]) -> dict[str, Any]:
     """Lifts and their motions, under keys that other problems do not have."""
-    lifts = [_told(each) for each in outcomes if isinstance(each.case.task, Lift)]
-    motions = [_told(each) for each in cases if isinstance(each.case.task, Lift)]
+    lifts = [_case_json(each) for each in outcomes if isinstance(each.case.task, Lift)]
+    motions = [_case_json(each) for each in cases if isinstance(each.case.task, Lift)]
     return {"lifts": lifts, "motions": motions} if lifts else {}
 
 
-def _told(part: CaseOutcome | CaseDetail) -> dict[str, Any]:
+def _case_json(part: CaseOutcome | CaseDetail) -> dict[str, Any]:
     """A part of the log; what holds a load still has no instants but a posture."""
     told: dict[str, Any] = msgspec.to_builtins(part)
     del told["case"]

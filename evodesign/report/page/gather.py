@@ -168,7 +168,7 @@ def _stops(tasks: Iterable[Task]) -> tuple[StopContent, ...]:
     )
     found: list[StopContent] = []
     for task in tasks:
-        told, name = task.told_times if isinstance(task, Lift) else task.times, str(task)
+        told, name = task.result_times if isinstance(task, Lift) else task.times, str(task)
         for moment, place in enumerate(evenly(len(told), MOMENTS)):
             if isinstance(task, Hold):
                 text = f"{task.height_m:.{decimals}f} m"
