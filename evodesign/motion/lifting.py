@@ -17,9 +17,11 @@ from numpy.typing import NDArray
 
 from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
+from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
@@ -27,7 +29,7 @@ from evodesign.posture.results import Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Case, Lift, Status, worst_status
 
-__all__ = ["AgentEffort", "LiftProblem", "LiftSolution"]
+__all__ = ["AgentEffort", "LiftProblem", "LiftSolution", "MotionCase"]
 
 Array = NDArray[np.float64]
 
@@ -82,7 +84,8 @@ class LiftSolution:
         course: the motion; None unless solved.
         checked: what the independent check found; None unless solved.
         efforts: by agent name; empty unless solved.
-        cost_slope: derivative of the optimal cost with respect to the design's parameters.
+        start: where the solve of the motion began; None unless solved.
+        ending: of that solve.
     """
 
     lift: Lift
@@ -92,20 +95,21 @@ class LiftSolution:
     course: LiftCourse | None = None
     checked: CheckedLift | None = None
     efforts: Mapping[str, AgentEffort] = field(default_factory=dict)
-    cost_slope: Array | None = None
+    start: LiftStart | None = None
+    ending: Ending | None = None
 
     @property
     def solved(self) -> bool:
         """Whether there is a checked motion."""
         return self.status is Status.SOLVED
 
-    def in_case(self, case: Case) -> CaseSolution:
+    def in_case(self, case: Case) -> MotionCase:
         """The same as the result of a case, whose instants are the knots asked for and half-way between them.
 
         Args:
             case: whose task is the lift, with the knots that were asked for.
         """
-        solution = CaseSolution(case, self.status, self.reason, attempts=self.attempts)
+        solution = MotionCase(case, self.status, self.reason, attempts=self.attempts, motion=self)
         if self.course is None or self.checked is None or not isinstance(case.task, Lift):
             return solution
         return replace(
@@ -140,6 +144,17 @@ class _Motion:
     start: LiftStart
     ending: Ending
     attempts: tuple[Attempt, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionCase(CaseSolution):
+    """A lift as the result of a case.
+
+    Args:
+        motion: that the instants are of.
+    """
+
+    motion: LiftSolution | None = None
 
 
 class LiftProblem:
@@ -204,6 +219,28 @@ class LiftProblem:
         start = replace(starts[name], symbols=best.symbols)
         return self._checked(design, _Motion(lift, start, best, attempts), checker, slowly=slowly)
 
+    def derivative(self, design: Sequence[float], solution: MotionCase) -> LiftDerivative | NotDifferentiable:
+        """How the motion of a case moves with the design, with as many knots as it has.
+
+        Args:
+            design: one number per design parameter.
+            solution: of the same design.
+        """
+        found, task = solution.motion, solution.case.task
+        if found is None or found.start is None or found.ending is None or not isinstance(task, Lift):
+            return NotDifferentiable("there is no motion")
+        lift, program, ending = found.lift, self._program(found.lift.knots), found.ending
+        slopes = program.slopes(lift, found.start, ending, design, self._scene.payload.mass)
+        if isinstance(slopes, NotDifferentiable):
+            return slopes
+        return LiftDerivative(
+            instants_of=lambda symbols: program.course(lift, symbols).instants(task.result_times),
+            symbols=ending.symbols,
+            slopes=slopes,
+            cost=ending.cost,
+            cost_slope=ending.cost_slope[: len(design)],
+        )
+
     def _checked(
         self, design: Sequence[float], motion: _Motion, checker: LiftChecker, *, slowly: bool
     ) -> LiftSolution:
@@ -234,7 +271,8 @@ class LiftProblem:
             course=course,
             checked=checked,
             efforts=_efforts(course, checked, slow, program),
-            cost_slope=motion.ending.cost_slope[: len(design)],
+            start=motion.start,
+            ending=motion.ending,
         )
 
     def _none(

@@ -16,6 +16,7 @@ from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.spline import RestingSpline
 from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.results import AgentPosture
 from evodesign.records import Lift
@@ -124,11 +125,30 @@ class LiftProgram:
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
         """
         shared = np.array([*design, lift.step, mass, inertia, *start.hands])
+        low, high = self._bounds(lift)
+        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, self._own)
+
+    def slopes(
+        self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
+    ) -> Array | NotDifferentiable:
+        """Derivatives of a solve's symbols by the design's parameters, shape (symbols, parameters).
+
+        Args:
+            lift: with as many knots.
+            start: where the solve began.
+            ending: of the solve.
+            design: one number per parameter.
+            mass: of the load [kg].
+        """
+        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        return self._program.slopes(ending, self._bounds(lift), shared, self._own, len(design))
+
+    @property
+    def _own(self) -> list[Array]:
+        """What each knot has for itself: its weight in the cost, by the trapezoidal rule."""
         weights = np.full((self._knots, 1), 1.0 / (self._knots - 1))
         weights[[0, -1]] /= 2.0
-        low, high = self._bounds(lift)
-        own = [weights, np.empty((self._knots - 1, 0))]
-        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
+        return [weights, np.empty((self._knots - 1, 0))]
 
     def _bounds(self, lift: Lift) -> tuple[Array, Array]:
         """Of the symbols: those of a hold, and the load's height."""

@@ -128,6 +128,11 @@ class CaseSolution:
         return self.status is Status.SOLVED
 
     @property
+    def times(self) -> tuple[float, ...]:
+        """Of the instants [s]."""
+        return tuple(instant.time for instant in self.instants)
+
+    @property
     def postures(self) -> Mapping[str, AgentPosture]:
         """Those of the only instant, by agent name."""
         (instant,) = self.instants

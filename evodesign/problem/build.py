@@ -65,12 +65,9 @@ from evodesign.records import (
 from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS, POPULATIONS, USUAL_POPULATION
 from evodesign.tree.model import Tree
 
-__all__ = ["WITH_LIFTS", "DesignProblem", "build_problem"]
+__all__ = ["DesignProblem", "build_problem"]
 
 GIGABYTE = 10**9
-
-WITH_LIFTS = "in a problem with lifts, whose motions have no gradients"
-"""Why some searches are refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,13 +183,10 @@ class DesignProblem:
             population = (
                 POPULATIONS.get(algorithm, USUAL_POPULATION) if table.population is None else table.population
             )
-        if self.moves and table.gradients:
-            raise InputError(self.source.path, "search.gradients", f"false {WITH_LIFTS}", "true")
         if self.moves and algorithm == JOINT_STARTS:
-            raise InputError(self.source.path, "search.algorithm", f"another {WITH_LIFTS}", f"'{algorithm}'")
-        gradients = table.gradients or (
-            table.gradients is None and algorithm in GRADIENT_SEARCHES and not self.moves
-        )
+            found = f"'{algorithm}'"
+            raise InputError(self.source.path, "search.algorithm", "another where a load is lifted", found)
+        gradients = algorithm in GRADIENT_SEARCHES if table.gradients is None else table.gradients
         return SearchSettings(
             algorithm=algorithm,
             dimension=len(self.space.parameters),

@@ -10,18 +10,24 @@ constants are known.
 
 from __future__ import annotations
 
+import functools
+import operator
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
-from evodesign.posture.results import AgentPosture, Instant
+from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.hardware_objectives import holding_power
 from evodesign.records import ProblemSource
 
 __all__ = ["ENERGY", "POWER", "SPINE", "l5s1_moment", "mean_over_time", "refuse_still", "robot_power"]
+
+Value = TypeVar("Value", float, NDArray[np.float64])
 
 POWER, ENERGY, SPINE = "robot_power", "energy", "l5s1_moment"
 
@@ -48,12 +54,14 @@ def l5s1_moment(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return float(np.linalg.norm([torque for joint, torque in torques.items() if joint.startswith(LUMBAR)]))
 
 
-def mean_over_time(instants: Sequence[Instant], values: Sequence[float]) -> float:
-    """The mean of a task's values: the only one, or by the trapezoidal rule over the instants' times."""
+def mean_over_time(times: Sequence[float], values: Sequence[Value]) -> Value:
+    """The mean of numbers or arrays: the only one, or by the trapezoidal rule over their times [s]."""
     if len(values) == 1:
         return values[0]
-    times = [instant.time for instant in instants]
-    return float(np.trapezoid(values, times)) / (times[-1] - times[0])
+    lengths = np.diff(times)
+    weights = (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)) / (2.0 * (times[-1] - times[0]))
+    parts = (float(weight) * value for weight, value in zip(weights, values, strict=True))
+    return functools.reduce(operator.add, parts)
 
 
 def refuse_still(

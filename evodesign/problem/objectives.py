@@ -178,7 +178,7 @@ def values_over_cases(
     if found is None:
         return None
     return [
-        mean_over_time(solution.instants, values)
+        mean_over_time(solution.times, values)
         for (solution, disturbance), values in zip(result.every_case(), found, strict=True)
         if disturbed or not disturbance
     ]
@@ -313,7 +313,7 @@ def energy(result: DesignResult) -> float | None:
     """What the robot's joints and actuators draw in a lift [J], the mean over all lifts; None without any."""
     found = values_over_instants(robot_power, result)
     lifts = [
-        mean_over_time(solution.instants, values) * solution.case.task.seconds
+        mean_over_time(solution.times, values) * solution.case.task.seconds
         for (solution, _), values in zip(result.every_case(), found or (), strict=False)
         if isinstance(solution.case.task, Lift)
     ]

@@ -18,7 +18,7 @@ import numpy as np
 from evodesign.errors import InputError, nearest_name
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.solution_derivative import ReachDerivative
-from evodesign.problem.build import WITH_LIFTS, DesignProblem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity, Sensitivities
@@ -53,10 +53,8 @@ def aim_of(problem: DesignProblem, weights: Mapping[str, float], option: str) ->
         weights: by objective; may be empty.
         option: the name of the option that gave them, for messages.
     Raises:
-        InputError: an objective that the problem does not have, a weight that is not positive, or lifts.
+        InputError: an objective that the problem does not have, or a weight that is not positive.
     """
-    if problem.moves:
-        raise InputError(problem.source.path, "task.lift", f"none to polish {WITH_LIFTS}", "a lift")
     names = [objective.name for objective in problem.objectives]
     for name, weight in weights.items():
         if name not in names:

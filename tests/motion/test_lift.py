@@ -28,6 +28,7 @@ from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, symmetric_forms
 from evodesign.posture.warm_start import start_from
+from evodesign.problem.sensitivities import five_point
 from evodesign.records import Status
 from evodesign.tasks.lift import LoadProfile
 from evodesign.tree.frames import link_frames
@@ -239,3 +240,30 @@ def test_mujoco_asks_for_the_same_torques(lifted: Lifted, solution: LiftSolution
         asked = [torques[model.joint(name).dofadr[0]] for name in agent.joints]
         assert asked == pytest.approx([posture.torques[name] for name in agent.joints], abs=1e-5)
         assert torques[:6] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_motion_moves_with_the_design_as_solves_of_neighbours_do(lifted: Lifted) -> None:
+    """Mean torques along three directions, against five-point differences of exact solves."""
+    lift, mass = msgspec.structs.replace(LIFT, knots=6), lifted.setting.scene.payload.mass
+    options = replace(lifted.setting.options, tolerance=1e-10)
+    program, at = LiftProgram(_blocks(lifted), 6, options), np.array(lifted.design)
+    start = program.followed(lift, lifted.hold(lift.to_m).postures, lift.knots - 1, lifted.design)
+    ending, _ = program.solve(lift, start, lifted.design, mass)
+    slopes = program.slopes(lift, start, ending, lifted.design, mass)
+    assert isinstance(slopes, np.ndarray)
+    near = replace(start, symbols=ending.symbols)
+
+    def torques(symbols: NDArray[np.float64]) -> NDArray[np.float64]:
+        instants = program.course(lift, symbols).instants(lift.result_times)
+        return np.array(
+            [np.mean([i.postures[name].torque_norm for i in instants]) for name in ("robot", "human")]
+        )
+
+    generator = np.random.default_rng(5)
+    for _ in range(3):
+        direction, step = generator.standard_normal(len(at)) * at, 1e-4
+        ends = [program.solve(lift, near, at + k * step * direction, mass)[0] for k in (-2, -1, 1, 2)]
+        differences = five_point([torques(e.symbols) for e in (*ends[:2], ending, *ends[2:])], step)
+        along = [torques(ending.symbols + k * 1e-4 * slopes @ direction) for k in (-1, 1)]
+        found = (along[1] - along[0]) / 2e-4
+        assert found == pytest.approx(differences, rel=1e-4, abs=1e-4 * np.abs(differences).max())

@@ -23,16 +23,17 @@ from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_solver import DesignSolver
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.inner import inner_problems
 from evodesign.problem.objectives import DesignResult, objective_value
-from evodesign.problem.polish import aim_of
+from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source
 from evodesign.records import Assessed, Assessment, CaseDetail, Hold, InstantDetail, Lift, Status, task_names
 from evodesign.report.replay.recording import timed
 from evodesign.violations import missed_height
 
 TABLE = 'from_m = 0.8\nto_m = 1.2\nseconds = 1.5\nprofile = "minimum_jerk"'
-TORQUE, ALGORITHM = '"robot_torque"', 'algorithm = "nsga2"'
+TORQUE = '"robot_torque"'
 MINIMISE = '"robot_torque", "worst_robot_torque", "energy", "worst_robot_power", "worst_l5s1_moment"'
 
 
@@ -236,15 +237,23 @@ def test_energy_needs_a_lift(problem: DesignProblem) -> None:
         build_problem(msgspec.structs.replace(problem.source, text=text))
 
 
-def test_what_needs_gradients_is_refused(repository: Path) -> None:
+def test_what_is_for_loads_held_still_is_refused(repository: Path) -> None:
     lifting = changed(repository)
-    assert not lifting.settings().with_gradients
-    assert not lifting.settings("surrogate").with_gradients
-    with pytest.raises(InputError, match="in a problem with lifts, whose motions have no gradients"):
+    with pytest.raises(InputError, match=r"search\.algorithm: wanted another where a load is lifted"):
         lifting.settings("joint-starts")
-    with pytest.raises(InputError, match=r"search\.gradients"):
-        changed(repository, (ALGORITHM, f"{ALGORITHM}\ngradients = true")).settings()
-    with pytest.raises(InputError, match="none to polish"):
-        aim_of(lifting, {}, "--weight")
     with pytest.raises(InputError, match="loads held still in the joint problem"):
         refuse_unsuited(lifting)
+
+
+def test_gradients_of_every_objective_are_those_of_differences_along_the_tangent(moving: Moving) -> None:
+    """The quick chain rule over instants against whole tangents; tests/motion has those of the motion."""
+    derivatives = Sensitivities(moving.problem, inner=moving.solver.inner)
+    slow = derivatives.at(moving.values, moving.result).sensitivities()
+    quick = assessed_gradients(moving.problem, derivatives, moving.values, moving.result).values
+    spans = {p.name: p.slope_at(x) for p, x in zip(moving.problem.space.records, moving.values, strict=True)}
+    for name in ("robot_torque", "worst_robot_torque", "energy", "worst_robot_power"):
+        gradient = slow[name].gradient
+        assert gradient is not None, slow[name].notes
+        expected = [gradient[parameter] * spans[parameter] for parameter in spans]
+        found = [quick[name][parameter] for parameter in spans]
+        assert found == pytest.approx(expected, abs=1e-4 * max(map(abs, expected)))
