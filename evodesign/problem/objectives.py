@@ -299,7 +299,7 @@ def torque_margin(result: DesignResult) -> float | None:
     alone = [] if result.standing is None else result.standing.shares(result.tree)
     if share is None or alone is None or max(share, *alone, 0.0) <= 0.0:
         return None
-    return 1.0 / max(share, *alone)
+    return 1.0 / max(share, *alone, 0.0)
 
 
 def safety_of_links(result: DesignResult) -> float | None:
