@@ -25,7 +25,16 @@ from evodesign.problem.file import ProblemFile
 from evodesign.problem.hardware_objectives import holding_power
 from evodesign.records import ProblemSource
 
-__all__ = ["ENERGY", "POWER", "SPINE", "l5s1_moment", "mean_over_time", "refuse_still", "robot_power"]
+__all__ = [
+    "ENERGY",
+    "NEED_LIFTS",
+    "POWER",
+    "SPINE",
+    "l5s1_moment",
+    "mean_over_time",
+    "refuse_still",
+    "robot_power",
+]
 
 Value = TypeVar("Value", float, NDArray[np.float64])
 
