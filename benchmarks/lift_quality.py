@@ -20,7 +20,6 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from benchmarks.lift_speed import ENDS
-from evodesign.motion.course import Lift
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import TOLERANCE_OF_LIFTS, LiftProblem, LiftSolution
 from evodesign.motion.program import LiftProgram
@@ -31,6 +30,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Hold, Status
+from evodesign.tasks import Lift
 
 KNOTS = 12
 NEAR = 0.01

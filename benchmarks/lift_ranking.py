@@ -18,12 +18,12 @@ import numpy as np
 from scipy.stats import kendalltau
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
-from evodesign.motion.course import Lift
 from evodesign.motion.lifting import LiftProblem
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.records import Hold
+from evodesign.tasks import Lift
 
 HEIGHTS = (0.8, 0.9, 1.0, 1.1, 1.2)
 SECONDS = (3.0, 1.5, 1.0)

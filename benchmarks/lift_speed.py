@@ -20,7 +20,6 @@ from statistics import median
 import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, checker_of, problem_at, random_designs
-from evodesign.motion.course import Lift
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import TOLERANCE_OF_LIFTS
 from evodesign.motion.program import LiftProgram, LiftStart
@@ -30,6 +29,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold
+from evodesign.tasks import Lift
 
 ENDS = ((0.8, 1.2), (0.6, 1.2))
 ALIKE = 1e-4

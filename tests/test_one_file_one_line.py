@@ -145,9 +145,9 @@ def test_a_kind_of_task(repository: Path, tmp_path: Path) -> None:
     shutil.copytree(repository / "evodesign", tmp_path / "evodesign")
     (tmp_path / "evodesign" / "tasks" / "two_holds.py").write_text(STUB)
     registry = tmp_path / "evodesign" / "tasks" / "__init__.py"
-    line = "Task = Hold\n"
+    line = "Task = Hold | Lift\n"
     assert line in registry.read_text()
-    added = "from evodesign.tasks.two_holds import TwoHolds\n\nTask = Hold | TwoHolds\n"
+    added = "from evodesign.tasks.two_holds import TwoHolds\n\nTask = Hold | Lift | TwoHolds\n"
     registry.write_text(registry.read_text().replace(line, added))
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, str(repository / "problems" / "icub_lifting.toml")],

@@ -8,6 +8,7 @@ and tables, are:
     length.thigh                a parameter of the design
     lowest_reach, highest_reach ends of the interval of load heights that the robot can hold [m]
     robot_torque@1.2            |tau|_2 of an agent at a required height [N m]; human_torque@1.2 likewise
+    robot_torque@0.8-1.2 in 1.5 s  its largest in a lift
     robot_torque@short@5 kg@1.2 that of one case, where a problem has several people or loads; then
                                 robot_torque@1.2 is the largest at that height, if all of them are solved
 
@@ -62,9 +63,9 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
     found: dict[str, Quantity] = {"lowest_reach": _lowest_reach, "highest_reach": _highest_reach}
     for case in cases:
         for name, norm in NORMS.items():
-            found[f"{name}@{case.task.height_m:g}"] = partial(_largest, norm, case.task)
+            found[f"{name}@{case.task.name}"] = partial(_largest, norm, case.task)
     for case in cases if any(case.label for case in cases) else ():
-        place = "@".join(part for part in (*case.pair, f"{case.task.height_m:g}") if part)
+        place = "@".join(part for part in (*case.pair, f"{case.task.name}") if part)
         for name, norm in NORMS.items():
             found[f"{name}@{place}"] = partial(_of_case, norm, case)
     for parameter in header.parameters:

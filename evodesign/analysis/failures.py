@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from evodesign.records import Assessment, Constraint, Evaluation, Status
+from evodesign.records import Assessment, Constraint, Evaluation, Hold, Status
 from evodesign.violations import exceeded_bounds, reason_of_infeasibility
 
 __all__ = ["Cause", "causes", "causes_of_infeasibility", "failed", "failures"]
@@ -77,9 +77,12 @@ def _cause(constraints: Sequence[Constraint], assessment: Assessment) -> str:
         beyond = exceeded_bounds(constraints, assessment) if assessment.status is Status.SOLVED else ()
         return " and ".join(beyond) or str(assessment.status)
     if len(ended) == len(assessment.cases) > 1:
-        return f"{assessment.status} at every height"
+        still = all(isinstance(case.task, Hold) for case in ended)
+        return f"{assessment.status} {'at every height' if still else 'in every case'}"
     tasks = dict.fromkeys(case.task for case in ended)
-    place = f"{assessment.status} at {' and '.join(f'{task.height_m:g}' for task in tasks)} m"
+    still = all(isinstance(task, Hold) for task in tasks)
+    names = " and ".join(task.name if still else str(task) for task in tasks)
+    place = f"{assessment.status} at {names}{' m' if still else ''}"
     there = [outcome for outcome in assessment.cases if outcome.case.task in tasks]
     if len(there) == len(ended):
         return place

@@ -217,8 +217,9 @@ class Run:
         Args:
             designs: of this run; left out, all evaluations.
         Returns:
-            Columns by name: number, human, payload (empty where the problem has one), height [m], status,
-            reason, robot_torque and human_torque [N m], residual; not a number where a value does not exist.
+            Columns by name: number, human, payload (empty where the problem has one), task, height [m] (of a
+            lift that at its end), status, reason, robot_torque and human_torque [N m] (of a lift the
+            largest), residual; not a number where a value does not exist.
         Raises:
             InputError: a design that is none of this run.
         Example:

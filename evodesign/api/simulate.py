@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from evodesign.api.problem import Problem
 from evodesign.errors import InputError
-from evodesign.motion.course import Lift, profile_named
 from evodesign.simulation.installed import refuse_without_mujoco
+from evodesign.tasks import Lift
+from evodesign.tasks.lift import profile_named
 
 if TYPE_CHECKING:
     from evodesign.problem.simulations import SimulatedCase
@@ -29,7 +30,7 @@ def simulate(
     frequency: float = 8.0,
     damping: float = 1.0,
 ) -> tuple[SimulatedCase, ...]:
-    """A design's holds, or with `from_m` and `to_m` its lift, in MuJoCo with every person and load.
+    """A design's holds and lifts, or with `from_m` and `to_m` another lift, in MuJoCo with everyone.
 
     Args:
         problem: opened.
@@ -52,7 +53,13 @@ def simulate(
         [('short, 0.8 m', True, True), ('tall, 0.8 m', True, True)]
     """
     refuse_without_mujoco()
-    from evodesign.problem.simulations import HOLD_SECONDS, picked_cases, simulated_holds, simulated_lifts
+    from evodesign.problem.simulations import (
+        HOLD_SECONDS,
+        lifts_among,
+        picked_holds,
+        simulated_holds,
+        simulated_lifts,
+    )
     from evodesign.simulation.feedback import Feedback
 
     if (from_m is None) != (to_m is None):
@@ -63,8 +70,13 @@ def simulate(
     built, space = problem.built, problem.built.space
     robot = space.resized(built.scene.robot.tree, space.given(values, found.assessment.rated_torques))
     if from_m is None or to_m is None:
-        cases = picked_cases(found.cases, heights_m, None, None)
+        holds = picked_holds(found.cases, heights_m)
         time = HOLD_SECONDS if seconds is None else seconds
-        return tuple(simulated_holds(built.scenes, robot, cases, time, feedback))
-    asked = Lift(from_m, to_m, 1.5 if seconds is None else seconds, profile_named(profile), knots)
-    return tuple(simulated_lifts(built.scenes, robot, problem._lifts.solve(values, asked), feedback))
+        done = [*simulated_holds(built.scenes, robot, holds, time, feedback)]
+        lifts = lifts_among(built.tasks, heights_m, knots)
+    else:
+        done = []
+        lifts = [Lift(from_m, to_m, 1.5 if seconds is None else seconds, profile_named(profile), knots)]
+    for lift in lifts:
+        done += simulated_lifts(built.scenes, robot, problem._lifts.solve(values, lift), feedback)
+    return tuple(done)

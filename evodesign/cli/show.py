@@ -35,7 +35,7 @@ def show(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.problem.clearance import distance_json, overlaps
-    from evodesign.records import hold_names
+    from evodesign.records import task_names
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
 
@@ -55,7 +55,7 @@ def show(
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in _ergonomics(opened)]
-        nearest = [hold_names(case) | distance_json(each) for case, each in _distances(opened).items()]
+        nearest = [task_names(case) | distance_json(each) for case, each in _distances(opened).items()]
         bill = _bill(opened)
         hardware = {"hardware": bill} if bill else {}
         print_json({"run": str(run), **told, **hardware, "ergonomics": asked, "clearances": nearest})

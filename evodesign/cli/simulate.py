@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,11 +13,11 @@ from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
-    from evodesign.motion.course import Lift
     from evodesign.motion.lifting import LiftSolution
     from evodesign.problem.progress import PrecomputeProgress
     from evodesign.problem.simulations import SimulatedCase
     from evodesign.report.opened_design import OpenedDesign
+    from evodesign.tasks import Lift
 
 __all__ = ["simulate"]
 
@@ -36,7 +37,7 @@ def simulate(
     ] = None,
     begin: Annotated[
         float | None,
-        typer.Option("--from", metavar="M", help="A lift: height of the load at the start [m]."),
+        typer.Option("--from", metavar="M", help="Another lift: height of the load at the start [m]."),
     ] = None,
     end: Annotated[float | None, typer.Option("--to", metavar="M", help="Height at the end [m].")] = None,
     seconds: Annotated[
@@ -61,7 +62,7 @@ def simulate(
     json: Json = False,
     damaged: Damaged = False,
 ) -> None:
-    """Simulate holds or a lift of a design in MuJoCo: contacts, motors, feedback; how far from the plan."""
+    """Simulate holds and lifts of a design in MuJoCo: contacts, motors, feedback; how far from the plan."""
     from evodesign.simulation.installed import draw_without_a_screen, refuse_without_mujoco
 
     if (begin is None) != (end is None):
@@ -74,32 +75,36 @@ def simulate(
     from evodesign.problem.simulation_json import simulations_json
     from evodesign.problem.simulations import (
         HOLD_SECONDS,
+        lifts_among,
         picked_cases,
+        picked_holds,
         simulated_holds,
         simulated_lifts,
     )
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
     from evodesign.simulation.feedback import Feedback
+    from evodesign.tasks.lift import Lift, profile_named
 
     feedback, logged = Feedback(frequency, damping), read_run(run)
     show_notes(logged.notes)
     with precompute_progress() as progress:
         opened = open_design(logged, design, jobs, progress)
-        cases = picked_cases(opened.cases, height or (), person, payload)
-        scenes, robot = opened.rebuilt.problem.scenes, opened.scene_set().robot
+        built, robot = opened.rebuilt.problem, opened.scene_set().robot
+        cases = picked_cases(opened.cases, person, payload)
+        simulations: list[SimulatedCase] = []
         if begin is None or end is None:
             time = HOLD_SECONDS if seconds is None else seconds
-            simulations = tuple(simulated_holds(scenes, robot, cases, time, feedback))
+            holds = picked_holds(cases, height or ())
+            simulations += simulated_holds(built.scenes, robot, holds, time, feedback)
+            lifts = lifts_among(built.tasks, height or (), knots)
         else:
-            from evodesign.motion import course
-
-            time = 1.5 if seconds is None else seconds
-            asked = course.Lift(begin, end, time, course.profile_named(profile), knots)
-            pairs = {detail.case.pair for detail in cases}
-            lifts = {p: s for p, s in _lifts(opened, asked, jobs, progress).items() if p in pairs}
-            show_notes(f"no lift {s.lift}: {s.reason}" for s in lifts.values() if not s.solved)
-            simulations = tuple(simulated_lifts(scenes, robot, lifts, feedback))
+            lifts = [Lift(begin, end, 1.5 if seconds is None else seconds, profile_named(profile), knots)]
+        pairs = {detail.case.pair for detail in cases}
+        for asked in lifts:
+            solved = {p: s for p, s in _lifts(opened, asked, jobs, progress).items() if p in pairs}
+            show_notes(f"no lift {s.lift}: {s.reason}" for s in solved.values() if not s.solved)
+            simulations += simulated_lifts(built.scenes, robot, solved, feedback)
     if mcap is not None:
         _write_recording(mcap, opened, simulations)
     if video is not None:
@@ -130,7 +135,7 @@ def _lifts(
     return Lifts(evaluator).solve([values[each.name] for each in problem.space.parameters], asked)
 
 
-def _write_recording(path: Path, opened: OpenedDesign, simulations: tuple[SimulatedCase, ...]) -> None:
+def _write_recording(path: Path, opened: OpenedDesign, simulations: Sequence[SimulatedCase]) -> None:
     from io import BytesIO
 
     from evodesign.cli.output import write_bytes
@@ -141,7 +146,7 @@ def _write_recording(path: Path, opened: OpenedDesign, simulations: tuple[Simula
     write_bytes(path, stream.getvalue(), "--mcap")
 
 
-def _write_film(path: Path, simulations: tuple[SimulatedCase, ...]) -> None:
+def _write_film(path: Path, simulations: Sequence[SimulatedCase]) -> None:
     from evodesign.cli.output import write_bytes
     from evodesign.simulation.film import film
 

@@ -9,23 +9,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
-from evodesign.motion.course import Lift, LiftCourse
+from evodesign.motion.course import LiftCourse
+from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.records import Status, worst_status
+from evodesign.records import Case, Lift, Status, worst_status
 
-__all__ = ["AgentEffort", "LiftProblem", "LiftSolution"]
+__all__ = ["AgentEffort", "LiftProblem", "LiftSolution", "MotionCase"]
 
 Array = NDArray[np.float64]
 
@@ -80,7 +84,8 @@ class LiftSolution:
         course: the motion; None unless solved.
         checked: what the independent check found; None unless solved.
         efforts: by agent name; empty unless solved.
-        cost_slope: derivative of the optimal cost with respect to the design's parameters.
+        start: where the solve of the motion began; None unless solved.
+        ending: of that solve.
     """
 
     lift: Lift
@@ -90,12 +95,33 @@ class LiftSolution:
     course: LiftCourse | None = None
     checked: CheckedLift | None = None
     efforts: Mapping[str, AgentEffort] = field(default_factory=dict)
-    cost_slope: Array | None = None
+    start: LiftStart | None = None
+    ending: Ending | None = None
 
     @property
     def solved(self) -> bool:
         """Whether there is a checked motion."""
         return self.status is Status.SOLVED
+
+    def in_case(self, case: Case) -> MotionCase:
+        """The same as the result of a case, whose instants are the knots asked for and half-way between them.
+
+        Args:
+            case: whose task is the lift, with the knots that were asked for.
+        """
+        solution = MotionCase(case, self.status, self.reason, attempts=self.attempts, motion=self)
+        if self.course is None or self.checked is None or not isinstance(case.task, Lift):
+            return solution
+        return replace(
+            solution,
+            instants=self.course.instants(case.task.result_times),
+            residuals=self.checked.knots,
+            attempt=min(
+                (each for each in self.attempts if each.status is Status.SOLVED), key=lambda each: each.cost
+            )
+            if self.lift.knots == case.task.knots
+            else self.attempts[-1],
+        )
 
     @property
     def times(self) -> Array:
@@ -120,6 +146,17 @@ class _Motion:
     attempts: tuple[Attempt, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class MotionCase(CaseSolution):
+    """A lift as the result of a case.
+
+    Args:
+        motion: that the instants are of.
+    """
+
+    motion: LiftSolution | None = None
+
+
 class LiftProblem:
     """Lifts of any design of a scene.
 
@@ -129,12 +166,15 @@ class LiftProblem:
     """
 
     def __init__(self, setting: Setting, *, symmetric: bool) -> None:
-        self._setting = setting
+        self._setting, self._symmetric = setting, symmetric
         self._scene = setting.scene.undisturbed
-        agents = (self._scene.robot, self._scene.human)
-        forms = symmetric_forms(self._scene) if symmetric else (whole(agents[0]), whole(agents[1]))
-        self._blocks = KnotBlocks(forms, setting)
         self._programs: dict[int, LiftProgram] = {}
+
+    @cached_property
+    def _blocks(self) -> KnotBlocks:
+        scene = self._scene
+        halves = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
+        return KnotBlocks(halves, self._setting)
 
     def solve(
         self,
@@ -143,6 +183,8 @@ class LiftProblem:
         holds: Sequence[CaseSolution],
         robot: AgentModel,
         human: AgentModel,
+        *,
+        slowly: bool = True,
     ) -> LiftSolution:
         """The best checked motion of a design; where the check finds it too coarse, with more knots.
 
@@ -152,6 +194,7 @@ class LiftProblem:
             holds: the design's posture at the beginning and at the end.
             robot: the design's, for the check.
             human: the person's.
+            slowly: whether the same lift is found infinitely slowly, too.
         """
         ends = dict(zip(("beginning", "end"), holds, strict=True))
         for name, posture in ends.items():
@@ -174,9 +217,33 @@ class LiftProblem:
             return self._none(design, lift, list(starts.values()), attempts)
         name, best, _ = min(solved, key=lambda end: end[1].cost)
         start = replace(starts[name], symbols=best.symbols)
-        return self._checked(design, _Motion(lift, start, best, attempts), checker)
+        return self._checked(design, _Motion(lift, start, best, attempts), checker, slowly=slowly)
 
-    def _checked(self, design: Sequence[float], motion: _Motion, checker: LiftChecker) -> LiftSolution:
+    def derivative(self, design: Sequence[float], solution: MotionCase) -> LiftDerivative | NotDifferentiable:
+        """How the motion of a case moves with the design, with as many knots as it has.
+
+        Args:
+            design: one number per design parameter.
+            solution: of the same design.
+        """
+        found, task = solution.motion, solution.case.task
+        if found is None or found.start is None or found.ending is None or not isinstance(task, Lift):
+            return NotDifferentiable("there is no motion")
+        lift, program, ending = found.lift, self._program(found.lift.knots), found.ending
+        slopes = program.slopes(lift, found.start, ending, design, self._scene.payload.mass)
+        if isinstance(slopes, NotDifferentiable):
+            return slopes
+        return LiftDerivative(
+            instants_of=lambda symbols: program.course(lift, symbols).instants(task.result_times),
+            symbols=ending.symbols,
+            slopes=slopes,
+            cost=ending.cost,
+            cost_slope=ending.cost_slope[: len(design)],
+        )
+
+    def _checked(
+        self, design: Sequence[float], motion: _Motion, checker: LiftChecker, *, slowly: bool
+    ) -> LiftSolution:
         """A motion that the check accepts, with more knots where it has to; or what it found."""
         mass = self._scene.payload.mass
         for further in range(REFINEMENTS, -1, -1):
@@ -185,7 +252,7 @@ class LiftProblem:
             checked = checker.check(course)
             if not (checked.wrong and further):
                 break
-            finer = replace(lift, knots=2 * lift.knots)
+            finer = msgspec.structs.replace(lift, knots=2 * lift.knots)
             start = self._program(finer.knots).refined(finer, course, motion.start)
             ending, seconds = self._program(finer.knots).solve(finer, start, design, mass)
             attempt = _attempt(f"motion of {lift.knots} knots", ending, seconds, program.method)
@@ -195,7 +262,7 @@ class LiftProblem:
             motion = _Motion(finer, replace(start, symbols=ending.symbols), ending, attempts)
         if checked.wrong:
             return LiftSolution(lift, Status.NUMERICAL_FAILURE, checked.wrong, motion.attempts)
-        slow, _ = program.solve(lift, motion.start, design, mass, 0.0)
+        slow = program.solve(lift, motion.start, design, mass, 0.0)[0] if slowly else None
         return LiftSolution(
             lift=lift,
             status=Status.SOLVED,
@@ -204,7 +271,8 @@ class LiftProblem:
             course=course,
             checked=checked,
             efforts=_efforts(course, checked, slow, program),
-            cost_slope=motion.ending.cost_slope[: len(design)],
+            start=motion.start,
+            ending=motion.ending,
         )
 
     def _none(
@@ -257,12 +325,12 @@ def _attempt(name: str, ending: Ending, seconds: float, method: MethodName) -> A
 
 
 def _efforts(
-    course: LiftCourse, checked: CheckedLift, slow: Ending, program: LiftProgram
+    course: LiftCourse, checked: CheckedLift, slow: Ending | None, program: LiftProgram
 ) -> dict[str, AgentEffort]:
     times = fine_times(course)
     instants = course.instants(times)
     slowly = None
-    if status_of(slow.word) is Status.SOLVED:
+    if slow is not None and status_of(slow.word) is Status.SOLVED:
         slowly = program.course(course.lift, slow.symbols).instants(times)
     return {
         name: AgentEffort(

@@ -11,13 +11,16 @@ import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
 
-from evodesign.motion.course import Lift, LiftCourse, LoadProfile
+from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.spline import RestingSpline
 from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.results import AgentPosture
+from evodesign.records import Lift
+from evodesign.tasks.lift import LoadProfile
 
 __all__ = ["LiftProgram", "LiftStart"]
 
@@ -122,11 +125,30 @@ class LiftProgram:
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
         """
         shared = np.array([*design, lift.step, mass, inertia, *start.hands])
+        low, high = self._bounds(lift)
+        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, self._own)
+
+    def slopes(
+        self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
+    ) -> Array | NotDifferentiable:
+        """Derivatives of a solve's symbols by the design's parameters, shape (symbols, parameters).
+
+        Args:
+            lift: with as many knots.
+            start: where the solve began.
+            ending: of the solve.
+            design: one number per parameter.
+            mass: of the load [kg].
+        """
+        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        return self._program.slopes(ending, self._bounds(lift), shared, self._own, len(design))
+
+    @property
+    def _own(self) -> list[Array]:
+        """What each knot has for itself: its weight in the cost, by the trapezoidal rule."""
         weights = np.full((self._knots, 1), 1.0 / (self._knots - 1))
         weights[[0, -1]] /= 2.0
-        low, high = self._bounds(lift)
-        own = [weights, np.empty((self._knots - 1, 0))]
-        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
+        return [weights, np.empty((self._knots - 1, 0))]
 
     def _bounds(self, lift: Lift) -> tuple[Array, Array]:
         """Of the symbols: those of a hold, and the load's height."""
@@ -136,7 +158,7 @@ class LiftProgram:
             (-1.0, [v.lower / v.scale for v in seen.moving], [v.lower / v.scale for v in seen.others]),
             (1.0, [v.upper / v.scale for v in seen.moving], [v.upper / v.scale for v in seen.others]),
         ):
-            height = RestingSpline(self._knots).through(lift.heights)
+            height = RestingSpline(self._knots).through(np.array(lift.knot_heights))
             if lift.profile is LoadProfile.FREE:
                 height = self._free_heights(lift, sign)
             soles = [sign * FARTHEST, sign * FARTHEST, sign] * self._soles
@@ -173,12 +195,12 @@ class LiftProgram:
         order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
         hands = np.asarray(self._blocks.hands(moving, design)).ravel()
         shared = np.array([*design, lift.step, 0.0, 0.0, *hands])  # of which a place does not ask the rest
-        places, worst = self._places_of(moving, lift.heights[begin], shared), 0.0
+        places, worst = self._places_of(moving, lift.knot_heights[begin], shared), 0.0
         for knot in order:
-            moving, open_by = self._closed(closure, moving, lift.heights[knot], places, shared)
+            moving, open_by = self._closed(closure, moving, lift.knot_heights[knot], places, shared)
             path[knot], worst = moving, max(worst, open_by)
         coefficients = RestingSpline(self._knots).through(path)
-        load = RestingSpline(self._knots).through(lift.heights)
+        load = RestingSpline(self._knots).through(np.array(lift.knot_heights))
         symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
         return LiftStart(np.concatenate(symbols), hands, worst)
 
@@ -190,7 +212,7 @@ class LiftProgram:
             course: the motion.
             start: where its solve began.
         """
-        seen, free, times = self._blocks.symbols, self._blocks.free, lift.times
+        seen, free, times = self._blocks.symbols, self._blocks.free, lift.knot_times
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
         others = self._sampled(course.carriage(times), seen.others)
         spline = RestingSpline(self._knots)

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
+import scipy.sparse as sparse
 
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
 from evodesign.nlp.codegen import NotCompiled, compiled_function
 from evodesign.nlp.ipopt import casadi_options
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.blocks import NativeMaker, native_maker
+from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Array, Expression
+from evodesign.nlp.repeated_slopes import central_differences, solution_slopes
 
 __all__ = ["RepeatedProgram"]
 
@@ -66,6 +70,48 @@ class RepeatedProgram:
             iterations = int(stats["iter_count"])
         by_x, by_shared = self._slopes(symbols, shared, own, rows)
         return Ending(symbols, cost, word, iterations, -by_x, rows, by_shared), time.perf_counter() - began
+
+    def slopes(
+        self,
+        ending: Ending,
+        bounds: tuple[Array, Array],
+        shared: Array,
+        own: Sequence[Array],
+        count: int,
+    ) -> Array | NotDifferentiable:
+        """Derivatives of a solution by the first shared numbers, shape (x, count).
+
+        Args:
+            ending: of a solve that succeeded.
+            bounds: lower and upper bounds of x.
+            shared: s.
+            own: p of each block, shape (times, p).
+            count: how many of the shared numbers move.
+        """
+        parameters = np.concatenate([shared, *[np.ravel(each) for each in own]])
+        functions, symbols = self._uncompiled.functions, ending.symbols
+        values, jacobian = functions["jac_g"](symbols, parameters)
+        triangle = functions["hess_lag"](symbols, parameters, 1.0, ending.rows)
+        upper = sparse.csc_matrix(triangle.sparse())
+        hessian = upper + sparse.triu(upper, 1).T
+
+        def first(moved: Array) -> tuple[Array, Array]:
+            by_x, _ = self._slopes(symbols, moved, own, ending.rows)
+            numbers = np.concatenate([moved, *[np.ravel(each) for each in own]])
+            return by_x, np.asarray(functions["nlp"](symbols, numbers)[1]).ravel()
+
+        return solution_slopes(
+            hessian,
+            sparse.csr_matrix(jacobian.sparse()),
+            (np.asarray(values).ravel(), *self._limits, ending.rows),
+            (symbols, *bounds, ending.bounds),
+            central_differences(first, shared, count),
+        )
+
+    @cached_property
+    def _uncompiled(self) -> RepeatedProgram:
+        """The same on CasADi's virtual machine: derivatives of solutions are few."""
+        return RepeatedProgram(self._name, self._parts, replace(self._options, compiled=False))
 
     def _slopes(
         self, symbols: Array, shared: Array, own: Sequence[Array], rows: Array

@@ -169,6 +169,11 @@ class Checker:
         self._models = (robot, human)
         self._solids: dict[tuple[int, Vector], SceneBodies | None] = {}
 
+    @property
+    def robot(self) -> AgentModel:
+        """Of the design."""
+        return self._models[0]
+
     def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
         """The check of the same robot in another scene."""
         other = copy(self)

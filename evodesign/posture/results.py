@@ -29,6 +29,7 @@ class AgentPosture:
         hand_wrenches: force [N] and moment about the grasp point [N m] on the hand, by side, in the agent's
             frame, shape (6,).
         foot_wrenches: force [N] and moment [N m] on the foot, by side, in the sole frame, shape (6,).
+        speeds: of each joint that moves [rad/s]; none of a load held still.
     """
 
     base_position: Array
@@ -37,6 +38,7 @@ class AgentPosture:
     torques: Mapping[str, float]
     hand_wrenches: Mapping[str, Array]
     foot_wrenches: Mapping[str, Array]
+    speeds: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def torque_norm(self) -> float:
@@ -83,11 +85,13 @@ class Instant:
         postures: by agent name.
         disturbed: by disturbance and agent name, the same base and joints with what is carried then; empty
             without disturbances.
+        height: of the load's centre [m] where it moves; None for a load held still.
     """
 
     time: float
     postures: Mapping[str, AgentPosture]
     disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
+    height: float | None = None
 
     def with_postures(self, postures: Mapping[str, AgentPosture]) -> Instant:
         """The same with some agents standing otherwise; it has no disturbances."""
@@ -122,6 +126,11 @@ class CaseSolution:
     def solved(self) -> bool:
         """Whether there is a checked posture."""
         return self.status is Status.SOLVED
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """Of the instants [s]."""
+        return tuple(instant.time for instant in self.instants)
 
     @property
     def postures(self) -> Mapping[str, AgentPosture]:

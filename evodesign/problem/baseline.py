@@ -33,7 +33,7 @@ from evodesign.problem.constraints import refuse_constraints
 from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
 from evodesign.problem.objectives import DesignResult, objective_values
-from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status, Task
+from evodesign.records import Assessed, Assessment, Genome, Hold, ProblemSource, Status
 
 __all__ = [
     "GENERATION",
@@ -62,6 +62,8 @@ def refuse_unsuited(problem: DesignProblem) -> None:
     if EFFORT_RATIO in problem.space.allocation_names:
         wanted = f"no {EFFORT_RATIO} in the joint problem, whose cost it would weigh"
         raise InputError(problem.source.path, "design.allocation", wanted, f"'{EFFORT_RATIO}'")
+    if problem.moves:
+        raise InputError(problem.source.path, "task.lift", "loads held still in the joint problem", "a lift")
     if len(problem.scenes) > 1:
         found = f"{len(problem.scenes)} pairs of a person and a load"
         wanted = "one person and one load in the joint problem"
@@ -84,7 +86,7 @@ class Baseline:
     def __init__(self, problem: DesignProblem, fixed: Genome | None = None) -> None:
         refuse_unsuited(problem)
         self._problem = problem
-        self._joint = JointProblem(problem.scene, problem.space, problem.tasks, problem.joint, fixed)
+        self._joint = JointProblem(problem.scene, problem.space, problem.holds, problem.joint, fixed)
 
     def solve(self, start: Genome) -> JointSolution:
         """The result of a start; named designs begin with standard postures, others with drawn ones."""
@@ -134,7 +136,7 @@ class Baseline:
 
 def _reach(solution: JointSolution) -> Reach:
     """The heights that a solution holds; beyond them nothing was tried."""
-    heights = [case.case.task.height_m for case in solution.cases]
+    heights = [case.case.task.heights[0] for case in solution.cases]
     if not solution.solved:
         return Reach(None, None, solution.attempt.status, solution.attempt.reason)
     reason = f"holds loads at {', '.join(f'{height:g}' for height in heights)} m; no others were tried"
@@ -166,7 +168,7 @@ class BaselineFactory:
         return Baseline(build_problem(self.source)).assess
 
 
-def held_at(problem: DesignProblem, genome: Genome, tasks: Sequence[Task]) -> JointSolution:
+def held_at(problem: DesignProblem, genome: Genome, tasks: Sequence[Hold]) -> JointSolution:
     """The joint problem with the design held at a genome, over some tasks, from the standard start."""
     return Baseline(replace(problem, tasks=tuple(tasks), joint_start=(genome,)), fixed=genome).solve(genome)
 
@@ -180,7 +182,7 @@ def torque_difference(problem: DesignProblem, solution: JointSolution) -> float:
         places = {
             n: Configuration(p.base_position, p.base_angles, p.joints) for n, p in case.postures.items()
         }
-        system = model.at({**places, PAYLOAD: level_load(case.case.task.height_m)})
+        system = model.at({**places, PAYLOAD: level_load(case.case.task.heights[0])})
         torques = [case.postures[agent].torques[joint] for agent, joint in system.joints]
         worst = max(worst, float(np.abs(projected_torques(system) - torques).max()))
     return worst

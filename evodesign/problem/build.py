@@ -44,6 +44,7 @@ from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
+from evodesign.problem.motion_objectives import refuse_still
 from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
 from evodesign.problem.source import decode_toml
 from evodesign.problem.standing_cases import standing_cases
@@ -54,6 +55,7 @@ from evodesign.records import (
     Constraint,
     Genome,
     Hold,
+    Lift,
     Objective,
     ProblemSource,
     SearchSettings,
@@ -130,6 +132,28 @@ class DesignProblem:
         return self.scenes[len(self.scenes) // 2]
 
     @property
+    def holds(self) -> tuple[Hold, ...]:
+        """The loads held still: those asked for, and both ends of every lift."""
+        lifts = [task for task in self.tasks if isinstance(task, Lift)]
+        ends = [Hold(height_m=height) for lift in lifts for height in lift.heights]
+        return tuple(dict.fromkeys([*(task for task in self.tasks if isinstance(task, Hold)), *ends]))
+
+    @property
+    def named_heights(self) -> dict[str, float]:
+        """Every height [m] that the problem asks for, by its key in the file."""
+        holds = [task for task in self.tasks if isinstance(task, Hold)]
+        lifts = [task for task in self.tasks if isinstance(task, Lift)]
+        found = {f"task.heights_m[{place}]": task.height_m for place, task in enumerate(holds)}
+        for place, task in enumerate(lifts):
+            found |= {f"task.lift[{place}].from_m": task.from_m, f"task.lift[{place}].to_m": task.to_m}
+        return found
+
+    @property
+    def moves(self) -> bool:
+        """Whether a load is lifted."""
+        return any(isinstance(task, Lift) for task in self.tasks)
+
+    @property
     def cases(self) -> tuple[Case, ...]:
         """Every undisturbed case: all tasks of a person with a load in a row."""
         return tuple(scene.case(task) for scene in self.scenes for task in self.tasks)
@@ -159,6 +183,9 @@ class DesignProblem:
             population = (
                 POPULATIONS.get(algorithm, USUAL_POPULATION) if table.population is None else table.population
             )
+        if self.moves and algorithm == JOINT_STARTS:
+            found = f"'{algorithm}'"
+            raise InputError(self.source.path, "search.algorithm", "another where a load is lifted", found)
         gradients = algorithm in GRADIENT_SEARCHES if table.gradients is None else table.gradients
         return SearchSettings(
             algorithm=algorithm,
@@ -174,7 +201,7 @@ class DesignProblem:
                 table.descriptor,
                 self.space.parameters,
                 (*self.objectives, *self.constraints),
-                (task.height_m for task in self.tasks),
+                (task.name for task in self.tasks),
                 self.source.path,
             ),
             gradients=True if gradients and algorithm != JOINT_STARTS else msgspec.UNSET,
@@ -280,13 +307,25 @@ def _limits(tables: ProblemFile) -> Limits:
 
 
 def _tasks(tables: ProblemFile, source: ProblemSource) -> tuple[Task, ...]:
-    heights = tables.task.heights_m
+    heights = tables.task.heights_m or ()
+    if not heights and not tables.task.lift:
+        raise InputError(source.path, "task", "heights_m, a [[task.lift]], or both", "neither")
     for position, height in enumerate(heights):
         if height in heights[:position]:
             raise InputError(
                 source.path, f"task.heights_m[{position}]", "each height once", f"{height:g} twice"
             )
-    return tuple(Hold(height_m=height) for height in heights)
+    lifts: dict[str, Lift] = {}
+    for position, table in enumerate(tables.task.lift):
+        key = f"task.lift[{position}]"
+        if table.from_m == table.to_m:
+            found = f"{table.to_m:g}"
+            raise InputError(source.path, f"{key}.to_m", "another height than from_m", found)
+        lift = Lift(table.from_m, table.to_m, table.seconds, table.profile, table.knots)
+        if lift.name in lifts:
+            raise InputError(source.path, key, "each lift once", f"{lift} twice")
+        lifts[lift.name] = lift
+    return (*(Hold(height_m=height) for height in heights), *lifts.values())
 
 
 def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpace:
@@ -309,6 +348,9 @@ def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpac
         positions[parameter.kind] += 1
         _check_parameter(parameter, key, source, tree, seen)
     space = DesignSpace(tuple(parameters), walls_of(tables, source, tree))
+    if space.margins and tables.task.lift:
+        key = f"design.{parameters[space.margins[0]].kind}"
+        raise InputError(source.path, key, "rated torques where a load is lifted, no margins", "a margin")
     try:
         space.check(tree)
     except InputError as error:
@@ -357,6 +399,7 @@ def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Sce
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
         refuse_without_hardware(key, name, tables, source)
+        refuse_still(key, name, tables, source, [scene.human for scene in scenes])
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(key, name, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))

@@ -48,7 +48,7 @@ class Clearances:
         self._people = {scene.human.label: SolidBodies.of_tree(scene.human.tree) for scene in scenes}
 
     def of(self, robot: Tree, cases: Sequence[CaseDetail]) -> list[BodyDistance]:
-        """The nearest two bodies in each case, at the first instant, undisturbed.
+        """The nearest two bodies in each case, undisturbed; in a lift at some of its moments.
 
         Args:
             robot: the design's tree.
@@ -57,7 +57,8 @@ class Clearances:
             RunError: the problem has not a case's person or load.
         """
         solids = SolidBodies.of_tree(robot)
-        return [self._nearest(robot, solids, each) for each in cases]
+        moments = [[self._nearest(robot, solids, each) for each in case.few_moments] for case in cases]
+        return [min(found, key=lambda gap: gap.distance) for found in moments]
 
     def _nearest(self, robot: Tree, solids: SolidBodies, case: CaseDetail) -> BodyDistance:
         scene = self._scenes.get(case.case.pair)
@@ -66,7 +67,7 @@ class Clearances:
             raise RunError(f"the logged postures of case '{name}' are not those of the run's problem")
         person = self._people[scene.human.label]
         load = SolidBodies((LOAD,), (box_solid(Box(*scene.payload.size)),))
-        middle = Placement(translation=(0.0, 0.0, case.case.task.height_m))
+        middle = Placement(translation=(0.0, 0.0, case.height_m))
         placed = _placed(scene.robot, robot, solids, case.agents[ROBOT]).beside(
             _placed(scene.human, scene.human.tree, person, case.agents[HUMAN]),
             load.placed({LOAD: middle}),

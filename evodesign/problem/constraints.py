@@ -15,6 +15,7 @@ from evodesign.mechanics.scene import Agent
 from evodesign.problem.agents import refuse_unrated
 from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.hardware_objectives import refuse_without_hardware
+from evodesign.problem.motion_objectives import refuse_still
 from evodesign.problem.objectives import (
     HUMAN_EFFORT,
     QUANTITIES,
@@ -27,7 +28,15 @@ from evodesign.records import Constraint, ProblemSource
 
 __all__ = ["constraint_key", "constraints_of", "refuse_constraints"]
 
-SUFFIXES: Mapping[str, str] = {"N m": "_n_m", "kg": "_kg", "m": "_m", "W": "_w", "mm": "_mm", "EUR": "_eur"}
+SUFFIXES: Mapping[str, str] = {
+    "N m": "_n_m",
+    "kg": "_kg",
+    "m": "_m",
+    "W": "_w",
+    "mm": "_mm",
+    "EUR": "_eur",
+    "J": "_j",
+}
 """How a key ends, by the unit of its quantity."""
 
 
@@ -60,6 +69,7 @@ def constraints_of(
         if name.endswith(HUMAN_EFFORT):
             refuse_unrated(place, name, source, people)
         refuse_without_hardware(place, name, tables, source)
+        refuse_still(place, name, tables, source, people)
         if name.endswith(PEAK_TORQUE):
             refuse_unlimited_peak(place, name, tables, source, robot)
         found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))

@@ -129,7 +129,7 @@ def demand_of(
 
 
 def _lift_rows(cases: Sequence[CaseSolution], joints: Sequence[str]) -> list[list[float]]:
-    """Torques of the robot's joints in every case of the lift [N m], as in `DesignResult.every_case`."""
+    """Torques of the robot's joints in every case [N m], in the order of `sized_slopes`."""
     return [
         [postures[ROBOT].torques.get(name, 0.0) for name in joints]
         for solution in cases

@@ -21,7 +21,7 @@ def search_descriptors(
     tables: Sequence[DescriptorTable],
     parameters: Sequence[DesignParameter],
     quantities: Iterable[Objective | Constraint],
-    heights: Iterable[float],
+    tasks: Iterable[str],
     source: str,
 ) -> tuple[Descriptor, ...] | msgspec.UnsetType:
     """The descriptors of a search; sums of parameters have the sums of their bounds where none are given.
@@ -30,13 +30,13 @@ def search_descriptors(
         tables: of the file.
         parameters: of the design.
         quantities: objectives and constraints.
-        heights: of the load, at which torques have names.
+        tasks: their names, with which torques have names.
         source: the file, for messages.
     Raises:
         InputError: an unknown name, the same descriptor twice, or bounds that hold nothing.
     """
     bounds = {each.name: (each.lower, each.upper) for each in parameters}
-    torques = [f"{name}@{height:g}" for height in heights for name in TORQUES]
+    torques = [f"{name}@{task}" for task in tasks for name in TORQUES]
     known = [*bounds, *dict.fromkeys(each.name for each in quantities), *REACHES, *torques]
     found: list[Descriptor] = []
     for index, table in enumerate(tables):

@@ -23,7 +23,7 @@ from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.inner import InnerProblems
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sizing import sized_result
-from evodesign.records import Case, Status
+from evodesign.records import Case, Hold, Lift, Status
 from evodesign.tree.equip import mounted_solids
 
 __all__ = ["DesignSolver"]
@@ -31,6 +31,7 @@ __all__ = ["DesignSolver"]
 Cases = tuple[CaseSolution, ...]
 
 LESS = "less was tried, as another case has no posture"
+NOT_TRIED = "not tried, as another case has no posture"
 
 
 class DesignSolver:
@@ -162,6 +163,9 @@ class _OneDesign:
             if before and not before[number].solved:
                 found.append(before[number])
                 continue
+            if isinstance(case.task, Lift):
+                found.append(self._lifted(values, case, case.task, reach, check, found))
+                continue
             scene = shared_scene(problem.scene_of(case), problem.space, values)
             checker = check.elsewhere(scene, self._solver.people[case.person])
             near = self._neighbour(found, case)
@@ -170,6 +174,37 @@ class _OneDesign:
             lost = any(each.attempts and not each.solved for each in found)
             found.append(self._in_case(values, case, reach, checker, near, lost=lost))
         return tuple(found)
+
+    def _lifted(
+        self,
+        values: Sequence[float],
+        case: Case,
+        lift: Lift,
+        reach: Reach | None,
+        check: Checker,
+        found: Sequence[CaseSolution],
+    ) -> CaseSolution:
+        """The motion of a lift from the holds at both ends; none is looked for where another case failed."""
+        reach = reach or self._reach(values)
+        beyond = _beyond(case, reach)
+        if beyond is not None:
+            return beyond
+        failed = [solution for solution in found if not solution.solved]
+        if failed:
+            return CaseSolution(case, failed[0].status, NOT_TRIED)
+        scene = shared_scene(self._problem.scene_of(case), self._problem.space, values)
+        human = self._solver.people[case.person]
+        checker, held = check.elsewhere(scene, human), [*found]
+        for hold in (Hold(height_m=height) for height in lift.heights):
+            end = scene.case(hold)
+            if all(solution.case != end for solution in held):
+                held.append(self._in_case(values, end, reach, checker, self._neighbour(held, end)))
+        ends = [
+            next(solution for solution in held if solution.case == scene.case(Hold(height_m=height)))
+            for height in lift.heights
+        ]
+        motions = self._solver.inner.lifts[case.pair]
+        return motions.solve(values, lift, ends, check.robot, human, slowly=False).in_case(case)
 
     def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
         """The most similar case of the same task that was solved before: of the same load if there is one."""
@@ -202,13 +237,21 @@ class _OneDesign:
             if begun.solved:
                 return begun
             reach = self._reach(values)
-        distance = reach.beyond(case.task.heights)
-        if distance is None:
-            return CaseSolution(case, reach.status, reach.reason)
-        if distance > 0.0:
-            reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
-            return CaseSolution(case, Status.INFEASIBLE, reason)
+        beyond = _beyond(case, reach)
+        if beyond is not None:
+            return beyond
         if not lost:
             return postures.solve(values, case.task, checker, neighbour)
         begun = postures.begun(values, case.task, checker, neighbour)
         return begun if begun.solved else replace(begun, reason=f"{begun.reason} ({LESS})")
+
+
+def _beyond(case: Case, reach: Reach) -> CaseSolution | None:
+    """Why there is no posture in a case whose heights are out of reach; None within it."""
+    distance = reach.beyond(case.task.heights)
+    if distance is None:
+        return CaseSolution(case, reach.status, reach.reason)
+    if distance > 0.0:
+        reason = f"{case.task} is {distance:.3f} m out of reach: the robot {reach.reason}"
+        return CaseSolution(case, Status.INFEASIBLE, reason)
+    return None

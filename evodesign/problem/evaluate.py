@@ -185,6 +185,7 @@ def _instant_detail(instant: Instant) -> InstantDetail:
             torques_n_m=dict(posture.torques),
             hand_wrenches=_numbers(posture.hand_wrenches),
             foot_wrenches=_numbers(posture.foot_wrenches),
+            speeds_rad_s=dict(posture.speeds),
         )
         for name, posture in instant.postures.items()
     }
@@ -192,7 +193,9 @@ def _instant_detail(instant: Instant) -> InstantDetail:
         disturbance: {name: _load_case(posture) for name, posture in postures.items()}
         for disturbance, postures in instant.disturbed.items()
     }
-    return InstantDetail(time_s=instant.time, agents=agents, disturbed=disturbed)
+    return InstantDetail(
+        time_s=instant.time, agents=agents, disturbed=disturbed, load_height_m=instant.height
+    )
 
 
 def _load_case(posture: AgentPosture) -> LoadCaseDetail:

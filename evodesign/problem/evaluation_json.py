@@ -10,7 +10,9 @@ joint needs, in the direction of `movement`; the rest is the revised NIOSH lifti
 
 `cases` has an entry for each undisturbed case: the names of `person` and `payload`, empty where the problem
 has one, the `task`, and what came of it. `heights` tells the same of every load held still by its `height_m`
-and, where the problem has several people or loads, its `human_name` and `payload_name`.
+and, where the problem has several people or loads, its `human_name` and `payload_name`. A lift has `instants`
+in place of one posture, with their `time_s` and `load_height_m`, and `speeds` of the joints [rad/s]; its
+`ergonomics` is that of the instant at which the person's torques are largest.
 
 `clearance` tells of a posture which two bodies are the nearest of those that must not overlap, and how far
 they are apart, negative where they overlap:
@@ -46,7 +48,7 @@ import msgspec
 
 from evodesign.collision.clearance import BodyDistance
 from evodesign.mechanics.scene import HUMAN, SIDES
-from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import distance_json, solved_distances
@@ -54,7 +56,7 @@ from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
-from evodesign.records import Assessment, hold_names, materials_of
+from evodesign.records import Assessment, Hold, materials_of, task_names
 from evodesign.violations import constraints_json
 
 __all__ = ["evaluation_json"]
@@ -94,7 +96,11 @@ def evaluation_json(
             {"person": "", "payload": ""} | msgspec.to_builtins(each.case) | of
             for each, of in zip(result.cases, shown, strict=True)
         ],
-        "heights": [hold_names(each.case) | of for each, of in zip(result.cases, shown, strict=True)],
+        "heights": [
+            task_names(each.case) | of
+            for each, of in zip(result.cases, shown, strict=True)
+            if isinstance(each.case.task, Hold)
+        ],
         "sensitivities": {
             name: {"gradient": found.gradient, "notes": list(found.notes)}
             for name, found in sensitivities.items()
@@ -111,15 +117,27 @@ def _shown(solution: CaseSolution, result: DesignResult, gap: BodyDistance | Non
         "solver": _solver(solution),
     }
     if solution.solved:
-        shown.update({name: _agent(posture) for name, posture in solution.postures.items()})
-        shown["wrenches"] = _contacts(solution.postures)
-        if solution.disturbed:
-            shown["disturbed"] = {name: _load_case(postures) for name, postures in solution.disturbed.items()}
+        if isinstance(solution.case.task, Hold):
+            shown |= _instant(solution.instants[0])
+        else:
+            shown["instants"] = [
+                {"time_s": each.time, "load_height_m": each.height, **_instant(each)}
+                for each in solution.instants
+            ]
         shown["residuals"] = dict(solution.residuals)
         if gap is not None:
             shown["clearance"] = distance_json(gap)
-        person, posture = result.scene_of(solution.case).human, detail_of(solution).agents[HUMAN]
+        person, posture = result.scene_of(solution.case).human, detail_of(solution).hardest.agents[HUMAN]
         shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
+    return shown
+
+
+def _instant(instant: Instant) -> dict[str, Any]:
+    """Postures of both agents, and what they carry."""
+    shown: dict[str, Any] = {name: _agent(posture) for name, posture in instant.postures.items()}
+    shown["wrenches"] = _contacts(instant.postures)
+    if instant.disturbed:
+        shown["disturbed"] = {name: _load_case(postures) for name, postures in instant.disturbed.items()}
     return shown
 
 
@@ -149,6 +167,7 @@ def _agent(posture: AgentPosture) -> dict[str, Any]:
             "rpy_rad": posture.base_angles.tolist(),
         },
         "joints": dict(posture.joints),
+        **({"speeds": dict(posture.speeds)} if posture.speeds else {}),
     }
 
 

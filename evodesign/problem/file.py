@@ -23,6 +23,7 @@ from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
 from evodesign.problem.design_table import DesignTable, HardwareTable, LoadCaseTable, MaterialTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
+from evodesign.tasks.lift import FEWEST_KNOTS, LoadProfile
 from evodesign.tree.urdf_read import InertiaRule
 
 __all__ = [
@@ -187,13 +188,24 @@ class WeightsTable(Table, frozen=True):
     human: NotNegative = 1.0
 
 
+class LiftTable(Table, frozen=True):
+    """`[[task.lift]]`: the load goes straight up or down, from rest to rest; see `tasks.Lift`."""
+
+    from_m: Positive
+    to_m: Positive
+    seconds: Positive = 1.5
+    profile: LoadProfile = LoadProfile.MINIMUM_JERK
+    knots: Annotated[int, Meta(ge=FEWEST_KNOTS)] = 12
+
+
 class TaskTable(Table, frozen=True):
-    """`[task]`: the heights at which the load must be held, and how robot and person divide the work.
+    """`[task]`: heights at which the load is held, lifts, and how robot and person divide the work.
 
     `robot_share` is the part of the load's weight that the robot carries; left out: the share of least cost.
     """
 
-    heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)]
+    heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)] | msgspec.UnsetType = msgspec.UNSET
+    lift: tuple[LiftTable, ...] = ()
     effort_weights: WeightsTable | None = None
     robot_share: Share | None = None
     disturbed_effort: OverCases = OverCases.WORST

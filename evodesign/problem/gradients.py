@@ -22,8 +22,9 @@ import numpy as np
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.motion_objectives import mean_over_time
 from evodesign.problem.objectives import (
     QUANTITIES,
     REACH,
@@ -36,7 +37,7 @@ from evodesign.problem.objectives import (
     split_name,
 )
 from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
-from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
+from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Case, CaseGradient, Gradients
 from evodesign.violations import HEIGHT
 
@@ -49,6 +50,9 @@ OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass", "cost"})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable
+
+OverTime = list[tuple[float, float, Found]]
+"""Time [s], value and gradient at each instant of a case."""
 
 
 def assessed_gradients(
@@ -107,10 +111,10 @@ class _Design:
     ) -> None:
         self._problem, self._sensitivities = problem, sensitivities
         self._values, self._result = values, result
-        self._known: dict[str, list[tuple[float, Found]]] = {}
+        self._known: dict[str, list[OverTime]] = {}
 
     @cached_property
-    def _as_given(self) -> list[PostureDerivative | NotDifferentiable]:
+    def _as_given(self) -> list[CaseDerivative | NotDifferentiable]:
         """Tangents by what programs are given."""
         of_case, given = self._sensitivities.of_case, self._result.program_values
         return [of_case(given, solution, exact=False) for solution in self._result.cases]
@@ -121,7 +125,7 @@ class _Design:
         return program_slopes(self._result, self._as_given)
 
     @cached_property
-    def _cases(self) -> list[PostureDerivative | NotDifferentiable]:
+    def _cases(self) -> list[CaseDerivative | NotDifferentiable]:
         return [along_design(each, self._given) for each in self._as_given]
 
     @cached_property
@@ -143,8 +147,11 @@ class _Design:
         way, quantity = split_name(name)
         known = QUANTITIES.get(quantity)
         if known is not None and known.by_torque is not None:
-            values, gradients = zip(*self._by_case(quantity, known, known.by_torque), strict=True)
-            absent = [each for each in gradients if isinstance(each, NotDifferentiable)]
+            found = self._by_case(quantity, known, known.by_torque)
+            cases = [each for case in found for each in case] if way == WORST else [*map(_mean, found)]
+            gradients = [gradient for _, _, gradient in cases if isinstance(gradient, np.ndarray)]
+            absent = [each for _, _, each in cases if isinstance(each, NotDifferentiable)]
+            values = [value for _, value, _ in cases]
             return absent[0] if absent else np.asarray(_weights(values, way) @ np.array(gradients))
         if name == REACH:
             return _slope(self._highest)
@@ -174,24 +181,31 @@ class _Design:
         known = QUANTITIES.get(quantity)
         if way or known is None or known.by_torque is None or objective_value(name, self._result) is None:
             return []
-        return self._by_case(quantity, known, known.by_torque)
+        return [
+            (value, gradient)
+            for _, value, gradient in map(_mean, self._by_case(quantity, known, known.by_torque))
+        ]
 
-    def _by_case(self, name: str, quantity: CaseQuantity, by_torque: ByTorque) -> list[tuple[float, Found]]:
+    def _by_case(self, name: str, quantity: CaseQuantity, by_torque: ByTorque) -> list[OverTime]:
         """By the chain rule, in every case and under every disturbance; worked out once."""
         if name in self._known:
             return self._known[name]
         found = self._known[name] = []
         for solution, derivative in zip(self._result.cases, self._cases, strict=True):
             scene = self._result.scene_of(solution.case)
-            for number, instant in enumerate(solution.instants):
-                for load_case, postures in enumerate((instant.postures, *instant.disturbed.values())):
+            for load_case, disturbance in enumerate(("", *solution.instants[0].disturbed)):
+                over_time: OverTime = []
+                for number, instant in enumerate(solution.instants):
+                    postures = instant.disturbed.get(disturbance, instant.postures)
                     value = quantity.value(scene, postures)
                     if isinstance(derivative, NotDifferentiable):
-                        found.append((value, derivative))
+                        over_time.append((instant.time, value, derivative))
                         continue
                     weights = by_torque(scene, postures)
                     own = self._by_actuators(quantity, solution.case, postures)
-                    found.append((value, derivative.along_torques(number, load_case, weights) + own))
+                    slope = derivative.along_torques(number, load_case, weights) + own
+                    over_time.append((instant.time, value, slope))
+                found.append(over_time)
         return found
 
     def _by_actuators(
@@ -250,6 +264,13 @@ def _difference(value: Callable[[int, float], float], position: int, step: float
 
 def _slope(derivative: ReachDerivative | NotDifferentiable) -> Found:
     return derivative if isinstance(derivative, NotDifferentiable) else derivative.slope
+
+
+def _mean(case: OverTime) -> tuple[float, float, Found]:
+    """Of a case over its time: its value and gradient, by the trapezoidal rule."""
+    times, values, gradients = zip(*case, strict=True)
+    absent = next((each for each in gradients if isinstance(each, NotDifferentiable)), None)
+    return times[0], mean_over_time(times, values), absent or mean_over_time(times, gradients)
 
 
 def _weights(values: Sequence[float], way: str) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from evodesign.motion.lifting import LiftProblem
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
@@ -23,10 +24,12 @@ class InnerProblems:
     Args:
         postures: by names of person and load.
         reaches: by label of the load.
+        lifts: by names of person and load.
     """
 
     postures: Mapping[tuple[str, str], PostureProblem]
     reaches: Mapping[str, ReachProblem]
+    lifts: Mapping[tuple[str, str], LiftProblem]
 
 
 def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> InnerProblems:
@@ -44,5 +47,11 @@ def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPU
                 setting, symmetric=symmetric, known=known, solvers=solvers
             )
             for setting in settings
+        },
+        lifts={
+            scene.pair: LiftProblem(
+                Setting(scene, problem.space, problem.weights, problem.options), symmetric=symmetric
+            )
+            for scene in problem.scenes
         },
     )

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Sequence
 
-from evodesign.motion.course import Lift
-from evodesign.motion.lifting import LiftProblem, LiftSolution
+from evodesign.motion.lifting import LiftSolution
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.base import Setting
-from evodesign.posture.postures import Symmetry
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.evaluate import Evaluator
-from evodesign.records import Hold
+from evodesign.records import Hold, Lift
 
 __all__ = ["Lifts"]
 
 
 class Lifts:
-    """The lifts of a problem, whose programs are built once.
+    """The lifts of a problem, with the programs of its evaluator.
 
     Args:
         evaluator: of the problem's designs.
@@ -27,16 +23,6 @@ class Lifts:
 
     def __init__(self, evaluator: Evaluator) -> None:
         self._evaluator, self._problem = evaluator, evaluator.problem
-
-    @cached_property
-    def _programs(self) -> Mapping[tuple[str, str], LiftProblem]:
-        problem, symmetric = self._problem, self._problem.symmetry is not Symmetry.OFF
-        return {
-            scene.pair: LiftProblem(
-                Setting(scene, problem.space, problem.weights, problem.options), symmetric=symmetric
-            )
-            for scene in problem.scenes
-        }
 
     def solve(self, values: Sequence[float], lift: Lift) -> dict[tuple[str, str], LiftSolution]:
         """The lift of a design, by names of person and load.
@@ -56,7 +42,8 @@ class Lifts:
             human = AgentModel.of(scene.human, scene.human.tree)
             checker = Checker(scene, robot, human)
             ends = [self._hold(values, plain.pair, height, checker) for height in (lift.from_m, lift.to_m)]
-            found[plain.pair] = self._programs[plain.pair].solve(values, lift, ends, robot, human)
+            motions = self._evaluator.inner.lifts[plain.pair]
+            found[plain.pair] = motions.solve(values, lift, ends, robot, human)
         return found
 
     def _hold(

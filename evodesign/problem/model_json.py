@@ -17,6 +17,7 @@ from evodesign.problem.agents import everyone
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
+from evodesign.records import Hold, Lift
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
 
@@ -29,11 +30,13 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
     loads = {each.payload.label: each.payload for each in problem.scenes}
     told = [_load(load) for load in loads.values()]
     disturbed = scene.disturbances
+    lifts = [_lift(task) for task in problem.tasks if isinstance(task, Lift)]
     return {
         "problem": problem.name,
         "agents": [_agent(scene.robot), *_people(problem)],
         **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
-        "heights_m": [task.height_m for task in problem.tasks],
+        "heights_m": [task.height_m for task in problem.tasks if isinstance(task, Hold)],
+        **({"lifts": lifts} if lifts else {}),
         **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         **({"constraints": [*map(msgspec.to_builtins, problem.constraints)]} if problem.constraints else {}),
@@ -42,6 +45,10 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
         **_collisions(problem),
         **_materials(problem),
     }
+
+
+def _lift(lift: Lift) -> dict[str, Any]:
+    return {key: value for key, value in msgspec.to_builtins(lift).items() if key != "kind"}
 
 
 def _disturbance(disturbance: Disturbance) -> dict[str, Any]:

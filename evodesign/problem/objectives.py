@@ -3,7 +3,9 @@
 A case is a person with a load at a task, undisturbed or under one of the problem's disturbances. A quantity
 has a value in every case; an objective is its mean over the cases, its largest value, or a quantile, so that
 a front may be asked to hold for everyone and not only on average. The way stands before the quantity's name:
-`human_torque` is the mean, and there are `worst_human_torque` and `q90_human_torque`.
+`human_torque` is the mean, and there are `worst_human_torque` and `q90_human_torque`. In a lift a quantity
+has a value at every instant: its mean over time is the value of the case, and the largest of all instants is
+the `worst_` one.
 
 Adding one is a function here and a line in `QUANTITIES`, for a value of every case, or in `WHOLE`, for one of
 the design; the problem file then knows its name. Without touching the package, one is a `CaseQuantity` or an
@@ -19,7 +21,6 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import msgspec
 import numpy as np
 
 from evodesign.design.space import DesignSpace
@@ -44,7 +45,15 @@ from evodesign.problem.hardware_objectives import (
     power_by_torque,
     torque_share,
 )
-from evodesign.records import Case, Constraint, Objective
+from evodesign.problem.motion_objectives import (
+    ENERGY,
+    POWER,
+    SPINE,
+    l5s1_moment,
+    mean_over_time,
+    robot_power,
+)
+from evodesign.records import Case, Constraint, Lift, Objective
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
@@ -119,13 +128,11 @@ class DesignResult:
         robot = replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
         return replace(scene, robot=robot)
 
-    def every_case(self) -> Iterator[tuple[Case, Mapping[str, AgentPosture]]]:
-        """Every solved case with its postures, each undisturbed one followed by its disturbed ones."""
+    def every_case(self) -> Iterator[tuple[CaseSolution, str]]:
+        """Every solved case with a disturbance's name, undisturbed ones first, for which that is empty."""
         for solution in self.cases:
-            for instant in solution.instants:
-                yield solution.case, instant.postures
-                for name, postures in instant.disturbed.items():
-                    yield msgspec.structs.replace(solution.case, disturbance=name), postures
+            for instant in solution.instants[:1]:
+                yield from ((solution, name) for name in ("", *instant.disturbed))
 
 
 WORST = "worst_"
@@ -163,13 +170,30 @@ class ObjectiveKind:
 def values_over_cases(
     value: CaseValue, result: DesignResult, *, disturbed: bool = True
 ) -> list[float] | None:
-    """A quantity in every case, or in every undisturbed one, in their order; None unless all are solved."""
+    """A quantity in every case, or in every undisturbed one, in their order; None unless all are solved.
+
+    That of a lift is its mean over time.
+    """
+    found = values_over_instants(value, result)
+    if found is None:
+        return None
+    return [
+        mean_over_time(solution.times, values)
+        for (solution, disturbance), values in zip(result.every_case(), found, strict=True)
+        if disturbed or not disturbance
+    ]
+
+
+def values_over_instants(value: CaseValue, result: DesignResult) -> list[list[float]] | None:
+    """A quantity at each instant of every case, as `every_case`; None unless all are solved."""
     if not all(solution.solved for solution in result.cases):
         return None
     return [
-        value(result.scene_of(case), postures)
-        for case, postures in result.every_case()
-        if disturbed or not case.disturbance
+        [
+            value(result.scene_of(solution.case), instant.disturbed.get(disturbance, instant.postures))
+            for instant in solution.instants
+        ]
+        for solution, disturbance in result.every_case()
     ]
 
 
@@ -178,19 +202,25 @@ def aggregate(quantity: CaseQuantity, way: str) -> ObjectiveKind:
 
     Args:
         quantity: of single cases.
-        way: nothing for the mean, `worst_` for the largest, `q90_` for the 90 % quantile (interpolated
-            linearly between the values on both sides of it).
+        way: nothing for the mean, `worst_` for the largest at any instant, `q90_` for the 90 % quantile
+            (interpolated linearly between the values on both sides of it).
     """
 
     def value(result: DesignResult) -> float | None:
+        if way == WORST:
+            return largest_value(quantity.value, result)
         values = values_over_cases(quantity.value, result)
         if values is None:
             return None
-        if way == WORST:
-            return max(values)
         return float(np.quantile(values, float(way[1:-1]) / 100.0) if way else np.mean(values))
 
     return ObjectiveKind(quantity.unit, value)
+
+
+def largest_value(value: CaseValue, result: DesignResult) -> float | None:
+    """The largest value of a quantity at any instant of any case; None unless all are solved."""
+    found = values_over_instants(value, result)
+    return None if found is None else max(each for values in found for each in values)
 
 
 def _by_norm(agent: str) -> ByTorque:
@@ -265,18 +295,29 @@ def torque_margin(result: DesignResult) -> float | None:
 
     Where the robot stands alone, the peak torque over the case's factor is in the place of rated torque.
     """
-    shares = values_over_cases(torque_share, result)
+    share = largest_value(torque_share, result)
     alone = [] if result.standing is None else result.standing.shares(result.tree)
-    if shares is None or alone is None or max((*shares, *alone), default=0.0) <= 0.0:
+    if share is None or alone is None or max(share, *alone, 0.0) <= 0.0:
         return None
-    return 1.0 / max(*shares, *alone, 0.0)
+    return 1.0 / max(share, *alone, 0.0)
 
 
 def safety_of_links(result: DesignResult) -> float | None:
     """The least safety factor of the robot's links, over all cases; None without walls."""
-    factors = values_over_cases(least_safety_factor, result)
-    least = min(factors) if factors else math.inf
+    factors = values_over_instants(least_safety_factor, result)
+    least = math.inf if factors is None else min(each for values in factors for each in values)
     return least if least < math.inf else None
+
+
+def energy(result: DesignResult) -> float | None:
+    """What the robot's joints and actuators draw in a lift [J], the mean over all lifts; None without any."""
+    found = values_over_instants(robot_power, result)
+    lifts = [
+        mean_over_time(solution.times, values) * solution.case.task.seconds
+        for (solution, _), values in zip(result.every_case(), found or (), strict=False)
+        if isinstance(solution.case.task, Lift)
+    ]
+    return float(np.mean(lifts)) if lifts else None
 
 
 def com_height(result: DesignResult) -> float:
@@ -310,10 +351,10 @@ def paper2023_cost(result: DesignResult) -> float | None:
     if not all(solution.solved for solution in result.cases):
         return None
     sums: dict[tuple[str, str], float] = {}
-    for case, postures in result.every_case():
-        if not case.disturbance:
-            norms = postures[ROBOT].torque_norm / MOTOR_RATIO + postures[HUMAN].torque_norm
-            sums[case.pair] = sums.get(case.pair, 0.0) + norms
+    for solution in result.cases:
+        postures, pair = solution.postures, solution.case.pair
+        norms = postures[ROBOT].torque_norm / MOTOR_RATIO + postures[HUMAN].torque_norm
+        sums[pair] = sums.get(pair, 0.0) + norms
     return max(sums.values())
 
 
@@ -330,6 +371,8 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
     "holding_power": CaseQuantity("W", holding_power, power_by_torque),
     "hand_deflection": CaseQuantity("mm", hand_deflection),
+    POWER: CaseQuantity("W", robot_power),
+    SPINE: CaseQuantity("N m", l5s1_moment),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
@@ -344,6 +387,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),
+    ENERGY: ObjectiveKind("J", energy),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
     "paper2023_cost": ObjectiveKind("N m", paper2023_cost),
 }

@@ -50,7 +50,7 @@ def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
         problem.weights,
         problem.options,
         problem.symmetry,
-        problem.tasks,
+        problem.holds,
     )
 
 
@@ -74,7 +74,7 @@ def precomputed(
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = precompute_setting(problem), Precomputed()
-    tasks, portfolios, people = problem.tasks, problem.start_portfolio, problem.person_reaches
+    tasks, portfolios, people = problem.holds, problem.start_portfolio, problem.person_reaches
     staged = [*stages(setting, tasks, portfolios=portfolios, person_reaches=people)]
     pieces = {
         piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
@@ -122,11 +122,10 @@ def refuse_heights(problem: DesignProblem, known: Precomputed) -> None:
                 wanted = "people who can hold every load"
                 raise InputError(problem.source.path, "human", wanted, f"{who}, at no height")
             continue
-        for position, task in enumerate(problem.tasks):
-            if not reach.lowest <= task.height_m <= reach.highest:
+        for key, height in problem.named_heights.items():
+            if not reach.lowest <= height <= reach.highest:
                 wanted = f"a height that {who} can hold, from {reach.lowest:.3f} to {reach.highest:.3f} m"
-                found = f"{task.height_m:g}"
-                raise InputError(problem.source.path, f"task.heights_m[{position}]", wanted, found)
+                raise InputError(problem.source.path, key, wanted, f"{height:g}")
 
 
 def _worked_out(

@@ -194,16 +194,16 @@ def _holds(problem: DesignProblem) -> str:
     bare = replace(robot, tree=without_frames(robot.tree, frames))
     alone = replace(problem, scenes=(replace(scene, robot=bare),), options=options, start_portfolio=False)
     unscaled = problem.space.unscaled(robot.tree)
-    middle = problem.tasks[len(problem.tasks) // 2]
+    middle = problem.holds[len(problem.holds) // 2]
     result = Evaluator(replace(alone, tasks=(middle,))).solve(unscaled)
     (case,), reach = result.cases, result.reach
     if reach.lowest is None or reach.highest is None:
         wanted = "hands that can hold the load in front of the robot at some height"
         raise InputError("robot.hands", "", wanted, f"none ({reach.reason})")
-    within = tuple(task for task in problem.tasks if reach.beyond(task.heights) == 0.0)
+    within = tuple(task for task in problem.holds if reach.beyond(task.heights) == 0.0)
     found = f"from {reach.lowest:.2f} to {reach.highest:.2f} m"
     if not within:
-        heights = ", ".join(f"{task.height_m:g}" for task in problem.tasks)
+        heights = ", ".join(f"{task.height_m:g}" for task in problem.holds)
         raise InputError("task.heights_m", "", f"a height that the robot reaches, {found}", heights)
     if middle not in within:
         (case,) = Evaluator(replace(alone, tasks=within[:1])).solve(unscaled).cases

@@ -23,16 +23,17 @@ from functools import partial
 import numpy as np
 
 from evodesign.design.space import DesignParameter
+from evodesign.motion.lifting import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
-from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.inner import InnerProblems, inner_problems
 from evodesign.problem.objectives import DesignResult, objective_value
-from evodesign.problem.sized_slopes import along_design, program_slopes, reach_along_design
+from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Status
 
 __all__ = [
@@ -80,7 +81,7 @@ class DesignDerivative:
     problem: DesignProblem
     values: tuple[float, ...]
     result: DesignResult
-    cases: tuple[PostureDerivative | NotDifferentiable, ...]
+    cases: tuple[CaseDerivative | NotDifferentiable, ...]
     highest: ReachDerivative | NotDifferentiable
     lowest: ReachDerivative | NotDifferentiable
     given: Array | None = None
@@ -179,8 +180,10 @@ class Sensitivities:
 
     def of_case(
         self, values: Sequence[float], solution: CaseSolution, *, exact: bool = True
-    ) -> PostureDerivative | NotDifferentiable:
-        """How the posture of a case moves with what programs are given."""
+    ) -> CaseDerivative | NotDifferentiable:
+        """How the posture of a case, or its motion, moves with what programs are given."""
+        if isinstance(solution, MotionCase):
+            return self._inner.lifts[solution.case.pair].derivative(values, solution)
         return self._inner.postures[solution.case.pair].derivative(values, solution, exact=exact)
 
     def of_reach(
@@ -202,7 +205,7 @@ def _end(derivative: ReachDerivative | NotDifferentiable, step: Array) -> float 
 
 
 def _moved(
-    solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable, step: Array
+    solution: CaseSolution, derivative: CaseDerivative | NotDifferentiable, step: Array
 ) -> CaseSolution:
     if isinstance(derivative, NotDifferentiable):
         return _without(solution)
@@ -238,7 +241,7 @@ DISTINCT = 1e-5
 
 
 def posture_notes(
-    problem: DesignProblem, solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable
+    problem: DesignProblem, solution: CaseSolution, derivative: CaseDerivative | NotDifferentiable
 ) -> Iterator[str]:
     """What is to be said of the posture in one case that was solved."""
     place = ", ".join(part for part in (f"at {solution.case.task}", solution.case.label) if part)
@@ -266,7 +269,7 @@ def reach_notes(
     yield from _near(problem, place, derivative.limits)
 
 
-def _winner(solution: CaseSolution, derivative: PostureDerivative | NotDifferentiable) -> str:
+def _winner(solution: CaseSolution, derivative: CaseDerivative | NotDifferentiable) -> str:
     """Which start won, and how far behind the next best optimum of the same program is."""
     best = solution.attempt
     won = f"{best.name if best else 'no start'} won"

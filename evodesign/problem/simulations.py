@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import msgspec
+
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.motion.course import Lift
 from evodesign.motion.lifting import LiftSolution
 from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import CaseDetail
@@ -16,9 +17,18 @@ from evodesign.simulation.model import STEP
 from evodesign.simulation.outcome import Rollout, SimulationOutcome, outcome_of
 from evodesign.simulation.plan import Plan, hold_plan, lift_plan
 from evodesign.simulation.rollout import rolled_out
+from evodesign.tasks import Hold, Lift, Task
 from evodesign.tree.model import Tree
 
-__all__ = ["HOLD_SECONDS", "SimulatedCase", "picked_cases", "simulated_holds", "simulated_lifts"]
+__all__ = [
+    "HOLD_SECONDS",
+    "SimulatedCase",
+    "lifts_among",
+    "picked_cases",
+    "picked_holds",
+    "simulated_holds",
+    "simulated_lifts",
+]
 
 HOLD_SECONDS = 2.0
 """For which a hold is simulated [s], unless another time is asked for."""
@@ -45,19 +55,33 @@ class SimulatedCase:
     outcome: SimulationOutcome
 
 
+def lifts_among(tasks: Sequence[Task], heights: Sequence[float], knots: int) -> list[Lift]:
+    """The lifts of a problem's tasks, with so many knots; none where holds at some heights are wanted."""
+    lifts = [task for task in tasks if isinstance(task, Lift) and not heights]
+    return [msgspec.structs.replace(lift, knots=knots) for lift in lifts]
+
+
 def picked_cases(
-    cases: Sequence[CaseDetail], heights: Sequence[float], person: str | None, payload: str | None
+    cases: Sequence[CaseDetail], person: str | None, payload: str | None
 ) -> tuple[CaseDetail, ...]:
-    """The cases of some heights [m], of a person and of a load; of all of them where nothing is said.
+    """The cases of a person and of a load; of all of them where nothing is said.
 
     Raises:
         InputError: there is none of them.
     """
-    found = tuple(cases)
-    found = _picked("--height", found, heights, lambda detail: detail.case.task.height_m)
     people, loads = ([] if name is None else [name] for name in (person, payload))
-    found = _picked("--person", found, people, lambda detail: detail.case.person)
+    found = _picked("--person", tuple(cases), people, lambda detail: detail.case.person)
     return _picked("--payload", found, loads, lambda detail: detail.case.payload)
+
+
+def picked_holds(cases: Sequence[CaseDetail], heights: Sequence[float]) -> tuple[CaseDetail, ...]:
+    """The holds among them, at some heights [m] or at all.
+
+    Raises:
+        InputError: there is none of a height.
+    """
+    holds = tuple(detail for detail in cases if isinstance(detail.case.task, Hold))
+    return _picked("--height", holds, heights, lambda detail: detail.height_m)
 
 
 def _picked(
@@ -92,7 +116,7 @@ def simulated_holds(
         raise InputError("--seconds", "", "a positive number", f"{seconds}")
     for detail in cases:
         postures = {name: logged_posture(agent, agent) for name, agent in detail.agents.items()}
-        plan = hold_plan(postures, detail.case.task.height_m, seconds, STEP)
+        plan = hold_plan(postures, detail.height_m, seconds, STEP)
         yield _followed(scene_of(scenes, detail.case.pair), detail.case.name, robot, plan, feedback)
 
 

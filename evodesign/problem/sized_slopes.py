@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from evodesign.mechanics.scene import ROBOT
+from evodesign.motion.derivative import LiftDerivative
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit, LimitTable
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
@@ -26,14 +27,17 @@ from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sizing import BOUNDS
 
-__all__ = ["along_design", "program_slopes", "reach_along_design"]
+__all__ = ["CaseDerivative", "along_design", "program_slopes", "reach_along_design"]
+
+CaseDerivative = PostureDerivative | LiftDerivative
+"""Of a load held still, or of a lift."""
 
 STEP = 1e-5
 """Step of differences, as a share of a value."""
 
 
 def program_slopes(
-    result: DesignResult, cases: Sequence[PostureDerivative | NotDifferentiable]
+    result: DesignResult, cases: Sequence[CaseDerivative | NotDifferentiable]
 ) -> Array | NotDifferentiable | None:
     """The derivatives of what programs are given, by the design's parameters, shape (parameters, parameters).
 
@@ -89,7 +93,7 @@ def _slope(
 
 
 def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
-    """Numbers of case, instant and load case, in the order of `every_case`."""
+    """Numbers of case, instant and load case, one after the other."""
     for number, solution in enumerate(result.cases):
         for instant, each in enumerate(solution.instants):
             for load_case in range(1 + len(each.disturbed)):
@@ -112,13 +116,16 @@ def _stance_slope(result: DesignResult, model: StanceModel, case: int, joint: st
 
 
 def along_design(
-    derivative: PostureDerivative | NotDifferentiable, slopes: Array | NotDifferentiable | None
-) -> PostureDerivative | NotDifferentiable:
+    derivative: CaseDerivative | NotDifferentiable, slopes: Array | NotDifferentiable | None
+) -> CaseDerivative | NotDifferentiable:
     """The tangent of a posture by a design's parameters, from that by what programs are given."""
     if slopes is None or isinstance(derivative, NotDifferentiable):
         return derivative
     if isinstance(slopes, NotDifferentiable):
         return slopes
+    if isinstance(derivative, LiftDerivative):
+        along, cost_slope = derivative.slopes @ slopes, derivative.cost_slope @ slopes
+        return replace(derivative, slopes=along, cost_slope=cost_slope)
     return replace(
         derivative,
         slopes={name: each @ slopes for name, each in derivative.slopes.items()},

@@ -94,7 +94,7 @@ class OpenedDesign:
         return {detail.case: each for detail, each in zip(self.cases, found, strict=True)}
 
     def ergonomics(self) -> tuple[Ergonomics, ...]:
-        """What the design's postures ask of the people, one for each.
+        """What the design's postures ask of the people, one for each case: in a lift at the hardest moment.
 
         Raises:
             InputError: the people cannot be told from the header's problem.
@@ -111,7 +111,9 @@ class OpenedDesign:
             raise RunError(
                 f"{self.run.directory}: its problem has no person '{name}', of whom it has postures"
             )
-        return tuple(ergonomics(people[detail.case.person], detail.agents[HUMAN]) for detail in self.cases)
+        return tuple(
+            ergonomics(people[detail.case.person], detail.hardest.agents[HUMAN]) for detail in self.cases
+        )
 
 
 def open_design(run: RunLog, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:

@@ -70,7 +70,7 @@ class ReproducedRobot:
     def torque_norms(self) -> TorqueNormsByHeight:
         """Torque norms of both agents by height."""
         return {
-            detail.case.task.height_m: TorqueNorms(
+            detail.height_m: TorqueNorms(
                 robot=math.hypot(*detail.agents[ROBOT].torques_n_m.values()),
                 human=math.hypot(*detail.agents[HUMAN].torques_n_m.values()),
             )
@@ -179,8 +179,7 @@ def write_reproduction(
     for agent in (ROBOT, HUMAN):
         series = {
             robot.name: {
-                detail.case.task.height_m: tuple(detail.agents[agent].torques_n_m.values())
-                for detail in robot.cases
+                detail.height_m: tuple(detail.agents[agent].torques_n_m.values()) for detail in robot.cases
             }
             for robot in compared
         }

@@ -140,7 +140,7 @@ def looks_of(link: Link) -> tuple[tuple[Shape, Placement], ...]:
 
 
 def placed_scene(models: SceneModels, detail: CaseDetail) -> PlacedScene:
-    """The stage of a logged posture."""
+    """The stage of a logged posture of one instant."""
     frames: dict[str, Mapping[str, Placement]] = {}
     wrenches: list[ContactWrench] = []
     for agent in models.agents:
@@ -150,7 +150,7 @@ def placed_scene(models: SceneModels, detail: CaseDetail) -> PlacedScene:
         placed = link_frames(models.trees[agent.name], world_from_agent @ base, posture.joints_rad)
         frames[agent.name] = placed
         wrenches += _wrenches(agent, posture, world_from_agent, placed)
-    height = detail.case.task.height_m
+    height = detail.height_m
     load = Placement(translation=(0.0, 0.0, height))
     return PlacedScene(height, models, frames, load, tuple(wrenches))
 
@@ -244,5 +244,5 @@ class SceneSet:
         return models
 
     def placed_scene(self, detail: CaseDetail) -> PlacedScene:
-        """The stage of a logged case."""
+        """The stage of a logged case at its only instant."""
         return placed_scene(self.models_of(detail), detail)

@@ -99,7 +99,7 @@ def _torque_norms(
     found: dict[str, TorqueNormsByHeight] = {}
     for robot, values in robots.items():
         found[robot] = {
-            solution.case.task.height_m: TorqueNorms(
+            solution.case.task.heights[0]: TorqueNorms(
                 solution.postures[ROBOT].torque_norm, solution.postures[HUMAN].torque_norm
             )
             for solution in evaluator.solve(values).cases
@@ -149,7 +149,7 @@ def _best(problem: DesignProblem, run: RunLog, name: str, title: str) -> Found:
 
 def _robot_norm(evaluation: Evaluation, height: float) -> float:
     """The robot's torque norm at a height [N m]; infinite where there is none."""
-    norms = {o.case.task.height_m: o.robot_torque_norm for o in evaluation.assessment.cases}
+    norms = {o.case.task.heights[0]: o.robot_torque_norm for o in evaluation.assessment.cases}
     found = norms.get(height)
     return math.inf if found is None else found
 
@@ -157,7 +157,7 @@ def _robot_norm(evaluation: Evaluation, height: float) -> float:
 def _published(problem: DesignProblem) -> Published:
     """The setting without limits: the unscaled robot at the heights of the paper, and the optimised one."""
     unscaled = problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))
-    held = held_at(problem, unscaled, [task for task in problem.tasks if task.height_m in PAPER_ORIGINAL])
+    held = held_at(problem, unscaled, [task for task in problem.holds if task.height_m in PAPER_ORIGINAL])
     baseline = Baseline(problem)
     search = make_search(problem.settings(JOINT_STARTS, PUBLISHED_STARTS, problem.search.seed))
     ended: list[JointSolution] = []

@@ -6,8 +6,9 @@ well-known encodings of the MCAP registry, which Foxglove, Lichtblick and PlotJu
 A viewer lists the fields of a channel from its schema, and drops the channel when the schema's root is not
 an object, or a listed field is a union, a list of lists or a map without `properties`. Therefore references
 are resolved; a field that a viewer cannot list stands under `patternProperties`, where validators look and
-viewers do not; a map lists the names that are known beforehand (objectives, design parameters), so that a
-plot panel can offer them. Every record validates against its schema, and nothing beside a record does.
+viewers do not; a record of one of several kinds lists the fields of all of them; a map lists the names that
+are known beforehand (objectives, design parameters), so that a plot panel can offer them. Every record
+validates against its schema, and nothing beside a record does.
 """
 
 from __future__ import annotations
@@ -94,7 +95,10 @@ def _plain(schema: Schema, definitions: Mapping[str, Schema], names: Names, fiel
         case {"$ref": str(reference)}:
             return plain(definitions[reference.rpartition("/")[2]], field)
         case {"anyOf": list(choices)}:
-            return {"anyOf": [plain(choice, field) for choice in choices]}
+            plain_choices = [plain(choice, field) for choice in choices]
+            if all("properties" in choice and "required" in choice for choice in plain_choices):
+                return _one_of(plain_choices)
+            return {"anyOf": plain_choices}
         case {"enum": list(values)}:
             return {"type": "string", "enum": values}
         case {"type": "array", "items": dict(items)}:
@@ -120,6 +124,17 @@ def _record(fields: Mapping[str, Schema], required: list[str]) -> Schema:
         "required": required,
         "additionalProperties": False,
     }
+
+
+def _one_of(choices: list[Schema]) -> Schema:
+    """A record of one of several kinds, with the fields of all of them, of which each kind allows its own."""
+    fields: dict[str, Schema] = {}
+    for choice in choices:
+        for name, inner in choice["properties"].items():
+            known = fields.get(name, {})
+            values = [*known.get("enum", ()), *inner.get("enum", ())]
+            fields[name] = {**known, **inner, **({"enum": [*dict.fromkeys(values)]} if values else {})}
+    return {"type": "object", "properties": fields, "allOf": [{"anyOf": choices}]}
 
 
 def _listed(schema: Schema) -> bool:

@@ -11,7 +11,17 @@ from typing import Final
 
 import msgspec
 
-from evodesign.records import AgentDetail, Detail, Evaluation, Front, Generation, LoadCaseDetail, RunHeader
+from evodesign.records import (
+    AgentDetail,
+    Detail,
+    Evaluation,
+    Front,
+    Generation,
+    InstantDetail,
+    Lift,
+    LoadCaseDetail,
+    RunHeader,
+)
 
 __all__ = ["Validity", "header_fault"]
 
@@ -111,15 +121,27 @@ def _detail(detail: Detail) -> str:
     if not _counts(detail.evaluation):
         return "its number is none"
     for case in detail.cases:
-        if len(case.instants) != 1 or case.instants[0].agents.keys() != AGENTS:
+        if isinstance(case.case.task, Lift):
+            times = [instant.time_s for instant in case.instants]
+            if len(times) < 2 or times != sorted(set(times)):
+                return "a lift has not several postures, one after the other"
+        elif len(case.instants) != 1:
             return "a case has not one posture of robot and person"
-        (instant,) = case.instants
-        if any(agents.keys() != AGENTS for agents in instant.disturbed.values()):
-            return "a disturbance has not robot and person"
-        found: list[AgentDetail | LoadCaseDetail] = [*instant.agents.values()]
-        found += [each for agents in instant.disturbed.values() for each in agents.values()]
-        if not all(map(_complete, found)):
-            return "a position, an angle or a wrench has too few or too many components"
+        wrong = next((wrong for instant in case.instants if (wrong := _instant(instant))), "")
+        if wrong:
+            return wrong
+    return ""
+
+
+def _instant(instant: InstantDetail) -> str:
+    if instant.agents.keys() != AGENTS:
+        return "a case has not one posture of robot and person"
+    if any(agents.keys() != AGENTS for agents in instant.disturbed.values()):
+        return "a disturbance has not robot and person"
+    found: list[AgentDetail | LoadCaseDetail] = [*instant.agents.values()]
+    found += [each for agents in instant.disturbed.values() for each in agents.values()]
+    if not all(map(_complete, found)):
+        return "a position, an angle or a wrench has too few or too many components"
     return ""
 
 

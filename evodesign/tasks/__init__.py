@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from evodesign.tasks.base import Record, TaskRecord
 from evodesign.tasks.hold import Hold
+from evodesign.tasks.lift import Lift
 
-__all__ = ["Hold", "Record", "Task", "TaskRecord"]
+__all__ = ["Hold", "Lift", "Record", "Task", "TaskRecord"]
 
-Task = Hold
-"""Every kind of task, told apart by its `kind`: a union as soon as there is a second one."""
+Task = Hold | Lift
+"""Every kind of task, told apart by its `kind`."""

@@ -26,6 +26,11 @@ class TaskRecord(Record, frozen=True, tag_field="kind"):
     PARAMETERS: ClassVar[tuple[str, ...]]
 
     @property
+    def name(self) -> str:
+        """What tells it from others where the names of quantities do, such as `robot_torque@1.2`."""
+        return str(self)
+
+    @property
     def given(self) -> dict[str, float]:
         """The numbers that programs are given, by name."""
         raise NotImplementedError

@@ -21,6 +21,11 @@ class Hold(TaskRecord, frozen=True, tag="hold"):
         return f"{self.height_m:g} m"
 
     @property
+    def name(self) -> str:
+        """Such as `1.2`."""
+        return f"{self.height_m:g}"
+
+    @property
     def given(self) -> dict[str, float]:
         """The height [m]."""
         return {"height": self.height_m}

@@ -103,7 +103,7 @@ def test_empty_run_has_an_empty_table(tmp_path: Path) -> None:
 
 
 KINDS = {"number": "int64", "generation": "int64", "feasible": "bool", "status": "str", "height": "float64"}
-TEXTS = {"human", "payload", "status", "reason"}
+TEXTS = {"human", "payload", "task", "status", "reason"}
 
 
 def dtypes_are_right(frame: pd.DataFrame) -> None:

@@ -69,6 +69,12 @@ def test_with_pymoo(tmp_path: Path) -> None:
     assert "found MOEAD, which takes no constraints" in printed
 
 
+def test_lift_prints_torques_over_its_time(tmp_path: Path) -> None:
+    lines = run_example("lift.py", tmp_path).splitlines()
+    assert lines[0].startswith("0.8 to 1.2 m in 1.5 s: {'robot_torque': ")
+    assert [float(line.split()[0]) for line in (lines[2], lines[-1])] == [0.0, 1.5]
+
+
 @pytest.mark.usefixtures("known")
 def test_own_objective_reaches_the_processes(tmp_path: Path) -> None:
     run_example("own_objective.py", tmp_path, "6")

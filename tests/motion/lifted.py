@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evodesign.motion.course import Lift
 from evodesign.motion.lifting import LiftProblem, LiftSolution
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.results import CaseSolution
 from evodesign.records import Hold
+from evodesign.tasks import Lift
 
 LIFT = Lift(0.9, 1.1, 1.5, knots=8)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import casadi as ca
+import msgspec
 import mujoco
 import numpy as np
 import pytest
@@ -16,7 +17,6 @@ from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES
 from evodesign.motion.check import LiftChecker
-from evodesign.motion.course import LoadProfile
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import LiftSolution
 from evodesign.motion.program import LiftProgram
@@ -28,7 +28,9 @@ from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, symmetric_forms
 from evodesign.posture.warm_start import start_from
+from evodesign.problem.sensitivities import five_point
 from evodesign.records import Status
+from evodesign.tasks.lift import LoadProfile
 from evodesign.tree.frames import link_frames
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.mjcf_write import mjcf_text
@@ -67,10 +69,10 @@ def test_a_check_sees_a_wrong_torque_and_a_moved_foot(lifted: Lifted, solution: 
 
 def test_a_slow_lift_is_a_row_of_holds_in_one_stance(lifted: Lifted) -> None:
     """And the lift in which inertia does not count is the same."""
-    lift = replace(LIFT, seconds=100.0, knots=5)
+    lift = msgspec.structs.replace(LIFT, seconds=100.0, knots=5)
     found = lifted.solve(lift)
     assert found.course is not None
-    forms, times = symmetric_forms(lifted.setting.scene), lift.times
+    forms, times = symmetric_forms(lifted.setting.scene), lift.knot_times
     heights = found.course.heights(times)
     for number in (0, 2, 4):
         instant = found.course.instants(times)[number]
@@ -92,7 +94,10 @@ def test_a_slow_lift_is_a_row_of_holds_in_one_stance(lifted: Lifted) -> None:
 
 def test_a_very_slow_lift_is_the_one_without_inertia(lifted: Lifted) -> None:
     """From the same start; torques at every knot, and the cost."""
-    quick, slow = replace(LIFT, knots=6), replace(LIFT, knots=6, seconds=100.0)
+    quick, slow = (
+        msgspec.structs.replace(LIFT, knots=6),
+        msgspec.structs.replace(LIFT, knots=6, seconds=100.0),
+    )
     program = LiftProgram(_blocks(lifted), 6, replace(lifted.setting.options, tolerance=1e-9))
     start = program.followed(quick, lifted.hold(LIFT.from_m).postures, 0, lifted.design)
     mass = lifted.setting.scene.payload.mass
@@ -112,7 +117,7 @@ def test_twice_the_knots_cost_the_same(lifted: Lifted) -> None:
     mass, costs = lifted.setting.scene.payload.mass, []
     hold = lifted.hold(LIFT.from_m).postures
     for knots in (12, 24):
-        lift = replace(LIFT, knots=knots)
+        lift = msgspec.structs.replace(LIFT, knots=knots)
         program = LiftProgram(_blocks(lifted), knots, replace(lifted.setting.options, tolerance=1e-7))
         ending, _ = program.solve(lift, program.followed(lift, hold, 0, lifted.design), lifted.design, mass)
         assert ending.word == "Solve_Succeeded"
@@ -121,7 +126,7 @@ def test_twice_the_knots_cost_the_same(lifted: Lifted) -> None:
 
 
 def test_both_methods_find_the_same_lift(lifted: Lifted) -> None:
-    lift, mass, found = replace(LIFT, knots=6), lifted.setting.scene.payload.mass, []
+    lift, mass, found = msgspec.structs.replace(LIFT, knots=6), lifted.setting.scene.payload.mass, []
     for method in MethodName:
         options = replace(lifted.setting.options, tolerance=1e-9, compiled=method is MethodName.NATIVE)
         program = LiftProgram(_blocks(lifted), lift.knots, replace(options, method=method))
@@ -157,7 +162,7 @@ def _standing(form: Form, variables: Sequence[object], posture: AgentPosture) ->
 def test_the_cost_changes_with_the_design_as_its_gradient_says(
     lifted: Lifted, solution: LiftSolution
 ) -> None:
-    lift = replace(LIFT, knots=5)
+    lift = msgspec.structs.replace(LIFT, knots=5)
     program = LiftProgram(
         KnotBlocks(symmetric_forms(lifted.setting.scene), lifted.setting),
         lift.knots,
@@ -180,7 +185,7 @@ def test_the_cost_changes_with_the_design_as_its_gradient_says(
 def test_a_load_that_goes_as_it_likes_stays_between_its_ends_and_costs_no_more(
     lifted: Lifted, solution: LiftSolution
 ) -> None:
-    free = lifted.solve(replace(LIFT, profile=LoadProfile.FREE))
+    free = lifted.solve(msgspec.structs.replace(LIFT, profile=LoadProfile.FREE))
     assert free.course is not None
     heights = free.course.heights(free.times)
     assert heights[[0, -1]] == pytest.approx([LIFT.from_m, LIFT.to_m])
@@ -194,7 +199,7 @@ def test_a_load_that_goes_as_it_likes_stays_between_its_ends_and_costs_no_more(
 )
 def test_what_is_no_lift_is_refused_by_name(key: str, value: float) -> None:
     with pytest.raises(InputError, match=key):
-        replace(LIFT, **{key: value})
+        msgspec.structs.replace(LIFT, **{key: value})
 
 
 @pytest.mark.parametrize("who", ["robot", "human"])
@@ -204,7 +209,7 @@ def test_mujoco_asks_for_the_same_torques(lifted: Lifted, solution: LiftSolution
     model = mujoco.MjModel.from_xml_string(mjcf_text(agent.tree, GRAVITY, {}))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
     data = mujoco.MjData(model)
-    times = LIFT.times[1:-1]
+    times = LIFT.knot_times[1:-1]
     for instant, motion in zip(course.instants(times), course.motions(times), strict=True):
         posture, moving = instant.postures[who], motion.agents[who]
         root = Placement.from_xyz_rpy(posture.base_position.tolist(), posture.base_angles.tolist())
@@ -235,3 +240,30 @@ def test_mujoco_asks_for_the_same_torques(lifted: Lifted, solution: LiftSolution
         asked = [torques[model.joint(name).dofadr[0]] for name in agent.joints]
         assert asked == pytest.approx([posture.torques[name] for name in agent.joints], abs=1e-5)
         assert torques[:6] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_motion_moves_with_the_design_as_solves_of_neighbours_do(lifted: Lifted) -> None:
+    """Mean torques along three directions, against five-point differences of exact solves."""
+    lift, mass = msgspec.structs.replace(LIFT, knots=6), lifted.setting.scene.payload.mass
+    options = replace(lifted.setting.options, tolerance=1e-10)
+    program, at = LiftProgram(_blocks(lifted), 6, options), np.array(lifted.design)
+    start = program.followed(lift, lifted.hold(lift.to_m).postures, lift.knots - 1, lifted.design)
+    ending, _ = program.solve(lift, start, lifted.design, mass)
+    slopes = program.slopes(lift, start, ending, lifted.design, mass)
+    assert isinstance(slopes, np.ndarray)
+    near = replace(start, symbols=ending.symbols)
+
+    def torques(symbols: NDArray[np.float64]) -> NDArray[np.float64]:
+        instants = program.course(lift, symbols).instants(lift.result_times)
+        return np.array(
+            [np.mean([i.postures[name].torque_norm for i in instants]) for name in ("robot", "human")]
+        )
+
+    generator = np.random.default_rng(5)
+    for _ in range(3):
+        direction, step = generator.standard_normal(len(at)) * at, 1e-4
+        ends = [program.solve(lift, near, at + k * step * direction, mass)[0] for k in (-2, -1, 1, 2)]
+        differences = five_point([torques(e.symbols) for e in (*ends[:2], ending, *ends[2:])], step)
+        along = [torques(ending.symbols + k * 1e-4 * slopes @ direction) for k in (-1, 1)]
+        found = (along[1] - along[0]) / 2e-4
+        assert found == pytest.approx(differences, rel=1e-4, abs=1e-4 * np.abs(differences).max())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import msgspec
 import pytest
 
 from evodesign.motion import lifting
@@ -14,8 +15,8 @@ from tests.motion.lifted import LIFT, Lifted
 
 pytestmark = pytest.mark.slow
 
-HASTE = replace(LIFT, seconds=0.02, knots=5)
-COARSE = replace(LIFT, from_m=0.7, to_m=1.2, knots=5)
+HASTE = msgspec.structs.replace(LIFT, seconds=0.02, knots=5)
+COARSE = msgspec.structs.replace(LIFT, from_m=0.7, to_m=1.2, knots=5)
 
 
 def test_a_lift_that_is_too_fast_is_told_from_one_that_there_is_not(lifted: Lifted) -> None:
@@ -25,7 +26,7 @@ def test_a_lift_that_is_too_fast_is_told_from_one_that_there_is_not(lifted: Lift
 
 
 def test_a_height_that_cannot_be_held_is_named(lifted: Lifted) -> None:
-    found = lifted.solve(replace(LIFT, to_m=2.6))
+    found = lifted.solve(msgspec.structs.replace(LIFT, to_m=2.6))
     assert found.status is Status.INFEASIBLE
     assert found.reason.startswith("the load cannot be held at the end of the lift")
     assert found.attempts == ()
@@ -40,7 +41,7 @@ def hasty(lifted: Lifted) -> Lifted:
 
 def test_a_height_out_of_reach_on_the_way_is_said(hasty: Lifted) -> None:
     """Feet stay where the holds have them: from there the way goes beyond what arms reach."""
-    low, lift = hasty.hold(LIFT.from_m), replace(LIFT, to_m=1.7, knots=5)
+    low, lift = hasty.hold(LIFT.from_m), msgspec.structs.replace(LIFT, to_m=1.7, knots=5)
     found = hasty.lifts.solve(hasty.design, lift, [low, low], hasty.robot, hasty.human)
     assert found.status not in {Status.SOLVED, Status.TIME_LIMIT}
     assert "passes a height out of reach: hands or feet are 0." in found.reason
@@ -48,7 +49,7 @@ def test_a_height_out_of_reach_on_the_way_is_said(hasty: Lifted) -> None:
 
 def test_torque_limits_that_holds_meet_and_no_motion_are_said(hasty: Lifted) -> None:
     """Each end is held in a stance of its own, with torques that one stance for both does not do with."""
-    lift, scene = replace(LIFT, from_m=0.8, to_m=1.2, knots=5), hasty.setting.scene
+    lift, scene = msgspec.structs.replace(LIFT, from_m=0.8, to_m=1.2, knots=5), hasty.setting.scene
     holds = [hasty.hold(height) for height in (lift.from_m, lift.to_m)]
     limits = {
         joint: 0.05 + 1.05 * max(abs(hold.postures["robot"].torques[joint]) for hold in holds)

@@ -25,8 +25,8 @@ from evodesign.violations import bound_margin, height_margin, total_violation
 
 TORQUES = ("robot_torque", "human_torque")
 
-NEED_MORE = ("shared_reach_height", "least_safety_factor", "cost")
-"""Quantities that ask for people's reach, for walls, or for prices."""
+NEED_MORE = ("shared_reach_height", "least_safety_factor", "cost", "energy")
+"""Quantities that ask for people's reach, for walls, for prices, or for lifts."""
 
 STEP = 1e-4
 """Of the differences, as a share of a parameter's range."""

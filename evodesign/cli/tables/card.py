@@ -55,12 +55,13 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, A
         sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
     else:
         sections[f"the load at each height ({reach})"] = cases_table(assessment, "")
-    if opened.cases and several:
-        sections["largest joint torques [N m]"] = worst_torques(opened.cases)
-        sections["contact forces [N]"] = worst_forces(opened.cases)
-    elif opened.cases:
-        sections["largest joint torques [N m]"] = torques_by_height(opened.cases)
-        sections["contact forces [N]"] = forces_by_height(opened.cases)
+    moments = [moment for detail in opened.cases for moment in detail.few_moments]
+    if moments and several:
+        sections["largest joint torques [N m]"] = worst_torques(moments)
+        sections["contact forces [N]"] = worst_forces(moments)
+    elif moments:
+        sections["largest joint torques [N m]"] = torques_by_height(moments)
+        sections["contact forces [N]"] = forces_by_height(moments)
     if asked:
         cases = [*zip((detail.case for detail in opened.cases), asked, strict=True)]
         sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)

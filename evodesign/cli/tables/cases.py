@@ -10,30 +10,34 @@ from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.records import Assessment, CaseOutcome
+from evodesign.records import Assessment, CaseOutcome, Lift
 
 __all__ = ["cases_table", "summary_table"]
 
 ALONE = ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual")
+MOVING = ("load",)
 SEVERAL = ("height", "robot |tau|", "human |tau|", "residual")
 
 
 def cases_table(assessment: Assessment, title: str) -> FittedTable:
     """A design's postures in short, height by height; of several people or loads, case by case.
 
+    Of a lift the largest torques count.
+
     Args:
         assessment: of the design.
         title: over the table; empty for none.
     """
     outcomes = assessment.cases
-    labels = _name_columns(outcomes)
-    columns = [*names(*labels), *numbers(*(SEVERAL if labels else ALONE)), *names("status")]
+    labels, moves = _name_columns(outcomes), any(isinstance(each.case.task, Lift) for each in outcomes)
+    alone = (*MOVING, *ALONE[1:]) if moves else ALONE
+    columns = [*names(*labels), *numbers(*(SEVERAL if labels else alone)), *names("status")]
     table = titled(title, columns, keys=len(labels) + 1)
     for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
         iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
             *(markup(name_of(outcome)) for name_of in labels.values()),
-            _height(outcome) if labels else rounded(outcome.case.task.height_m),
+            _height(outcome) if labels or moves else rounded(outcome.case.task.heights[0]),
             rounded(outcome.robot_torque_norm),
             rounded(outcome.human_torque_norm),
             *iterations,

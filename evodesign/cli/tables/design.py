@@ -71,7 +71,7 @@ def _people_table(result: DesignResult) -> FittedTable:
     """What the solved postures of a design ask of the people."""
     solved = [solution for solution in result.cases if solution.solved]
     asked = [
-        (one.case, ergonomics(result.scene_of(one.case).human, detail_of(one).agents[HUMAN]))
+        (one.case, ergonomics(result.scene_of(one.case).human, detail_of(one).hardest.agents[HUMAN]))
         for one in solved
     ]
     return people_table(asked, titled=True)

@@ -91,7 +91,11 @@ def _task_table(shown: dict[str, Any], constraints: Sequence[Constraint]) -> Tab
         counts = " and ".join(f"{len(pairs)} of the {name}" for name, pairs in kept["pairs"].items())
         margin = f"{1e3 * kept['margin_m']:g} mm"
         table.add_row("kept apart", f"pairs of bodies, by {margin}: {counts}")
-    table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
+    if shown["heights_m"]:
+        table.add_row("heights", ", ".join(f"{height:g}" for height in shown["heights_m"]) + " m")
+    for lift in shown.get("lifts", ()):
+        way = f"{lift['from_m']:g} to {lift['to_m']:g} m in {lift['seconds']:g} s"
+        table.add_row("lift", f"{way}, {lift['profile'].replace('_', ' ')}")
     for disturbance in shown.get("disturbances", ()):
         table.add_row("disturbance", escape(_disturbance_text(disturbance)))
     table.add_row("objectives", ", ".join(shown["objectives"]))

@@ -29,7 +29,7 @@ def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[st
         return
     yield "highest load", known.highest, "m"
     yield "lowest load", known.lowest, "m"
-    for task in problem.tasks:
+    for task in problem.holds:
         yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
 
 
@@ -57,7 +57,7 @@ def _people_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
 
 def _errors(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[Case, float | None]]:
     """Each case with the error of its value function [N^2 m^2], if it has one."""
-    for case in problem.cases:
+    for case in (scene.case(hold) for scene in problem.scenes for hold in problem.holds):
         yield case, known.values[case].error * COST_UNIT if case in known.values else None
 
 
@@ -79,7 +79,7 @@ def starts_json(problem: DesignProblem, known: Precomputed) -> dict[str, Any]:
         "human_values": [
             {
                 **({"scene": case.label} if case.label else {}),
-                "height_m": case.task.height_m,
+                "height_m": case.task.heights[0],
                 "known": error is not None,
                 "error_n2_m2": error,
             }

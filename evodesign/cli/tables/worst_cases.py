@@ -69,7 +69,7 @@ def _rows(
 
 
 def _by_height(named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> FittedTable:
-    columns = [*names("agent", named), *numbers(*(str(detail.case.task) for detail in cases))]
+    columns = [*names("agent", named), *numbers(*(detail.place for detail in cases))]
     table = titled("", columns, keys=2)
     for agent, name, values, last in _rows(cases, values_of):
         table.add_row(agent, markup(name), *map(rounded, values), end_section=last)

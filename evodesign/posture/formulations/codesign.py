@@ -45,7 +45,7 @@ from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.terms.torque import effort
 from evodesign.posture.warm_start import instants_of, layout_of, start_from
-from evodesign.records import Genome, Status, Task
+from evodesign.records import Genome, Hold, Status
 
 __all__ = ["JointProblem", "JointSettings", "JointSolution", "drawn_postures", "standard_postures"]
 
@@ -124,7 +124,7 @@ class JointProblem:
         self,
         scene: Scene,
         space: DesignSpace,
-        tasks: Sequence[Task],
+        tasks: Sequence[Hold],
         settings: JointSettings,
         fixed: Genome | None = None,
     ) -> None:
@@ -252,7 +252,7 @@ def _program(
     scene: Scene,
     space: DesignSpace,
     design: Variable,
-    tasks: Sequence[Task],
+    tasks: Sequence[Hold],
     settings: JointSettings,
     *,
     switched: bool = False,

@@ -174,7 +174,7 @@ class DecoupledPostures:
 
         def finish(start: str, robot: RawSolution) -> Candidate:
             value, internal = self._values[task], self._internal_force(robot)
-            human = self._human.best(task.height_m, internal, value)
+            human = self._human.best(task.heights[0], internal, value)
             both = _joined(robot, human, float(value.cost(internal)))
             if human.status is not Status.SOLVED:
                 return Candidate(checked(self.name, start, both, ()), (), (), robot)
@@ -235,7 +235,7 @@ class DecoupledPostures:
             start = start_from(humans.program, self._forms, solution.instants)
             return humans.at(parameters, start, exact=exact)
         push = float(np.copysign(self._setting.scene.stance.push, internal))
-        raw = self._human.best(task.height_m, push, self._values[task])
+        raw = self._human.best(task.heights[0], push, self._values[task])
         still = {name: np.zeros((len(value), len(parameters))) for name, value in raw.values.items()}
         unmoved = np.zeros(len(parameters))
         columns, limits = humans.program.columns, no_limits(len(parameters))

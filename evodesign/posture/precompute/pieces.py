@@ -114,7 +114,7 @@ class PrecomputeSetting:
     weights: EffortWeights
     options: SolverOptions
     symmetry: Symmetry
-    tasks: tuple[Task, ...]
+    tasks: tuple[Hold, ...]
 
     @property
     def symmetric(self) -> bool:
@@ -186,7 +186,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
 
 
 def stages(
-    setting: PrecomputeSetting, tasks: Sequence[Task], *, portfolios: bool, person_reaches: bool
+    setting: PrecomputeSetting, tasks: Sequence[Hold], *, portfolios: bool, person_reaches: bool
 ) -> list[list[Piece]]:
     """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
@@ -226,7 +226,7 @@ def stages(
     return found
 
 
-def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Task]) -> Piece:
+def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Hold]) -> Piece:
     return Piece(Subject.WIDER, pair, task, tuple(other for other in tasks if other != task))
 
 
@@ -324,7 +324,7 @@ def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[B
 
 def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue | None:
     form = symmetric_forms(scene)[1]
-    return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.height_m)
+    return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.heights[0])
 
 
 def _compile(setting: PrecomputeSetting, scene: Scene) -> None:

@@ -1,7 +1,8 @@
 """What is exported: one evaluation of a run with its robot and postures, as JSON and as CSV.
 
 CSV has one row per number, or per wrench, as the log has them. Where a problem has several people or loads,
-columns `human` and `payload` with their names come first. Numbers are written with as many digits as read
+columns `human` and `payload` with their names come first; where a load is lifted, columns `task` and `time_s`
+follow, and each moment has rows of its own. Numbers are written with as many digits as read
 back to the same double.
 """
 
@@ -14,7 +15,16 @@ from typing import Any
 import msgspec
 
 from evodesign.mechanics.scene import SIDES, Agent
-from evodesign.records import CaseDetail, CaseOutcome, Evaluation, RunHeader, hold_names, materials_of
+from evodesign.records import (
+    CaseDetail,
+    CaseOutcome,
+    Evaluation,
+    Hold,
+    Lift,
+    RunHeader,
+    materials_of,
+    task_names,
+)
 from evodesign.report.csv_text import csv_text
 from evodesign.report.scene_models import SceneModels, SceneSet
 from evodesign.tree.model import JointKind, Tree
@@ -29,7 +39,7 @@ WRENCH_COLUMNS = (
     *("height_m", "agent", "contact", "frame"),
     *("force_x_n", "force_y_n", "force_z_n", "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"),
 )
-NAME_COLUMNS = ("human", "payload")
+NAME_COLUMNS, TIME_COLUMNS = ("human", "payload"), ("task", "time_s")
 BASE = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
 """Coordinates of the root link in its agent's frame."""
 
@@ -76,31 +86,43 @@ def design_json(
         "violation": outcome["violation"],
         **({"constraints": constraints_json(constraints, assessment)} if constraints else {}),
         "reach": outcome["reach"],
-        "heights": [_hold(each) for each in assessment.cases],
-        "postures": [_hold(each) for each in cases],
+        "heights": [_case_json(each) for each in assessment.cases if isinstance(each.case.task, Hold)],
+        "postures": [_case_json(each) for each in cases if isinstance(each.case.task, Hold)],
+        **_lifts(assessment.cases, cases),
     }
 
 
-def _hold(part: CaseOutcome | CaseDetail) -> dict[str, Any]:
-    """A part of the log about a load held still, as it was before there were other tasks."""
+def _lifts(outcomes: Sequence[CaseOutcome], cases: Sequence[CaseDetail]) -> dict[str, Any]:
+    """Lifts and their motions, under keys that other problems do not have."""
+    lifts = [_case_json(each) for each in outcomes if isinstance(each.case.task, Lift)]
+    motions = [_case_json(each) for each in cases if isinstance(each.case.task, Lift)]
+    return {"lifts": lifts, "motions": motions} if lifts else {}
+
+
+def _case_json(part: CaseOutcome | CaseDetail) -> dict[str, Any]:
+    """A part of the log; what holds a load still has no instants but a posture."""
     told: dict[str, Any] = msgspec.to_builtins(part)
-    (instant,) = told.pop("instants", [{}])
     del told["case"]
-    return {**hold_names(part.case), **told, **{key: instant[key] for key in instant if key != "time_s"}}
+    if isinstance(part.case.task, Hold):
+        (instant,) = told.pop("instants", [{}])
+        told |= {key: instant[key] for key in instant if key != "time_s"}
+    return {**task_names(part.case), **told}
 
 
 def postures_csv(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
     """Base coordinates, joint positions and torques of robot and person."""
+    cases = [moment for detail in cases for moment in detail.moments]
     return _text(POSTURE_COLUMNS, cases, [_posture_rows(scene_set.models_of(each), each) for each in cases])
 
 
 def wrenches_csv(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
     """Wrenches on hands (about the grasp point) and feet (about the sole's origin)."""
+    cases = [moment for detail in cases for moment in detail.moments]
     return _text(WRENCH_COLUMNS, cases, [_wrench_rows(scene_set.models_of(each), each) for each in cases])
 
 
 def _posture_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
-    height = detail.case.task.height_m
+    height = detail.height_m
     for name, tree in models.trees.items():
         posture = detail.agents[name]
         base = (*posture.base_position_m, *posture.base_rpy_rad)
@@ -124,7 +146,7 @@ def _wrench_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
 
 
 def _wrenches_of(agent: Agent, detail: CaseDetail) -> Iterator[Row]:
-    height, posture = detail.case.task.height_m, detail.agents[agent.name]
+    height, posture = detail.height_m, detail.agents[agent.name]
     for side in SIDES:
         frame = f"{agent.name}'s own, x at the load"
         yield height, agent.name, f"{side}_hand", frame, *posture.hand_wrenches[side]
@@ -135,8 +157,11 @@ def _wrenches_of(agent: Agent, detail: CaseDetail) -> Iterator[Row]:
 def _text(columns: Row, cases: Sequence[CaseDetail], rows_of: Iterable[Iterable[Row]]) -> str:
     """The rows of each case under their columns, with names of people and loads where they are needed."""
     named = any(detail.case.label for detail in cases)
-    lines: list[Row] = [(*NAME_COLUMNS, *columns) if named else columns]
+    timed = any(isinstance(detail.case.task, Lift) for detail in cases)
+    heads = [*(NAME_COLUMNS if named else ()), *(TIME_COLUMNS if timed else ())]
+    lines: list[Row] = [(*heads, *columns)]
     for detail, rows in zip(cases, rows_of, strict=True):
         names = detail.case.pair if named else ()
-        lines += [(*names, *row) for row in rows]
+        times = (str(detail.case.task), detail.time_s) if timed else ()
+        lines += [(*names, *times, *row) for row in rows]
     return csv_text(lines)

@@ -135,8 +135,8 @@ def _keys(design: ExportedDesign) -> dict[str, KeyPosture]:
     """The robot's postures as keyframes, by person and load where there are several, and by height."""
     root = design.scene_set.robot.root
     keys = {}
-    for detail in design.cases:
-        name = ", ".join(part for part in (detail.case.label, f"load at {detail.case.task}") if part)
+    for detail in (moment for case in design.cases for moment in case.few_moments):
+        name = ", ".join(part for part in (detail.case.label, f"load at {detail.place}") if part)
         frames = design.scene_set.placed_scene(detail).frames[ROBOT]
         keys[name] = KeyPosture(frames[root], detail.agents[ROBOT].joints_rad)
     return keys

@@ -122,7 +122,7 @@ def _cases(design: ExportedDesign) -> tuple[str, ...]:
     rows = [
         f"| {time / 1e9:g} s | {_cell(case.person)} | `{files[case.person]}` "
         f"| {_cell(case.payload)} | {case.task} |"
-        for time, case in ((time, detail.case) for time, detail in timed(design.cases))
+        for case, time in {detail.case: time for time, detail in reversed(timed(design.cases))}.items()
     ]
     heads = ("| time in the recording | person | file | load | height |", "|---|---|---|---|---|")
     return ("## Cases", "\n".join((*heads, *rows)))

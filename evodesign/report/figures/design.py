@@ -17,13 +17,14 @@ def write_design_figures(opened: OpenedDesign, directory: Path) -> list[Path]:
     """Write figures of a design's joint torques and postures to an existing directory."""
     name = f"{opened.run.header.problem_name}, design {opened.evaluation.number}"
     scene_set = opened.scene_set()
+    shown = [moment for detail in opened.cases for moment in detail.few_moments]
     torques = {
-        agent: [(detail.case.task.height_m, detail.agents[agent].torques_n_m) for detail in opened.cases]
+        agent: [(detail.height_m, detail.agents[agent].torques_n_m) for detail in shown]
         for agent in scene_set.models[0].trees
     }
-    several = any(detail.case.label for detail in opened.cases)
+    several = any(detail.case.label for detail in shown)
     whom = " with all people and loads" if several else ""
-    stages = [scene_set.placed_scene(detail) for detail in opened.cases]
+    stages = [scene_set.placed_scene(detail) for detail in shown]
     figures = {
         "torques": torque_boxes(_by_height(torques), f"{name}: joint torques{whom}"),
         "torques_by_joint": joint_torques(torques, f"{name}: torque of each joint{whom}"),

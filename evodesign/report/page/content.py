@@ -10,7 +10,7 @@ from typing import Any
 
 from msgspec import Struct
 
-from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter
+from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter, Task
 
 __all__ = [
     "ActuatorContent",
@@ -27,6 +27,7 @@ __all__ = [
     "MeshBody",
     "Points",
     "ShapeBody",
+    "StopContent",
     "SurfaceBody",
     "TreeBody",
     "WallContent",
@@ -275,6 +276,26 @@ class DesignContent(Part, frozen=True):
     replay: str = ""
 
 
+class StopContent(Part, frozen=True):
+    """What the page's slider stops at: a load held still, or a moment of a lift.
+
+    Attributes:
+        task: that it belongs to.
+        moment: which of the task's postures in the page.
+        height_m: of the load; in a lift where it begins, for postures tell the rest.
+        time_s: since the task began.
+        text: what it is called.
+        name: of the task.
+    """
+
+    task: Task
+    moment: int
+    height_m: float
+    time_s: float
+    text: str
+    name: str
+
+
 class Content(Part, frozen=True):
     """The whole page; people and loads have an empty name where there is one of them.
 
@@ -291,6 +312,7 @@ class Content(Part, frozen=True):
     people: tuple[str, ...]
     payloads: tuple[str, ...]
     heights_m: tuple[float, ...]
+    stops: tuple[StopContent, ...]
     points: Points
     marks: tuple[Mark, ...]
     generations: tuple[Generation, ...]

@@ -19,7 +19,7 @@ from evodesign.problem.designs import unscaled_genome
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
-from evodesign.records import Case, Detail, Evaluation
+from evodesign.records import Detail, Evaluation, Hold, Lift, Task, evenly
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
 from evodesign.report.page.content import (
@@ -29,6 +29,7 @@ from evodesign.report.page.content import (
     DesignContent,
     Facts,
     Mark,
+    StopContent,
 )
 from evodesign.report.page.downloads import Downloads, rounded
 from evodesign.report.page.hardware import hardware_content
@@ -41,6 +42,9 @@ __all__ = ["MOST_POSTURES", "Gradients", "gradients_of", "page_content", "with_g
 
 MOST_POSTURES = 250
 """Designs whose postures are in the page: the marked ones, then the front, evenly."""
+
+MOMENTS = 9
+"""Moments of a lift that are in the page."""
 
 MOST_LEARNT = 2_000
 """Evaluations that tell what matters in the page; beyond this number they are thinned out evenly."""
@@ -72,6 +76,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     found = importance(run.header, subsample(run.evaluations, MOST_LEARNT))
     known = growth(run.generations)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
+    tasks = tuple(dict.fromkeys(case.task for case in cases)) if problem is None else problem.tasks
     return Content(
         facts=_facts(run, len(best)),
         objectives=run.header.objectives,
@@ -79,7 +84,8 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         parameters=run.header.parameters,
         people=tuple(dict.fromkeys(case.person for case in cases)) or ("",),
         payloads=tuple(dict.fromkeys(case.payload for case in cases)) or ("",),
-        heights_m=_heights(cases, problem),
+        heights_m=tuple(dict.fromkeys(height for task in tasks for height in task.heights)),
+        stops=_stops(tasks),
         points=points(run.header, shown, on_front),
         marks=marked,
         generations=run.generations,
@@ -153,10 +159,26 @@ def _facts(run: RunLog, on_front: int) -> Facts:
     )
 
 
-def _heights(cases: Iterable[Case], problem: DesignProblem | None) -> tuple[float, ...]:
-    if problem is not None:
-        return tuple(task.height_m for task in problem.tasks)
-    return tuple(sorted({case.task.height_m for case in cases}))
+def _stops(tasks: Iterable[Task]) -> tuple[StopContent, ...]:
+    """Every load held still, and the moments of every lift."""
+    tasks = tuple(tasks)
+    alone = sum(isinstance(task, Lift) for task in tasks) < 2
+    decimals = max(
+        [1, *(len(str(task.height_m).partition(".")[2]) for task in tasks if isinstance(task, Hold))]
+    )
+    found: list[StopContent] = []
+    for task in tasks:
+        told, name = task.result_times if isinstance(task, Lift) else task.times, str(task)
+        for moment, place in enumerate(evenly(len(told), MOMENTS)):
+            if isinstance(task, Hold):
+                text = f"{task.height_m:.{decimals}f} m"
+            else:
+                text = f"{told[place]:.2f} s" if alone else f"{told[place]:.2f} s of {task.name}"
+            height, time = task.heights[0], told[place]
+            found.append(
+                StopContent(task=task, moment=moment, height_m=height, time_s=time, text=text, name=name)
+            )
+    return tuple(found)
 
 
 def _thinned_note(run: RunLog, shown: Sequence[Evaluation]) -> tuple[str, ...]:
@@ -185,10 +207,12 @@ def _opened(
     )
 
 
-def _most_designs(details: Iterable[Detail]) -> int:
+def _most_designs(details: Collection[Detail]) -> int:
     """How many designs have their postures in the page: fewer of many people and loads, whose pages grow."""
     pairs = max((len({each.case.pair for each in detail.cases}) for detail in details), default=1)
-    return MOST_POSTURES if pairs < 2 else max(MOST_POSTURES // pairs, MOST_POSTURES // 5)
+    lifts = any(isinstance(each.case.task, Lift) for detail in details for each in detail.cases)
+    many = pairs * (2 if lifts else 1)
+    return MOST_POSTURES if many < 2 else max(MOST_POSTURES // many, MOST_POSTURES // 5)
 
 
 def _designs(
@@ -251,7 +275,7 @@ def _design(
     return rounded(
         DesignContent(
             cases=cases,
-            postures=tuple(detail.cases),
+            postures=tuple(each.thinned(MOMENTS) for each in detail.cases),
             clearances=nearest,
             links=links,
             joints=joints,

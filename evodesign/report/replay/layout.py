@@ -95,7 +95,7 @@ def _scene(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> dict[str, Any]:
 
 
 def _plot(agent: str, cases: Sequence[CaseDetail]) -> dict[str, Any]:
-    torques = [detail.agents[agent].torques_n_m for detail in cases]
+    torques = [detail.agents[agent].torques_n_m for case in cases for detail in case.few_moments]
     return {
         "title": f"{agent}: joint torques [N m]; {_meaning_of_time(cases)}",
         "paths": [_path(agent, joint) for joint in _plotted(torques)],

@@ -175,7 +175,12 @@ def _wrenches(stage: PlacedScene, now: Timestamp) -> Iterator[SceneEntity]:
 
 def _joint_states(posture: AgentDetail, now: Timestamp) -> JointStates:
     joints = [
-        JointState(name=name, position=position, effort=posture.torques_n_m[name])
+        JointState(
+            name=name,
+            position=position,
+            velocity=posture.speeds_rad_s.get(name),
+            effort=posture.torques_n_m[name],
+        )
         for name, position in posture.joints_rad.items()
     ]
     return JointStates(timestamp=now, joints=joints)

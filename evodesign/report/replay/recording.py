@@ -1,8 +1,9 @@
 """The replay as an MCAP file: heights or cases as time, the models attached as URDF.
 
-Heights are time, ten seconds per metre, where a problem has one person and one load. Otherwise the cases come
-one after the other, in the problem's order, two seconds each: all loads of a person in a row. The last
-posture comes once more a second later, so that a recording of one height has a length, too.
+Heights are time, ten seconds per metre, where a problem has one person and one load that is held still.
+Otherwise the cases come one after the other, in the problem's order: all loads of a person in a row. A load
+held still takes two seconds, a lift as long as it takes and two seconds more. The last posture comes once
+more a second later, so that a recording of one height has a length, too.
 
 The schemas of the messages stand in the file as MCAP wants them: a protobuf `FileDescriptorSet` with
 everything needed.
@@ -18,7 +19,7 @@ from typing import IO, Any, Final
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.writer import CompressionType, Writer
 
-from evodesign.records import CaseDetail
+from evodesign.records import CaseDetail, Lift
 from evodesign.report.replay.messages import messages
 from evodesign.report.replay.surfaces import MESHES, mesh_message, topics_of
 from evodesign.report.scene_models import PlacedScene, SceneSet
@@ -57,20 +58,27 @@ def nanoseconds_at(height: float) -> int:
 
 
 def several(cases: Sequence[CaseDetail]) -> bool:
-    """Whether they are of several people or loads, so that a height does not tell them apart."""
-    return any(detail.case.label for detail in cases)
+    """Whether a height does not tell them apart: there are several people or loads, or a lift."""
+    return any(detail.case.label or isinstance(detail.case.task, Lift) for detail in cases)
 
 
 def timed(cases: Sequence[CaseDetail]) -> list[Timed]:
-    """All cases with their times, in rising order."""
-    if several(cases):
-        return [(count * SECONDS_PER_CASE * NANOSECONDS, detail) for count, detail in enumerate(cases)]
-    ordered = sorted(cases, key=lambda detail: detail.case.task.height_m)
-    return [(nanoseconds_at(detail.case.task.height_m), detail) for detail in ordered]
+    """All postures of one instant with their times, in rising order."""
+    if not several(cases):
+        ordered = sorted(cases, key=lambda detail: detail.height_m)
+        return [(nanoseconds_at(detail.height_m), detail) for detail in ordered]
+    found: list[Timed] = []
+    began = 0.0
+    for detail in cases:
+        found += [(round((began + each.time_s) * NANOSECONDS), each) for each in detail.moments]
+        began += detail.instants[-1].time_s + SECONDS_PER_CASE
+    return found
 
 
 def time_scale(cases: Sequence[CaseDetail]) -> str:
     """What time means, in words."""
+    if any(isinstance(detail.case.task, Lift) for detail in cases):
+        return f"real time of each lift, {SECONDS_PER_CASE} s per case beside, in the problem's order"
     if several(cases):
         return f"{SECONDS_PER_CASE} s per case: person, load and height in the problem's order"
     return "10 s per metre of the load's height"

@@ -43,7 +43,7 @@ const drawBesidePostures = () => {
     canvas.setAttribute("aria-label", `Posture of design ${number}, ${caseText(at)}`);
     missing.textContent = posture ? "" : "No posture of this case is in this page.";
     canvas.hidden = !posture || !hasWebgl;
-    if (posture && hasWebgl) besideViewers[place].viewer.show(sceneItems(design, posture.agents, at));
+    if (posture && hasWebgl) besideViewers[place].viewer.show(sceneItems(design, posture.agents, at, loadHeight(posture, at)));
   });
   byId("beside-torques").replaceChildren(...besideTorques());
 };
@@ -107,8 +107,8 @@ const besideTorques = () =>
     const [one, two] = [state.beside, state.selected].map((number) => {
       const most = new Map();
       const design = content.designs[number] ?? NOTHING_KNOWN;
-      for (const height of content.heights_m)
-        for (const [joint, torque] of Object.entries(torquesAt(design, agent, height) ?? {}))
+      for (const stop of everyStop)
+        for (const [joint, torque] of Object.entries(torquesAt(design, agent, stop) ?? {}))
           most.set(joint, Math.max(most.get(joint) ?? 0, Math.abs(torque)));
       return most;
     });

@@ -162,7 +162,7 @@ const startCard = () => {
     byId("card").append(element("div", {}, title, element("p", { class: "plain", text })));
     return;
   }
-  state.height = content.heights_m.length > 1 ? 1 : 0;
+  state.height = stops.length > 1 ? 1 : 0;
   state.person = Math.floor(content.people.length / 2);
   state.payload = Math.floor(content.payloads.length / 2);
   on("selected", drawCard);

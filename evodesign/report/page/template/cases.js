@@ -2,18 +2,26 @@
 
 const severalPairs = content.people.length * content.payloads.length > 1;
 
-const caseAt = (person, payload, height) => ({
+const caseAt = (person, payload, stop) => ({
   person: content.people[person],
   payload: content.payloads[payload],
-  height: content.heights_m[height],
+  height: stops[stop]?.height_m,
+  stop,
 });
 const shownCase = () => caseAt(state.person, state.payload, state.height);
 
+const taskTexts = stops.map(({ task }) => JSON.stringify(task));
+const taskNames = Object.fromEntries(stops.map(({ name }, stop) => [taskTexts[stop], name]));
+
 // Whether an outcome or postures of the log are of a case; a name that is not there is empty.
 const isOf = ({ case: { person = "", payload = "", task } }, at) =>
-  task.height_m === at.height && person === at.person && payload === at.payload;
+  JSON.stringify(task) === taskTexts[at.stop] && person === at.person && payload === at.payload;
 const outcomeAt = (design, at) => design.cases.find((one) => isOf(one, at));
-const postureAt = (design, at) => design.postures.find((one) => isOf(one, at))?.instants[0];
+const postureAt = (design, at) =>
+  design.postures.find((one) => isOf(one, at))?.instants[stops[at.stop].moment];
+
+// Height of the load [m] in a posture.
+const loadHeight = (posture, at) => posture?.load_height_m ?? at.height;
 
 // The two bodies that are nearest in a posture; nothing if the page does not know.
 const clearanceAt = (design, at) => design.clearances[design.postures.findIndex((one) => isOf(one, at))];
@@ -23,7 +31,7 @@ const clearanceText = ({ first, second, distance_m: distance }) =>
     : `Nearest bodies: ${first} and ${second}, ${figure(1e3 * Math.max(distance, 0), 2)} mm apart`;
 
 const pairText = (at) => [at.person, at.payload].filter(Boolean).join(", ");
-const caseText = (at) => [pairText(at), heightText(at.height)].filter(Boolean).join(", ");
+const caseText = (at) => [pairText(at), stopText(at.stop)].filter(Boolean).join(", ");
 
 const showCase = (person, payload, height) => {
   const samePair = person === state.person && payload === state.payload;
@@ -81,13 +89,16 @@ const caseCell = (design, agent, most, indices) => {
   return element("td", {}, button);
 };
 
+// The first stop of every task: a lift has one outcome.
+const taskStops = everyStop.filter((stop) => stops[stop].moment === 0);
+
 const caseTable = (design, agent) => {
   const norms = design.cases.map((one) => one[NORMS[agent]] ?? 0);
   const most = Math.max(...norms, 0);
   const heads = [
     content.people.length > 1 ? "Person" : null,
     content.payloads.length > 1 ? "Load" : null,
-    ...content.heights_m.map(heightText),
+    ...taskStops.map((stop) => (isLift(stop) ? stops[stop].name : stopText(stop))),
   ].filter(Boolean);
   const rows = content.people.flatMap((human, person) =>
     content.payloads.map((payload, load) =>
@@ -96,7 +107,7 @@ const caseTable = (design, agent) => {
         { class: load === 0 ? "first" : "" },
         ...(human ? [element("th", { scope: "row", text: human })] : []),
         ...(payload ? [element("th", { scope: "row", text: payload })] : []),
-        ...content.heights_m.map((_, height) => caseCell(design, agent, most, [person, load, height])),
+        ...taskStops.map((stop) => caseCell(design, agent, most, [person, load, stop])),
       ),
     ),
   );

@@ -26,13 +26,19 @@ const BASE = ["x", "y", "z", "roll", "pitch", "yaw"];
 // Postures in the columns of an exported folder's postures.csv.
 const posturesCsv = (design) => {
   const named = design.postures.some((one) => one.case.person || one.case.payload);
+  const moves = stops.some(({ task }) => task.kind === "lift");
   const columns = "height_m,agent,kind,name,position,position_unit,torque,torque_unit".split(",");
   const lines = design.postures.flatMap((detail) => {
     const { person = "", payload = "", task } = detail.case;
-    return Object.keys(detail.instants[0].agents).flatMap((agent) => {
-      const posture = detail.instants[0].agents[agent];
+    return detail.instants.flatMap((instant) => Object.keys(instant.agents).flatMap((agent) => {
+      const posture = instant.agents[agent];
       const joints = new Map(treeOf(agent, design, person).joints.map((one) => [one.name, one.kind]));
-      const first = [...(named ? [person, payload] : []), task.height_m, agent];
+      const first = [
+        ...(named ? [person, payload] : []),
+        ...(moves ? [taskNames[JSON.stringify(task)], instant.time_s] : []),
+        instant.load_height_m ?? task.height_m,
+        agent,
+      ];
       const base = [...posture.base_position_m, ...posture.base_rpy_rad];
       return [
         ...BASE.map((name, place) => [...first, "base", name, base[place], place < 3 ? "m" : "rad", "", ""]),
@@ -42,9 +48,10 @@ const posturesCsv = (design) => {
           return [...first, joints.get(name), name, position, slides ? "m" : "rad", ...torque];
         }),
       ];
-    });
+    }));
   });
-  return csvText([[...(named ? ["human", "payload"] : []), ...columns], ...lines]);
+  const heads = [...(named ? ["human", "payload"] : []), ...(moves ? ["task", "time_s"] : [])];
+  return csvText([[...heads, ...columns], ...lines]);
 };
 
 const urdfOf = (design) => {

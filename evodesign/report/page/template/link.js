@@ -1,13 +1,15 @@
 // A link to what is seen, in the address's fragment: the chosen designs, the case, where the camera stands, the
 // axes of the front and the brushes.
 
+const stopNames = stops.map(({ task, height_m: height, text }) => (task.kind === "lift" ? text : String(height)));
+
 const linkText = () => {
   const told = new URLSearchParams();
   if (state.selected !== null) told.set("design", state.selected);
   if (state.beside !== null) told.set("beside", state.beside);
   if (content.people.length > 1) told.set("person", content.people[state.person]);
   if (content.payloads.length > 1) told.set("load", content.payloads[state.payload]);
-  if (content.heights_m.length > 1) told.set("height", content.heights_m[state.height]);
+  if (stops.length > 1) told.set("height", stopNames[state.height]);
   const { turn, tilt, distance } = camera;
   told.set("camera", [turn, tilt, distance].map((value) => value.toFixed(3)).join(" "));
   for (const key of ["across", "up", "colour"]) told.set(key, frontAxes[drawnIn[key]]?.name ?? "none");
@@ -26,7 +28,7 @@ const follow = (text) => {
   const number = (key) => (told.has(key) && rowOf.has(Number(told.get(key))) ? Number(told.get(key)) : null);
   state.person = place(content.people, "person", state.person);
   state.payload = place(content.payloads, "load", state.payload);
-  state.height = place(content.heights_m, "height", state.height);
+  state.height = place(stopNames, "height", state.height);
   const names = frontAxes.map((axis) => axis.name);
   for (const key of ["across", "up"]) drawnIn[key] = place(names, key, drawnIn[key]);
   if (told.has("colour")) drawnIn.colour = place(names, "colour", NO_COLOUR);

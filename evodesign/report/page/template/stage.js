@@ -54,7 +54,7 @@ const withoutStage = () =>
   });
 
 const heightControl = (design) => {
-  const last = content.heights_m.length - 1;
+  const last = stops.length - 1;
   const slider = element("input", {
     type: "range",
     id: "height",
@@ -64,6 +64,10 @@ const heightControl = (design) => {
     value: state.height,
     disabled: last === 0,
   });
+  const play = element("button", {
+    ...{ type: "button", class: "quiet", id: "play", text: "Play", title: "Show the lift as long as it takes" },
+    onclick: () => playLift(design),
+  });
   const pair = pairControl();
   const output = element("output", { for: "height" });
   const detail = element("p", { id: "height-detail" });
@@ -71,18 +75,20 @@ const heightControl = (design) => {
   const show = () => {
     const at = shownCase();
     const outcome = outcomeAt(design, at);
-    output.textContent = heightText(at.height);
+    const height = loadHeight(postureAt(design, at), at);
+    output.textContent = isLift(at.stop) ? `${stopText(at.stop)}, ${exact(height, 3)} m` : stopText(at.stop);
     pair.show();
+    play.hidden = !hasWebgl || !isLift(at.stop);
     const solved = outcome?.status === "solved";
     detail.textContent = outcome
       ? solved
-        ? `Solved: robot |torque| ${exact(outcome.robot_torque_norm)} N m, person ${exact(outcome.human_torque_norm)} N m; largest residual ${figure(outcome.residual, 2)}`
+        ? `Solved: ${isLift(at.stop) ? "at most " : ""}robot |torque| ${exact(outcome.robot_torque_norm)} N m, person ${exact(outcome.human_torque_norm)} N m; largest residual ${figure(outcome.residual, 2)}`
         : `${capital(outcome.status)}: ${outcome.reason}`
       : `The log holds no outcome for this ${severalPairs ? "case" : "height"}.`;
     const gap = clearanceAt(design, at);
     near.textContent = gap ? `${clearanceText(gap)}.` : "";
     slider.value = state.height;
-    slider.setAttribute("aria-valuetext", `${heightText(at.height)}, ${outcome?.status ?? "unknown"}`);
+    slider.setAttribute("aria-valuetext", `${stopText(at.stop)}, ${outcome?.status ?? "unknown"}`);
   };
   slider.addEventListener("input", () => {
     state.height = Number(slider.value);
@@ -92,13 +98,43 @@ const heightControl = (design) => {
     "div",
     { class: "height" },
     ...[pair.box].filter(Boolean),
-    element("label", { for: "height", text: "Height of the load" }),
+    element("label", { for: "height", text: stops.some(({ task }) => task.kind === "lift") ? "Load and moment" : "Height of the load" }),
     slider,
     output,
+    play,
     detail,
     near,
   );
   return { box, show };
+};
+
+// The lift that is shown from its beginning to its end in real time, straight between the moments of the page.
+const playLift = (design) => {
+  const at = shownCase();
+  const own = everyStop.filter((stop) => taskTexts[stop] === taskTexts[at.stop]);
+  const postures = own.map((stop) => postureAt(design, { ...at, stop }));
+  if (!postures.every(Boolean)) return;
+  const times = own.map((stop) => stops[stop].time_s);
+  const begun = performance.now();
+  const playing = (shownScene = { number: state.selected, agents: postures.at(-1).agents });
+  const frame = (now) => {
+    if (shownScene !== playing) return;
+    const time = Math.max(0, (now - begun) / 1000);
+    const next = times.findIndex((end) => end > time);
+    if (next < 0) {
+      shownScene = null;
+      state.height = own.at(-1);
+      tell("height");
+      return;
+    }
+    const [from, to] = [postures[next - 1], postures[next]];
+    const share = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    const agents = Object.entries(to.agents).map(([name, end]) => [name, between(from.agents[name], end, share)]);
+    const height = loadHeight(from, at) + share * (loadHeight(to, at) - loadHeight(from, at));
+    viewer.show(sceneItems(design, Object.fromEntries(agents), at, height));
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
 };
 
 const showPosture = (number, design, moving) => {
@@ -121,10 +157,10 @@ const showPosture = (number, design, moving) => {
     viewer.show(sceneItems(design, {}, at));
     return;
   }
-  const target = { number, height: at.height, agents: posture.agents };
+  const target = { number, height: loadHeight(posture, at), agents: posture.agents };
   if (!moving || !from || stillness.matches) {
     shownScene = target;
-    viewer.show(sceneItems(design, target.agents, at));
+    viewer.show(sceneItems(design, target.agents, at, target.height));
     return;
   }
   const begun = performance.now();
@@ -139,7 +175,7 @@ const showPosture = (number, design, moving) => {
         : Object.fromEntries(
             Object.entries(target.agents).map(([name, to]) => [name, between(from.agents[name], to, share)]),
           );
-    viewer.show(sceneItems(design, agents, at, from.height + share * (at.height - from.height)));
+    viewer.show(sceneItems(design, agents, at, from.height + share * (target.height - from.height)));
     if (linear < 1) requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);

@@ -58,14 +58,19 @@ const axes = [
 ];
 const arrowOf = { minimise: "↓", maximise: "↑", "": "" };
 
+// What the slider stops at: loads held still, and the moments of lifts.
+const { stops } = content;
+const stopText = (stop) => stops[stop].text;
+const everyStop = stops.map((_, stop) => stop);
+const isLift = (stop) => stops[stop].task.kind === "lift";
+
 // Heights with the same number of decimals.
 const decimals = Math.max(
   1,
   ...content.heights_m.map((height) => (String(height).split(".")[1] ?? "").length),
 );
-const heightText = (height) => `${height.toFixed(decimals)} m`;
 
-// `beside`: the design that is shown next to the selected one.
+// `height` is the stop that is shown, `beside`: the design that is shown next to the selected one.
 const state = { selected: null, beside: null, person: 0, payload: 0, height: 0, brushes: new Map(), lasso: null };
 const listeners = { selected: [], filter: [], height: [], pair: [], theme: [], view: [] };
 const on = (event, listener) => listeners[event].push(listener);

@@ -3,16 +3,16 @@
 
 const AGENT_NAMES = { robot: "Robot", human: "Person" };
 
-const torquesAt = (design, agent, height) => {
-  const posture = postureAt(design, { ...shownCase(), height });
+const torquesAt = (design, agent, stop) => {
+  const posture = postureAt(design, { ...shownCase(), stop });
   return posture ? posture.agents[agent].torques_n_m : null;
 };
 
 const boxTrace = (design, agent, name, ink, filled) => {
   const [x, y, text] = [[], [], []];
-  for (const height of content.heights_m) {
-    for (const [joint, torque] of Object.entries(torquesAt(design, agent, height) ?? {})) {
-      x.push(heightText(height));
+  for (const stop of everyStop) {
+    for (const [joint, torque] of Object.entries(torquesAt(design, agent, stop) ?? {})) {
+      x.push(stopText(stop));
       y.push(Math.abs(torque));
       text.push(`${plain(joint)}<br>${exact(torque)} N m`);
     }
@@ -48,9 +48,9 @@ const drawBoxes = (place, number, design, agent) => {
       showlegend: traces.length > 1,
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: plotFont() },
       margin: { l: 46, r: 6, t: 30, b: 38 },
-      xaxis: plotAxis("height of the load", {
+      xaxis: plotAxis(stops.some(({ task }) => task.kind === "lift") ? "moment" : "height of the load", {
         categoryorder: "array",
-        categoryarray: content.heights_m.map((height) => heightText(height)),
+        categoryarray: everyStop.map(stopText),
       }),
       yaxis: plotAxis("|torque| [N m]", { rangemode: "tozero", zeroline: false }),
     }),
@@ -61,25 +61,25 @@ const drawBoxes = (place, number, design, agent) => {
 const JOINT_SYMBOLS = ["circle", "diamond", "square", "triangle-up", "cross", "x", "star", "hexagon"];
 
 const drawJoints = (place, design, agent) => {
-  const solved = content.heights_m.filter((height) => torquesAt(design, agent, height));
-  const joints = [...new Set(solved.flatMap((height) => Object.keys(torquesAt(design, agent, height))))];
+  const solved = everyStop.filter((stop) => torquesAt(design, agent, stop));
+  const joints = [...new Set(solved.flatMap((stop) => Object.keys(torquesAt(design, agent, stop))))];
   const most = (joint) =>
-    Math.max(...solved.map((height) => Math.abs(torquesAt(design, agent, height)[joint] ?? 0)));
+    Math.max(...solved.map((stop) => Math.abs(torquesAt(design, agent, stop)[joint] ?? 0)));
   const order = joints
     .map((joint) => [joint, most(joint)])
     .sort((a, b) => a[1] - b[1])
     .map(([joint]) => joint);
   const inks = (index) =>
     mixedColour("accent", "second", solved.length > 1 ? index / (solved.length - 1) : 0);
-  const traces = solved.map((height, index) => {
-    const torques = torquesAt(design, agent, height);
+  const traces = solved.map((stop, index) => {
+    const torques = torquesAt(design, agent, stop);
     return {
       type: "scatter",
       mode: "markers",
-      name: heightText(height),
+      name: stopText(stop),
       x: order.map((joint) => torques[joint] ?? null),
       y: order.map(plain),
-      text: order.map((joint) => `${plain(joint)} at ${heightText(height)}<br>${exact(torques[joint])} N m`),
+      text: order.map((joint) => `${plain(joint)} at ${stopText(stop)}<br>${exact(torques[joint])} N m`),
       hoverinfo: "text",
       marker: {
         size: 7,

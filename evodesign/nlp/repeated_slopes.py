@@ -1,0 +1,103 @@
+"""How the solution of a program of blocks moves with the numbers that its blocks share.
+
+At a solution with multipliers lambda of the rows g and z of the bounds, and t the distance of each inequality
+from its limit, the conditions of the interior-point method, differentiated, are
+
+    | H + sum w_i grad g_i grad g_i^T   A^T |  | dx/ds      |       | d2L/dx ds + sum w_i grad g_i dg_i/ds |
+    | A                                 -D  |  | dlambda/ds |  =  - | dg_A/ds                              |
+
+A holds the equalities (D = 0) and the inequalities with |lambda| > t (D = t / |lambda|); all others have the
+weight w = |lambda| / t, bounds likewise on the diagonal. So no active set is guessed: what is held firmly
+does not move, what is not has next to no weight. Derivatives by s are central differences of first
+derivatives, which are exact.
+
+Source: Waechter and Biegler 2006, Eq. 9 to 13; Fiacco 1983, ch. 2 (sensitivity).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import scipy.sparse as sparse
+from scipy.sparse.linalg import splu
+
+from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Array
+
+__all__ = ["central_differences", "solution_slopes"]
+
+LEAST_DISTANCE = 1e-12
+"""Of an inequality from its limit, in the program's own units; bounds are relaxed by 1e-8."""
+
+DUAL_SHIFT = 1e-11
+"""Keeps the system regular where equalities depend on each other."""
+
+STEP = 1e-5
+"""Of central differences, relative to the number that is moved where that is above 1."""
+
+REFINEMENTS = 3
+"""Of the linear system's solution."""
+
+
+def solution_slopes(
+    hessian: sparse.spmatrix,
+    jacobian: sparse.spmatrix,
+    rows: tuple[Array, Array, Array, Array],
+    bounds: tuple[Array, Array, Array, Array],
+    slopes: tuple[Array, Array],
+) -> Array | NotDifferentiable:
+    """Derivatives of the solution by the shared numbers, shape (x, s).
+
+    Args:
+        hessian: of the Lagrangian, all of it.
+        jacobian: of the rows.
+        rows: their values, lower and upper limits and multipliers, positive at an upper limit.
+        bounds: x, its lower and upper bounds and multipliers, likewise.
+        slopes: d2L/dx ds and dg/ds, shapes (x, s) and (rows, s).
+    """
+    _, low, high, forces = rows
+    equal = low == high
+    weights, distances = _weights(*rows)
+    firm = equal | (np.abs(forces) > distances)
+    loose = sparse.diags(np.where(firm, 0.0, weights)) @ jacobian
+    on_bounds, _ = _weights(*bounds)
+    primal = sparse.csc_matrix(hessian) + jacobian.T @ loose + sparse.diags(on_bounds)
+    held = sparse.csr_matrix(jacobian)[np.flatnonzero(firm)]
+    softness = np.where(equal, 0.0, distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
+    corner = -sparse.diags(softness)
+    right = -np.vstack([slopes[0] + loose.T @ slopes[1], slopes[1][firm]])
+    system = sparse.bmat([[primal, held.T], [held, corner]], format="csc")
+    shift = sparse.diags(np.concatenate([np.zeros(len(bounds[0])), np.full(int(firm.sum()), -DUAL_SHIFT)]))
+    try:
+        factors = splu(sparse.csc_matrix(system + shift))
+    except RuntimeError:
+        return NotDifferentiable("the motion can move at no cost")
+    found = factors.solve(right)
+    for _ in range(REFINEMENTS):
+        found += factors.solve(right - system @ found)
+    if not np.isfinite(found).all():
+        return NotDifferentiable("the motion can move at no cost")
+    return np.asarray(found[: len(bounds[0])])
+
+
+def _weights(values: Array, low: Array, high: Array, forces: Array) -> tuple[Array, Array]:
+    """|multiplier| over distance of each inequality, and that distance, from the limit that pushes."""
+    distances = np.maximum(np.where(forces > 0.0, high - values, values - low), LEAST_DISTANCE)
+    distances = np.where(np.isfinite(distances), distances, np.inf)
+    return np.abs(forces) / distances, distances
+
+
+def central_differences(
+    value: Callable[[Array], tuple[Array, Array]], at: Array, count: int
+) -> tuple[Array, Array]:
+    """Derivatives of two arrays by the first numbers of an argument, each of shape (rows, count)."""
+    columns = []
+    for place in range(count):
+        step = STEP * max(1.0, abs(float(at[place])))
+        unit = np.zeros(len(at))
+        unit[place] = step
+        more, less = value(at + unit), value(at - unit)
+        columns.append(tuple((a - b) / (2.0 * step) for a, b in zip(more, less, strict=True)))
+    first, second = zip(*columns, strict=True)
+    return np.column_stack(first), np.column_stack(second)

@@ -1,0 +1,97 @@
+"""Quantities of a moving load.
+
+    robot_power   sum over the robot's joints of max(torque x speed, 0), and copper losses of actuators [W]
+    energy        robot_power over the time of a lift, the mean over all lifts [J]
+    l5s1_moment   |torque| at the person's joints between the fifth lumbar vertebra and the sacrum [N m]
+
+No power is regained from a joint that brakes. Copper losses count where a design has actuators, whose motor
+constants are known.
+"""
+
+from __future__ import annotations
+
+import functools
+import operator
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.errors import InputError
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.posture.results import AgentPosture
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.hardware_objectives import holding_power
+from evodesign.records import ProblemSource
+
+__all__ = [
+    "ENERGY",
+    "NEED_LIFTS",
+    "POWER",
+    "SPINE",
+    "l5s1_moment",
+    "mean_over_time",
+    "refuse_still",
+    "robot_power",
+]
+
+Value = TypeVar("Value", float, NDArray[np.float64])
+
+POWER, ENERGY, SPINE = "robot_power", "energy", "l5s1_moment"
+
+NEED_LIFTS = (POWER, ENERGY)
+"""How the names of quantities end that tell nothing where no load moves."""
+
+PUBLISHED = ("paper_cost", "paper2023_cost")
+"""Costs of loads held still."""
+
+LUMBAR = "jL5S1_"
+"""How the names of the joints between the lowest lumbar vertebra and the sacrum begin."""
+
+
+def robot_power(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """What the robot's joints and actuators draw at an instant [W]."""
+    posture = postures[ROBOT]
+    mechanical = (max(posture.torques[joint] * speed, 0.0) for joint, speed in posture.speeds.items())
+    return float(sum(mechanical)) + holding_power(scene, postures)
+
+
+def l5s1_moment(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """Norm of the person's torques between L5 and S1 [N m]."""
+    torques = postures[HUMAN].torques
+    return float(np.linalg.norm([torque for joint, torque in torques.items() if joint.startswith(LUMBAR)]))
+
+
+def mean_over_time(times: Sequence[float], values: Sequence[Value]) -> Value:
+    """The mean of numbers or arrays: the only one, or by the trapezoidal rule over their times [s]."""
+    if len(values) == 1:
+        return values[0]
+    lengths = np.diff(times)
+    weights = (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)) / (2.0 * (times[-1] - times[0]))
+    parts = (float(weight) * value for weight, value in zip(weights, values, strict=True))
+    return functools.reduce(operator.add, parts)
+
+
+def refuse_still(
+    key: str, name: str, tables: ProblemFile, source: ProblemSource, people: Sequence[Agent]
+) -> None:
+    """Refuse a quantity of moving loads where none moves, and of still ones where one does.
+
+    Args:
+        key: where the problem file names it.
+        name: of the quantity.
+        tables: the problem file.
+        source: the problem, for messages.
+        people: all that the problem has.
+    Raises:
+        InputError: naming the quantity; or a person without joints at L5/S1.
+    """
+    if name.endswith(NEED_LIFTS) and not tables.task.lift:
+        raise InputError(source.path, key, f"a [[task.lift]] for '{name}'", "none")
+    if name in PUBLISHED and tables.task.lift:
+        raise InputError(source.path, key, f"loads held still for '{name}'", "a [[task.lift]]")
+    for person in people if name.endswith(SPINE) else ():
+        if not any(joint.startswith(LUMBAR) for joint in person.joints):
+            wanted = f"people with joints named {LUMBAR}... for '{name}'"
+            raise InputError(source.path, key, wanted, f"'{person.tree.name}' without")
