@@ -2,7 +2,7 @@
 
     python -m benchmarks.clear_pictures
 
-The unscaled robot of the default problem with a `[collisions]` table, and the person, at the lowest and the
+The unscaled robot of point-grasp with a `[collisions]` table, and the person, at the lowest and the
 highest load height of the task: from the front, where each is drawn without the other, and from the side.
 """
 
@@ -64,7 +64,7 @@ def write(figure: Figure, stem: str) -> None:
 
 def main() -> None:
     """Solve and draw."""
-    problem = build_problem(with_table(read_source(Path("problems") / "icub_lifting.toml")))
+    problem = build_problem(with_table(read_source(Path("problems") / "point_grasp.toml")))
     result = evaluator_of(problem, 1).solve(problem.space.unscaled(problem.scene.robot.tree))
     details = [detail_of(case) for case in result.cases]
     ends = sorted((details[0], details[-1]), key=lambda detail: detail.case.task.height_m)

@@ -139,7 +139,7 @@ def main() -> None:
     """Measure, print and write."""
     formatter = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=formatter)
-    parser.add_argument("--problem", default="icub_lifting")
+    parser.add_argument("--problem", default="point_grasp")
     parser.add_argument("--designs", type=int, default=100)
     parser.add_argument("--front", type=Path)
     arguments = parser.parse_args()

@@ -1,6 +1,6 @@
 """Random designs ranked with and without disturbances.
 
-Random designs of the default problem hold a load without disturbances, and with those of 20 % more load and
+Random designs of point-grasp hold a load without disturbances, and with those of 20 % more load and
 of 20 N on the load, away from the robot and towards it. They are ranked by the robot's torque: undisturbed by
 its mean over the heights; under disturbances by the mean over the heights of its worst case, in postures that
 are chosen for it. All solves begin at the same starts: the program's own and some random ones. Results go to

@@ -1,6 +1,6 @@
 """What do disturbances cost? Time of a compiled symmetric posture solve and of a reach solve, by cases.
 
-A case is the undisturbed load or one of the disturbances; random designs of the default problem, three
+A case is the undisturbed load or one of the disturbances; random designs of the point-grasp problem, three
 heights, the program's own starts. Times are processor time, so that other work on the machine counts little.
 Results go to benchmarks/results/disturbed_speed.json and are printed as a table.
 

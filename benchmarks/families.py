@@ -34,7 +34,7 @@ from evodesign.searches.registry import make_search
 from evodesign.session import search_outcome
 
 HERE = Path(__file__).parent
-PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
+PROBLEM = HERE.parent / "problems" / "point_grasp.toml"
 RESULTS = HERE / "results" / "families.json"
 
 GRID = tuple(

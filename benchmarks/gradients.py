@@ -2,7 +2,7 @@
 
     python benchmarks/gradients.py [--designs N]
 
-Random designs of the default problem are evaluated as a search evaluates them, from the seeds, with a
+Random designs of the point-grasp problem are evaluated as a search evaluates them, from the seeds, with a
 tighter tolerance; so are their neighbours along every parameter. Central differences at two steps,
 extrapolated to none, are compared with the gradients, each component times its parameter's range, relative to
 the largest. A design is left out, and counted, where a point without a derivative is near.
@@ -133,7 +133,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--designs", type=int, default=20)
     wanted = parser.parse_args().designs
-    problem = build_problem(read_source(HERE.parent / "problems" / "icub_lifting.toml"))
+    problem = build_problem(read_source(HERE.parent / "problems" / "point_grasp.toml"))
     known = evaluator_of(problem, 2).known
     comparer = Comparer(problem, known)
     rng = np.random.default_rng(11)

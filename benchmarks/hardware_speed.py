@@ -1,8 +1,8 @@
-"""What hardware genes cost: processor time of an evaluation, as a multiple of the default problem's.
+"""What hardware genes cost: processor time of an evaluation, as a multiple of the point-grasp problem's.
 
     python -m benchmarks.hardware_speed [--designs N]
 
-Random designs of each problem, evaluated in turns in one process: the default problem, actuators sized by
+Random designs of each problem, evaluated in turns in one process: the point-grasp problem, actuators sized by
 demand, rated torques as genes, and the sequel's three motors with nine people and loads.
 Written to benchmarks/results/hardware_speed.json, printed as a table.
 """
@@ -32,7 +32,7 @@ def sources() -> dict[str, ProblemSource]:
     sized = read_source("icub-hardware")
     rated = sized.text.replace("margin = [1.0, 4.0]", "rated_torque_n_m = [2.0, 100.0]")
     return {
-        DEFAULT: read_source("icub-lifting"),
+        DEFAULT: read_source("point-grasp"),
         SIZED: sized,
         RATED: msgspec.structs.replace(sized, text=rated),
         MOTORS: read_source("sartore2023-motors"),
@@ -40,7 +40,7 @@ def sources() -> dict[str, ProblemSource]:
 
 
 def measured(evaluators: dict[str, Evaluator], designs: int) -> dict[str, dict[str, float]]:
-    """Milliseconds of processor time per design, and multiples of the default problem's median."""
+    """Milliseconds of processor time per design, and multiples of the point-grasp problem's median."""
     seconds = {name: np.zeros(designs) for name in evaluators}
     holds = {name: np.zeros(designs, bool) for name in evaluators}
     for number in range(designs):

@@ -20,7 +20,7 @@ from evodesign.tree.resize import resize
 from evodesign.tree.urdf_write import urdf_text
 
 HERE = Path(__file__).parent
-PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
+PROBLEM = HERE.parent / "problems" / "point_grasp.toml"
 ROBOT = "robots/icub_shapes.urdf"
 HEIGHTS = (0.8, 1.0, 1.2, 1.5)
 
@@ -53,11 +53,11 @@ VARIANTS: Mapping[str, Callable[[ProblemSource], ProblemSource]] = {
     "load_aside": load_aside,
     "pushed_aside": pushed_aside,
 }
-"""The default problem, and what makes it one that is not its own mirror image."""
+"""The point-grasp problem, and what makes it one that is not its own mirror image."""
 
 
 def problem_at(heights: Sequence[float], variant: str = DEFAULT) -> DesignProblem:
-    """A variant of the default problem, its load at other heights."""
+    """A variant of the point-grasp problem, its load at other heights."""
     source = VARIANTS[variant](read_source(PROBLEM))
     wanted = f"heights_m = {list(heights)}"
     lines = [wanted if line.startswith("heights_m") else line for line in source.text.splitlines()]

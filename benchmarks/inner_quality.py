@@ -133,7 +133,7 @@ def judge(
         designs: to be judged.
         joint: how many of all are solved jointly as well.
         starts: random ones of each program.
-        problem: name of a variant of the default problem, or a problem file.
+        problem: name of a variant of the point-grasp problem, or a problem file.
     """
     built = problem_named(problem)
     here = Judge(built, known_at(built, 1), starts)

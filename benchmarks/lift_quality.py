@@ -1,6 +1,6 @@
 """Lifts of random designs: how many are found and checked, and how far they are from the best known.
 
-Random designs of the default problem lift from 0.8 to 1.2 m and from 0.6 to 1.2 m in 1.5 s. Each lift is
+Random designs of the point-grasp problem lift from 0.8 to 1.2 m and from 0.6 to 1.2 m in 1.5 s. Each lift is
 solved as `evodesign lift` does it, from the holds at both ends. Then it is solved from further starts: the
 same holds with joints, base and stance moved at random (standard deviation 0.3 rad and 0.1 m), followed along
 the lift. A motion exists where any start led to one. Results go to benchmarks/results/lift_quality.json, the

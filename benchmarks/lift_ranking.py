@@ -1,6 +1,6 @@
 """How motion reorders designs: the same random designs held still, and lifted in 3, 1.5 and 1 s.
 
-Of each design of the default problem the mean and the largest torque norm of the robot: over holds at five
+Of each design of point-grasp the mean and the largest torque norm of the robot: over holds at five
 heights from 0.8 to 1.2 m, each in a stance of its own; and over lifts of 3, 1.5 and 1 s, in one stance.
 Kendall's tau is that with the ranking of holds, over the designs that have all of them.
 Results go to benchmarks/results/lift_ranking.json.

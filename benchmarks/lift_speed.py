@@ -1,6 +1,6 @@
 """Lifts by the native method against IPOPT, its judge: the same starts in turn, in one process.
 
-Random designs of the default problem lift from 0.8 to 1.2 m and from 0.6 to 1.2 m in 1.5 s. Both methods
+Random designs of the point-grasp problem lift from 0.8 to 1.2 m and from 0.6 to 1.2 m in 1.5 s. Both methods
 begin at the hold at the lower end, followed along the lift. Processor time per solve and per iteration,
 iterations, solved lifts, and how many have the same cost within 1e-4; what is compiled or prepared before the
 first solve does not count. Results go to benchmarks/results/lift_speed.json.

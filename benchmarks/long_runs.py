@@ -118,7 +118,7 @@ def opening(folder: Path, evaluations: int) -> dict[str, Any]:
 
 def cost_of_the_disk(folder: Path, evaluations: int) -> dict[str, Any]:
     """A real search on two workers, in this process, with every wait for the disk timed."""
-    problem = build_problem(read_source(ROOT / "problems" / "icub_lifting.toml"))
+    problem = build_problem(read_source(ROOT / "problems" / "point_grasp.toml"))
     settings = problem.settings(problem.search.algorithm, problem.search.population, problem.search.seed)
     header = header_of(problem, settings, evaluations)
     with disk_time() as waits, make_pool("joblib", 2) as pool:

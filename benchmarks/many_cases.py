@@ -3,7 +3,7 @@
 Random designs of problems/three_people_three_loads.toml (nine pairs of a person and a load, three heights),
 evaluated on one core: designs per second; the same with every person solved from the start portfolio, as if
 alone; how far the cost of a posture that began beside another person is from the one that began at the
-portfolio; and the default problem (one pair, three heights) in the same run. Results go to
+portfolio; and the point-grasp problem (one pair, three heights) in the same run. Results go to
 benchmarks/results/many_cases.json.
 
     python -m benchmarks.many_cases [--designs 40] [--problem FILE]

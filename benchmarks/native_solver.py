@@ -60,7 +60,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     problems = {Path(name).stem: problem_named(name) for name in options.problems}
-    problems = problems or {"icub_lifting": problem_at(HEIGHTS)}
+    problems = problems or {"point_grasp": problem_at(HEIGHTS)}
     target = HERE / "results" / "native_solver.json"
     before = json.loads(target.read_text()) if target.exists() else {}
     found = {name: measured(each, options.designs, options.jobs) for name, each in problems.items()}

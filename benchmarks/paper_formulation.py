@@ -37,7 +37,7 @@ from evodesign.records import Hold, Status
 
 __all__ = ["BOUNDED", "TOLERANCE", "Figures", "measure", "measure_ours", "reaching_designs"]
 
-PROBLEM = Path(__file__).parent.parent / "problems" / "icub_lifting.toml"
+PROBLEM = Path(__file__).parent.parent / "problems" / "point_grasp.toml"
 
 BOUNDED = SolverOptions(iterations=300, seconds=300.0)
 """Limits of one solve of the paper's program."""

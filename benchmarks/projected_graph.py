@@ -33,7 +33,7 @@ __all__ = ["DAMPING", "Statics", "agent_matrices", "projected_statics"]
 Expression = Any
 
 DAMPING = 1e-6
-"""Added to the diagonal of the normal equations, whose rank is 40 of 58 in the default problem.
+"""Added to the diagonal of the normal equations, whose rank is 40 of 58 in the point-grasp problem.
 
 At nine solved postures torques were within 1e-5 N m of Eq. 12; with 1e-10 they were 6e-3 N m off, with 1e-12
 0.7 N m. The singular values of N B that count lie between 0.5 and 50 there; the others are rounding, which

@@ -1,6 +1,6 @@
 """Does a search find a better front than random sampling with the same budget?
 
-Every algorithm searches the default problem with every seed; hypervolumes are taken against one reference
+Every algorithm searches the point-grasp problem with every seed; hypervolumes are taken against one reference
 point, the worst of all feasible evaluations of all runs made worse by a tenth of the range. Results go to
 benchmarks/results/search_quality.json and are printed as a Markdown table.
 
@@ -20,7 +20,7 @@ from evodesign.analysis.hypervolume import hypervolume, reference_point
 from evodesign.runlog.run import RunLog, read_run
 
 HERE = Path(__file__).parent
-PROBLEM = HERE.parent / "problems" / "icub_lifting.toml"
+PROBLEM = HERE.parent / "problems" / "point_grasp.toml"
 ALGORITHMS = ("random", "nsga2", "cma-es")
 
 

@@ -2,7 +2,7 @@
 
 Every hold of the first designs of each run's front is simulated for 2 s, and their lift from 0.8 to 1.2 m in
 1.5 s, as `evodesign simulate` does it. Where no run is named, two are made: 60 evaluations of NSGA-II for
-icub-lifting and icub-hardware. What is printed is the worst of each run; all of it goes to
+point-grasp and icub-hardware. What is printed is the worst of each run; all of it goes to
 benchmarks/results/simulation.json.
 
     python -m benchmarks.simulation [RUN ..] [--designs 5] [--knots 24]
@@ -68,7 +68,7 @@ def worst(found: list[dict[str, Any]]) -> str:
 
 def made(folder: Path) -> Iterator[Path]:
     """Small runs of both problems."""
-    for problem in ("icub-lifting", "icub-hardware"):
+    for problem in ("point-grasp", "icub-hardware"):
         evodesign.search(problem, folder / problem, evaluations=60, algorithm="nsga2")
         yield folder / problem
 

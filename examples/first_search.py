@@ -10,7 +10,7 @@ import evodesign
 if __name__ == "__main__":  # the processes of a search import this file
     evaluations = int(sys.argv[1]) if len(sys.argv) > 1 else 24
     run = evodesign.search(
-        "icub-lifting", "runs/first", evaluations=evaluations, population=6, jobs=2, progress=True
+        "point-grasp", "runs/first", evaluations=evaluations, population=6, jobs=2, progress=True
     )
     print(run)
     for design in run.front:

@@ -24,7 +24,7 @@ foot_force = CaseQuantity("N", larger_foot_force)
 
 if __name__ == "__main__":
     evaluations = int(sys.argv[1]) if len(sys.argv) > 1 else 12
-    tables = tomllib.loads(evodesign.open_problem("icub-lifting").source.text)
+    tables = tomllib.loads(evodesign.open_problem("point-grasp").source.text)
     tables["name"] = "light-footed"
     os.environ["EVODESIGN_MODULES"] = "own_objective"
     del tables["search"]["reference"]  # it names the objectives of the file

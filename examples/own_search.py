@@ -42,7 +42,7 @@ if __name__ == "__main__":
     evaluations = int(sys.argv[1]) if len(sys.argv) > 1 else 24
     os.environ["EVODESIGN_MODULES"] = "own_search"
     search = {"algorithm": "own_search:SmallSteps", "population": 6, "seed": 1, "jobs": 2}
-    run = evodesign.search("icub-lifting", "runs/steps", evaluations=evaluations // 2, **search)
+    run = evodesign.search("point-grasp", "runs/steps", evaluations=evaluations // 2, **search)
     run = evodesign.resume("runs/steps", evaluations=evaluations, jobs=2)
     values = [design.objectives["robot_torque"] for design in run.designs if design.feasible]
     print(f"robot torque from {values[0]:.2f} to {min(values):.2f} N m in {len(run)} designs")

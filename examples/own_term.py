@@ -38,7 +38,7 @@ def residuals(body):
     yield Residual("mass_height", max(0.0, LOWEST - height), "m", "the height of the mass", posture_only=True)
 
 
-tables = tomllib.loads(evodesign.open_problem("icub-lifting").source.text)
+tables = tomllib.loads(evodesign.open_problem("point-grasp").source.text)
 tables["solver"] = {"start_portfolio": False, "compile": False}
 for words, term in {"without": None, "with": BodyTerm("mass_height", rows=rows, residuals=residuals)}.items():
     if term is not None:

@@ -11,7 +11,7 @@ import evodesign
 
 optuna.logging.set_verbosity(optuna.logging.WARNING)
 trials = int(sys.argv[1]) if len(sys.argv) > 1 else 20
-problem = evodesign.open_problem("icub-lifting")
+problem = evodesign.open_problem("point-grasp")
 objective = problem.optuna_objective()
 study = optuna.create_study(directions=objective.directions, sampler=optuna.samplers.TPESampler(seed=1))
 study.enqueue_trial(dict(problem.unscaled))  # begin with the robot as it is

@@ -14,7 +14,7 @@ from evodesign.errors import InputError
 
 if __name__ == "__main__":
     generations = int(sys.argv[1]) if len(sys.argv) > 1 else 10
-    problem = evodesign.open_problem("icub-lifting")
+    problem = evodesign.open_problem("point-grasp")
     with evodesign.as_pymoo_problem(problem, jobs=2) as for_pymoo:
         result = for_pymoo.minimize(SPEA2(pop_size=8), ("n_gen", generations), seed=1)
         for values in for_pymoo.natural(result.F) if result.F is not None else ():

@@ -1,4 +1,4 @@
-"""What many tests stand on: the default problem, built once."""
+"""What many tests stand on: the point-grasp problem, built once."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def pytest_configure() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what waits for the default problem, so that `make test-quick` goes without it."""
+    """Mark what waits for the point-grasp problem, so that `make test-quick` goes without it."""
     for item in items:
         if "known" in getattr(item, "fixturenames", ()):
             item.add_marker("prepared")
@@ -70,8 +70,8 @@ def repository() -> Path:
 
 @pytest.fixture(scope="session")
 def problem() -> DesignProblem:
-    """The default problem, without compiling what tests make of it: that takes longer than it saves them."""
-    source = read_source(REPOSITORY / "problems" / "icub_lifting.toml")
+    """Point-grasp, without compiling what tests make of it: that takes longer than it saves them."""
+    source = read_source(REPOSITORY / "problems" / "point_grasp.toml")
     built = build_problem(msgspec.structs.replace(source, method="ipopt"))
     return replace(built, options=replace(built.options, compiled=False))
 
@@ -81,7 +81,7 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A cache of the tests' own, which commands started by tests and tests running side by side use too.
 
     It is new in each session, unless $EVODESIGN_TEST_CACHE names a directory that keeps it: working out the
-    default problem takes a minute.
+    point-grasp problem takes a minute.
     """
     kept = os.environ.get("EVODESIGN_TEST_CACHE")
     session = tmp_path_factory.getbasetemp()
@@ -94,7 +94,7 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(scope="session")
 def known(problem: DesignProblem) -> Precomputed:
-    """What is worked out of the default problem beforehand, where commands started by tests find it too."""
+    """What is worked out of point-grasp beforehand, where commands started by tests find it too."""
     cache = user_cache("precomputed", os.environ)
     compiled = build_problem(msgspec.structs.replace(problem.source, method=None))
     with cache.lock("default"), JoblibPool(2) as pool:
@@ -104,7 +104,7 @@ def known(problem: DesignProblem) -> Precomputed:
 
 @pytest.fixture(scope="session")
 def evaluator(problem: DesignProblem, known: Precomputed) -> Evaluator:
-    """The default problem's inner problems."""
+    """The point-grasp problem's inner problems."""
     return Evaluator(problem, known)
 
 

@@ -129,7 +129,7 @@ def test_what_others_put_in_the_place_of_a_file_is_replaced_and_leads_nowhere(
 @pytest.mark.parametrize("name", ["x" * 5000, "a\0b"], ids=["too long", "with a zero"])
 def test_a_name_that_no_file_can_have_is_nowhere(name: str, tmp_path: Path) -> None:
     assert not is_there(tmp_path / name)
-    tables = tomllib.loads(read_source("icub-lifting").text)
+    tables = tomllib.loads(read_source("point-grasp").text)
     tables["robot"]["urdf"] = name
     with pytest.raises(InputError, match=r"robot\.urdf: wanted a readable file"):
         source_of(tables, tmp_path)

@@ -150,7 +150,7 @@ def test_a_kind_of_task(repository: Path, tmp_path: Path) -> None:
     added = "from evodesign.tasks.two_holds import TwoHolds\n\nTask = Hold | Lift | TwoHolds\n"
     registry.write_text(registry.read_text().replace(line, added))
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, str(repository / "problems" / "icub_lifting.toml")],
+        [sys.executable, "-c", SCRIPT, str(repository / "problems" / "point_grasp.toml")],
         capture_output=True,
         text=True,
         cwd=tmp_path,

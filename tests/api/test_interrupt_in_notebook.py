@@ -51,7 +51,7 @@ def test_the_stop_button_leaves_a_run_that_the_next_cell_resumes(
     place = tmp_path / "run"
     cell = (
         "import evodesign\n"
-        f"run = evodesign.search('icub-lifting', {str(place)!r}, population=4, evaluations=4000, jobs=2,\n"
+        f"run = evodesign.search('point-grasp', {str(place)!r}, population=4, evaluations=4000, jobs=2,\n"
         "    callback=lambda event: print('one'))"
     )
     request = client.execute(cell)

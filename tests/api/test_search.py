@@ -48,7 +48,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[evodesign.Run, list
     """A run, and everything that its callback heard."""
     heard: list[Any] = []
     place = tmp_path_factory.mktemp("python") / "run"
-    run = evodesign.search("icub-lifting", place, **SIZES, pool="serial", callback=heard.append)
+    run = evodesign.search("point-grasp", place, **SIZES, pool="serial", callback=heard.append)
     return run, heard
 
 
@@ -56,7 +56,7 @@ def test_a_run_from_python_is_that_of_the_command_line(
     whole: tuple[evodesign.Run, list[Any]], tmp_path: Path
 ) -> None:
     sizes = ["--population", f"{POPULATION}", "--evaluations", f"{BUDGET}", "--seed", f"{SEED}"]
-    command = [*COMMAND, "search", "icub-lifting", "--run", str(tmp_path / "run"), *sizes, "--jobs", "1"]
+    command = [*COMMAND, "search", "point-grasp", "--run", str(tmp_path / "run"), *sizes, "--jobs", "1"]
     subprocess.run(command, capture_output=True, check=True, timeout=300)
     assert logged(tmp_path / "run") == logged(whole[0].log.directory)
 
@@ -79,15 +79,13 @@ def test_either_goes_on_where_the_other_stopped(
 ) -> None:
     place = tmp_path / "run"
     if first == "python":
-        evodesign.search(
-            "icub-lifting", place, population=POPULATION, evaluations=6, seed=SEED, pool="serial"
-        )
+        evodesign.search("point-grasp", place, population=POPULATION, evaluations=6, seed=SEED, pool="serial")
         command = [*COMMAND, "resume", str(place), "--evaluations", f"{BUDGET}", "--jobs", "1"]
         subprocess.run(command, capture_output=True, check=True, timeout=300)
         run = evodesign.open_run(place)
     else:
         sizes = ["--population", f"{POPULATION}", "--evaluations", "6", "--seed", f"{SEED}", "--jobs", "1"]
-        command = [*COMMAND, "search", "icub-lifting", "--run", str(place), *sizes]
+        command = [*COMMAND, "search", "point-grasp", "--run", str(place), *sizes]
         subprocess.run(command, capture_output=True, check=True, timeout=300)
         run = evodesign.resume(place, evaluations=BUDGET, pool="serial")
     assert [each.assessment for each in run.designs] == [each.assessment for each in whole[0].designs]
@@ -107,7 +105,7 @@ def test_an_interrupt_leaves_a_run_that_can_be_resumed(
 
     place = tmp_path / "run"
     with pytest.raises(Interrupted, match="evodesign resume"):
-        evodesign.search("icub-lifting", place, **SIZES, pool="serial", callback=stop_at_the_sixth)
+        evodesign.search("point-grasp", place, **SIZES, pool="serial", callback=stop_at_the_sixth)
     stopped = evodesign.open_run(place)
     assert 4 <= len(stopped) < BUDGET
     run = evodesign.resume(stopped, jobs=2)
@@ -120,12 +118,12 @@ def test_an_error_of_the_callback_is_its_own_and_the_run_stays(tmp_path: Path) -
         raise ZeroDivisionError("of the callback")
 
     with pytest.raises(ZeroDivisionError, match="of the callback"):
-        evodesign.search("icub-lifting", tmp_path / "run", **SIZES, pool="serial", callback=wrong)
+        evodesign.search("point-grasp", tmp_path / "run", **SIZES, pool="serial", callback=wrong)
     assert len(evodesign.open_run(tmp_path / "run")) == 1
 
 
 def test_a_session_whose_time_is_over_gives_the_run_as_it_is(tmp_path: Path) -> None:
-    run = evodesign.search("icub-lifting", tmp_path / "run", **SIZES, hours=1e-9, pool="serial")
+    run = evodesign.search("point-grasp", tmp_path / "run", **SIZES, hours=1e-9, pool="serial")
     assert len(run) < BUDGET
     assert len(evodesign.resume(run, hours=0.0, pool="serial", evaluations=4)) == 4
 
@@ -135,10 +133,10 @@ def test_progress_is_a_line_per_generation_on_standard_error(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     sizes = SIZES | {"evaluations": 8}
-    evodesign.search("icub-lifting", tmp_path / "run", **sizes, pool="serial", progress=True)
+    evodesign.search("point-grasp", tmp_path / "run", **sizes, pool="serial", progress=True)
     printed = capsys.readouterr()
     lines = printed.err.splitlines()
-    assert lines[0] == "icub-lifting: surrogate, population 4, seed 3, 8 evaluations"
+    assert lines[0] == "point-grasp: surrogate, population 4, seed 3, 8 evaluations"
     assert [line.split(",")[0] for line in lines[1:]] == [
         "generation 0: 4/8 evaluations",
         "generation 1: 8/8 evaluations",
@@ -150,7 +148,7 @@ def test_a_problem_of_dictionaries_is_that_of_the_file(
     whole: tuple[evodesign.Run, list[Any]], repository: Path, tmp_path: Path
 ) -> None:
     """Numbers come through to the last bit, NumPy's and paths as well."""
-    tables = tomllib.loads((repository / "problems" / "icub_lifting.toml").read_text())
+    tables = tomllib.loads((repository / "problems" / "point_grasp.toml").read_text())
     tables["design"]["length"][0]["upper"] = np.float64(tables["design"]["length"][0]["upper"])
     tables["task"]["heights_m"] = np.array(tables["task"]["heights_m"])
     tables["search"]["seed"] = np.int64(SEED)
@@ -190,20 +188,20 @@ def test_wrong_settings_are_refused_before_anything_is_made(
     wrong: dict[str, Any], words: str, tmp_path: Path
 ) -> None:
     with pytest.raises(InputError, match=words):
-        evodesign.search("icub-lifting", tmp_path / "run", **(SIZES | wrong))
+        evodesign.search("point-grasp", tmp_path / "run", **(SIZES | wrong))
     assert not (tmp_path / "run").exists()
 
 
 def test_a_run_is_not_begun_over_another(whole: tuple[evodesign.Run, list[Any]]) -> None:
     with pytest.raises(RunError, match="holds a run already"):
-        evodesign.search("icub-lifting", whole[0].log.directory, **SIZES)
+        evodesign.search("point-grasp", whole[0].log.directory, **SIZES)
 
 
 def test_the_front_is_plotted_and_a_design_exported(
     whole: tuple[evodesign.Run, list[Any]], tmp_path: Path
 ) -> None:
     run, _ = whole
-    assert "icub-lifting" in run.plot_front(tmp_path / "front.html").read_text()
+    assert "point-grasp" in run.plot_front(tmp_path / "front.html").read_text()
     with pytest.raises(InputError, match="a file that can be written"):
         run.plot_front(tmp_path / "nowhere" / "front.html")
     best = run.front[0]
@@ -219,7 +217,7 @@ def test_the_front_is_plotted_and_a_design_exported(
 
 @pytest.mark.slow
 def test_a_design_evaluated_outside_of_a_run_is_exported_too(tmp_path: Path) -> None:
-    design = evodesign.open_problem("icub-lifting").evaluate({"length.upper_arm": 1.1})
+    design = evodesign.open_problem("point-grasp").evaluate({"length.upper_arm": 1.1})
     written = {path.name for path in design.export(tmp_path / "design")}
     assert {"robot.urdf", "human.urdf", "postures.json"} <= written
 
@@ -229,7 +227,7 @@ def test_shipped_problems_are_known_by_name_and_can_be_copied(repository: Path, 
     files = {tomllib.loads(path.read_text())["name"] for path in (repository / "problems").glob("*.toml")}
     assert set(names) == files
     assert all(sentence.endswith(".") for sentence in names.values())
-    with pytest.raises(InputError, match="did you mean 'icub-lifting'"):
+    with pytest.raises(InputError, match="did you mean 'point-grasp'"):
         evodesign.open_problem("icub-liftin")
     for name in names:
         copied = copy_source(read_source(name), tmp_path / name)

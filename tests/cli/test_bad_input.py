@@ -35,7 +35,7 @@ def evodesign_alone(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def place(repository: Path, tmp_path: Path) -> Path:
-    """A copy of the default problem with its robot and population, to be spoiled."""
+    """A copy of the point-grasp problem with its robot and population, to be spoiled."""
     shutil.copytree(repository / "problems", tmp_path / "problems")
     shutil.copytree(repository / "populations", tmp_path / "populations")
     return tmp_path / "problems"
@@ -47,10 +47,10 @@ def spoil(place: Path, file: str, old: str, new: str) -> Path:
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-    return place / "icub_lifting.toml"
+    return place / "point_grasp.toml"
 
 
-PROBLEM, ROBOT = "icub_lifting.toml", "robots/icub_shapes.urdf"
+PROBLEM, ROBOT = "point_grasp.toml", "robots/icub_shapes.urdf"
 PERSON = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
 
 
@@ -62,7 +62,7 @@ def crowd(percentiles: str, sex: str = "both") -> str:
 @pytest.mark.parametrize(
     ("file", "old", "new", "words"),
     [
-        (PROBLEM, "[payload]", "[payload", ["icub_lifting.toml", "valid TOML"]),
+        (PROBLEM, "[payload]", "[payload", ["point_grasp.toml", "valid TOML"]),
         (PROBLEM, "mass_kg = 5.0", "mas_kg = 5.0", ["payload.mas_kg", "did you mean 'mass_kg'?"]),
         (
             PROBLEM,
@@ -93,7 +93,7 @@ def crowd(percentiles: str, sex: str = "both") -> str:
         (PROBLEM, "icub_shapes.urdf", "icub.urdf", ["robot.urdf", "an existing file"]),
         (PROBLEM, "[task]", "[task]\nrobot_share = 0.7", ["task.robot_share", "point grasps", "0.5", "0.7"]),
         (PROBLEM, "[task]", "[task]\nrobot_share = 1.7", ["task.robot_share", "<= 1.0", "1.7"]),
-        (PROBLEM, 'name = "icub-lifting"', "", ["name", "this key", "nothing"]),
+        (PROBLEM, 'name = "point-grasp"', "", ["name", "this key", "nothing"]),
         (
             PROBLEM,
             "lower_kg_per_m3 = 500.0\nupper_kg_per_m3 = 4000.0",

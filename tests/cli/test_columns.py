@@ -160,11 +160,11 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (
         ("check", "small.toml"),
-        ("check", "problems/icub_lifting.toml"),
+        ("check", "problems/point_grasp.toml"),
         ("check", "problems/icub_materials.toml"),
         ("check", "problems/three_people_three_loads.toml"),
     ),
-    "problems": (("problems",), ("problems", "icub-lifting", "--to", "own")),
+    "problems": (("problems",), ("problems", "point-grasp", "--to", "own")),
     "init": (("init", "problems/robots/icub_shapes.urdf", "--to", "guessed.toml"),),
     "starts": (("starts", "small.toml"),),
     "verify": (("verify", "run"),),

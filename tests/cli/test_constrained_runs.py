@@ -1,4 +1,4 @@
-"""A search of the default problem for light robots, and what every view of its run says of the bounds."""
+"""A search of the point-grasp problem for light robots, and what every view of its run says of the bounds."""
 
 from __future__ import annotations
 

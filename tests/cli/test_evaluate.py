@@ -29,9 +29,9 @@ def without_seconds(value):
 
 @pytest.fixture(scope="module")
 def quick(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The default problem at one height."""
+    """The point-grasp problem at one height."""
     place = tmp_path_factory.mktemp("quick")
-    text = (repository / "problems" / "icub_lifting.toml").read_text()
+    text = (repository / "problems" / "point_grasp.toml").read_text()
     text = text.replace("heights_m = [0.8, 1.0, 1.2]", "heights_m = [1.0]")
     text = text.replace("robots/icub_shapes.urdf", str(repository / "problems/robots/icub_shapes.urdf"))
     text = text.replace('start = "../populations/icub.toml"', "") + "[solver]\nstart_portfolio = false\n"

@@ -98,7 +98,7 @@ def test_a_search_that_is_interrupted_says_whether_it_can_be_resumed(
     assert known.values, "worked out before, so that a run begins within seconds"
     run = tmp_path / "run"
     sizes = ["--population", "4", "--evaluations", "4000", "--jobs", "2"]
-    check(interrupted(["search", "icub-lifting", "--run", run, *sizes], delays), run)
+    check(interrupted(["search", "point-grasp", "--run", run, *sizes], delays), run)
 
 
 @pytest.mark.parametrize("delays", [(0.03,), (0.1, 0.1), (0.4,), (0.6, 0.0)], ids=str)

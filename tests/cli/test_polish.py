@@ -21,7 +21,7 @@ def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def problem_file(repository: Path) -> Path:
-    return repository / "problems" / "icub_lifting.toml"
+    return repository / "problems" / "point_grasp.toml"
 
 
 @pytest.fixture(scope="module")

@@ -24,7 +24,7 @@ COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
 def arguments(repository: Path, run: Path, *more: str) -> list[str]:
-    problem = repository / "problems" / "icub_lifting.toml"
+    problem = repository / "problems" / "point_grasp.toml"
     sizes = ["--population", str(POPULATION), "--evaluations", str(BUDGET), "--seed", "3"]
     return [*COMMAND, "search", str(problem), "--run", str(run), *sizes, *more]
 
@@ -198,7 +198,7 @@ def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path:
 
 @pytest.mark.usefixtures("known")
 def test_evaluate_answers_in_full(repository: Path) -> None:
-    problem = repository / "problems" / "icub_lifting.toml"
+    problem = repository / "problems" / "point_grasp.toml"
     found = json.loads(finish([*COMMAND, "evaluate", str(problem), "--json"]).stdout)
     assert found["reach"]["highest_m"] == pytest.approx(1.38, abs=0.01)
     assert [height["status"] for height in found["heights"]] == ["solved"] * 3
@@ -218,7 +218,7 @@ def test_evaluate_answers_in_full(repository: Path) -> None:
 
 
 def test_check_shows_what_each_parameter_changes(repository: Path) -> None:
-    problem = repository / "problems" / "icub_lifting.toml"
+    problem = repository / "problems" / "point_grasp.toml"
     found = json.loads(finish([*COMMAND, "check", str(problem), "--json"]).stdout)
     assert len(found["parameters"]) == 16
     shank = next(p for p in found["parameters"] if p["name"] == "length.shank")

@@ -85,7 +85,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
     logged = read_run(run)
     evaluation, detail = logged.evaluations[0], logged.details[0]
     rows = cells(text)
-    assert text.splitlines()[0] == "icub-lifting: design 0"
+    assert text.splitlines()[0] == "point-grasp: design 0"
     for objective in logged.header.objectives:
         value = evaluation.assessment.objectives[objective.name]
         assert [row[1] for row in rows if row[0].startswith(f"{objective.name} [")] == [rounded(value)]
@@ -188,7 +188,7 @@ HOSTILE = "<script>alert(1)</script>[bold]../x"
 @pytest.fixture(scope="module")
 def hostile(problem: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run whose problem, robot, joints and parameters have names that mean something elsewhere."""
-    text = problem.source.text.replace('"icub-lifting"', f'"{HOSTILE}"')
+    text = problem.source.text.replace('"point-grasp"', f'"{HOSTILE}"')
     text = text.replace('name = "upper_arm"', 'name = "../x"').replace(
         'name = "thigh"', f'name = "{HOSTILE}"'
     )

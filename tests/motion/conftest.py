@@ -1,4 +1,4 @@
-"""A lift of the default problem, solved once for all tests of a module."""
+"""A lift of the point-grasp problem, solved once for all tests of a module."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The default problem's unscaled robot and person, who lift."""
+"""The point-grasp problem's unscaled robot and person, who lift."""
 
 from __future__ import annotations
 

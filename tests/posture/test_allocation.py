@@ -113,7 +113,7 @@ def test_rigid_grasps_without_moments_and_with_an_equal_share_are_point_grasps(
 
 
 def asked_for(problem: DesignProblem, grasp: str, task: str) -> Scene:
-    """The scene of the default problem's file with another grasp, 10 kg and another task."""
+    """The scene of the point-grasp problem's file with another grasp, 10 kg and another task."""
     text = problem.source.text.replace('grasp = "point"', grasp).replace("mass_kg = 5.0", "mass_kg = 10.0")
     text = text.replace("heights_m =", f"{task}\nheights_m =")
     return build_problem(msgspec.structs.replace(problem.source, text=text)).scene

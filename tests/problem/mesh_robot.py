@@ -1,4 +1,4 @@
-"""The default problem's robot with meshes in place of some shapes, written with a problem file of its own.
+"""Point-grasp's robot with meshes in place of some shapes, written with a problem file of its own.
 
 chest                an open box, in metres, by a relative path: it encloses nothing
 upper arms           one watertight file in millimetres, tilted, mirrored for the right arm, in a package
@@ -56,7 +56,7 @@ def write_mesh_problem(folder: Path, robot: str = "") -> Path:
     wedge().export(package / "meshes" / "arm.STL", file_type="stl")
     capsule().export(package / "meshes" / "thigh.dae")
     (package / "urdf" / "clad.urdf").write_bytes(mesh_urdf())
-    text = (REPOSITORY / "problems" / "icub_lifting.toml").read_text(encoding="utf-8")
+    text = (REPOSITORY / "problems" / "point_grasp.toml").read_text(encoding="utf-8")
     before, *tables = text.split("[[design.")
     lengths = [table for table in tables if table.startswith("length]]")]
     dense = [table for table in tables if table.startswith('density]]\nname = "upper_arm"')]

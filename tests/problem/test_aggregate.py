@@ -22,8 +22,8 @@ HEAVY = 'name = "box"\nsize_m = [0.5, 0.5, 0.025]\nmass_kg = 15.0\n'
 
 
 def written(place: Path, repository: Path, people: list[str], loads: list[str]) -> Path:
-    """The default problem with other people and loads, at one height and without seeds."""
-    text = (repository / "problems" / "icub_lifting.toml").read_text()
+    """The point-grasp problem with other people and loads, at one height and without seeds."""
+    text = (repository / "problems" / "point_grasp.toml").read_text()
     before, after = text.split("[human]\n")[0], text.split("[task]\n")[1]
     tables = [f"[[human]]\n{person}" for person in people] + [f"[[payload]]\n{load}" for load in loads]
     text = before + "\n".join(tables) + "\n[task]\n" + after

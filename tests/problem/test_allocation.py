@@ -29,7 +29,7 @@ RATIO = "\n[[design.allocation]]\nname = 'effort_ratio'\nlower = -1.0\nupper = 2
 def changed(
     problem: DesignProblem, grasp: str = RIGID, task: str = "", allocations: str = ""
 ) -> DesignProblem:
-    """The default problem with 10 kg, another grasp, more in its task, and allocation parameters."""
+    """The point-grasp problem with 10 kg, another grasp, more in its task, and allocation parameters."""
     text = problem.source.text.replace('grasp = "point"', grasp).replace("mass_kg = 5.0", "mass_kg = 10.0")
     text = text.replace("heights_m = [0.8, 1.0, 1.2]", f"heights_m = [0.8]\n{task}") + allocations
     built = build_problem(msgspec.structs.replace(problem.source, text=text))

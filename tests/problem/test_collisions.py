@@ -13,7 +13,7 @@ from evodesign.records import ProblemSource
 
 
 def with_table(problem: DesignProblem, *lines: str) -> ProblemSource:
-    """The default problem with the table."""
+    """The point-grasp problem with the table."""
     text = "\n".join((problem.source.text, "[collisions]", *lines, ""))
     return ProblemSource("p.toml", text, problem.source.files)
 

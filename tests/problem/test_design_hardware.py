@@ -197,7 +197,7 @@ ELBOWS = ("l_elbow", "r_elbow")
 
 @pytest.fixture(scope="module")
 def driven(problem: DesignProblem) -> DesignProblem:
-    """The default problem at one height, with actuators for shoulders and elbows."""
+    """The point-grasp problem at one height, with actuators for shoulders and elbows."""
     actuators = (
         DesignParameter(ParameterKind.ACTUATOR, "shoulder", (), 0.5, 100.0, joints=ARMS),
         DesignParameter(ParameterKind.ACTUATOR, "elbow", (), 0.5, 100.0, joints=ELBOWS),

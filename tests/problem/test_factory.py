@@ -61,7 +61,7 @@ class Counting:
 
 @pytest.fixture
 def source(repository: Path) -> ProblemSource:
-    return read_source(repository / "problems" / "icub_lifting.toml")
+    return read_source(repository / "problems" / "point_grasp.toml")
 
 
 @pytest.fixture(autouse=True)
@@ -96,7 +96,7 @@ def test_what_is_kept_is_bit_for_bit_what_was_found(source: ProblemSource, tmp_p
 @pytest.mark.parametrize(
     ("old", "new", "same"),
     [
-        ('name = "icub-lifting"', 'name = "another"', True),
+        ('name = "point-grasp"', 'name = "another"', True),
         ("seed = 1", "seed = 2", True),
         ("# ", "#  ", True),
         ("mass_kg = 5.0", "mass_kg = 5.5", False),

@@ -41,7 +41,7 @@ DESIGN_SEED = 5
 
 
 def source_with(problem: DesignProblem, tables: str, task: str = "") -> ProblemSource:
-    """The default problem at one height, without seeds, and with more tables."""
+    """The point-grasp problem at one height, without seeds, and with more tables."""
     text = problem.source.text.replace("heights_m = [0.8, 1.0, 1.2]", f"heights_m = [1.0]\n{task}")
     text = f"{text}\n[solver]\ncompile = false\nstart_portfolio = false\n{tables}"
     return ProblemSource(path="p.toml", text=text, files=problem.source.files)

@@ -30,7 +30,7 @@ GRASP = 'grasp = "point"'
 
 
 def with_lines(problem: DesignProblem, after: str, *lines: str) -> ProblemSource:
-    """The default problem with further lines after one of its own."""
+    """The point-grasp problem with further lines after one of its own."""
     text = problem.source.text
     assert after in text
     return ProblemSource("p.toml", text.replace(after, "\n".join((after, *lines)), 1), problem.source.files)
@@ -62,9 +62,7 @@ def expressions(problem: DesignProblem) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", ["icub_lifting", "shared_lifting", "sartore2022", "sartore2022_as_published"]
-)
+@pytest.mark.parametrize("name", ["point_grasp", "shared_lifting", "sartore2022", "sartore2022_as_published"])
 def test_without_the_keys_programs_are_those_without_the_terms(
     name: str, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

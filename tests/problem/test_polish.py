@@ -1,4 +1,4 @@
-"""Polishing designs of the default problem."""
+"""Polishing designs of the point-grasp problem."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def test_files_below_the_working_directory_are_read_again(here: Path) -> None:
 
 
 def test_files_that_come_with_evodesign_are_read_again(here: Path) -> None:
-    source = read_source(SHIPPED / "icub_lifting.toml")
+    source = read_source(SHIPPED / "point_grasp.toml")
     assert reread(source, Path()) == source
     (here / "own.toml").write_text(source.text)
     robots = {name: content for name, content in source.files.items() if name.startswith("robots/")}

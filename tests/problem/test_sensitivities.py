@@ -47,7 +47,7 @@ def benchmark_module(repository: Path) -> Iterator[ModuleType]:
 
 @pytest.fixture(scope="module")
 def wide(problem: DesignProblem) -> DesignProblem:
-    """The default problem with every objective that there is, and limits that joints do not meet."""
+    """The point-grasp problem with every objective that there is, and limits that joints do not meet."""
     limits = dict.fromkeys(problem.scene.robot.joints, 30.0)
     robot = replace(problem.scene.robot, torque_limits=limits)
     scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)

@@ -41,7 +41,7 @@ DESIGN = (1.0, 1.1, 2.0, 3.0, 1.5)
 
 @pytest.fixture(scope="module")
 def sized(problem: DesignProblem) -> DesignProblem:
-    """The default problem at one height with margins of three groups."""
+    """The point-grasp problem at one height with margins of three groups."""
     margins = [
         DesignParameter(ParameterKind.MARGIN, name, (), 1.0, 8.0, joints=joints)
         for name, joints in GROUPS.items()

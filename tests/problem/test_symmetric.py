@@ -28,7 +28,7 @@ URDF = "robots/icub_shapes.urdf"
 
 
 def source_with(problem: DesignProblem, tree: Tree, symmetry: str | None = None) -> ProblemSource:
-    """The default problem with another robot, as a file says it."""
+    """The point-grasp problem with another robot, as a file says it."""
     text = problem.source.text + (f'[solver]\nsymmetry = "{symmetry}"\n' if symmetry else "")
     files = {**problem.source.files, URDF: urdf_text(tree)}
     return ProblemSource(path="p.toml", text=text, files=files)

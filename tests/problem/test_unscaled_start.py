@@ -16,13 +16,13 @@ START = 'start = "../populations/icub.toml"\n'
 
 @pytest.fixture(scope="module")
 def text(repository: Path) -> str:
-    found = (repository / "problems/icub_lifting.toml").read_text(encoding="utf-8")
+    found = (repository / "problems/point_grasp.toml").read_text(encoding="utf-8")
     assert START in found
     return found
 
 
 def test_without_a_population_the_unscaled_robot_is_the_only_start(repository: Path, text: str) -> None:
-    source = read_source(repository / "problems/icub_lifting.toml")
+    source = read_source(repository / "problems/point_grasp.toml")
     problem = build_problem(msgspec.structs.replace(source, text=text.replace(START, "")))
     (genome,) = problem.start
     values = problem.space.named(problem.space.values(genome))
@@ -31,7 +31,7 @@ def test_without_a_population_the_unscaled_robot_is_the_only_start(repository: P
 
 
 def test_a_population_without_it_comes_after_it(repository: Path, text: str) -> None:
-    source = read_source(repository / "problems/icub_lifting.toml")
+    source = read_source(repository / "problems/point_grasp.toml")
     known = build_problem(source)
     name = "../populations/icub.toml"
     only = 'name = "own"\n\n[[design]]\nname = "long"\nlength = { thigh = 1.5 }\n'
@@ -41,7 +41,7 @@ def test_a_population_without_it_comes_after_it(repository: Path, text: str) -> 
 
 
 def test_outside_the_bounds_it_is_no_start(repository: Path, text: str) -> None:
-    source = read_source(repository / "problems/icub_lifting.toml")
+    source = read_source(repository / "problems/point_grasp.toml")
     changed = text.replace(START, "").replace("lower = 0.6", "lower = 1.1")
     assert changed.count("lower = 1.1") > 0
     assert build_problem(msgspec.structs.replace(source, text=changed)).start == ()

@@ -56,8 +56,8 @@ human_grasps_m = { left = [0.25, -0.2, 0.025], right = [0.25, 0.2, 0.025] }
 
 
 def problem_text(repository: Path, grasps: str) -> str:
-    """The default problem with the published robot and person, and grasp points beside the default ones."""
-    text = (repository / "problems" / "icub_lifting.toml").read_text(encoding="utf-8")
+    """Point-grasp with the published robot and person, and grasp points beside the default ones."""
+    text = (repository / "problems" / "point_grasp.toml").read_text(encoding="utf-8")
     before, rest = text.split("[human]\n")
     after = rest[rest.index("[payload]") :]
     for old, new in (

@@ -274,7 +274,7 @@ def test_figures_are_those_read_by_hand_from_the_tables_and_from_the_published_f
 
 
 def problem_text(repository: Path) -> str:
-    """The default problem with the published body for its person and one height.
+    """The point-grasp problem with the published body for its person and one height.
 
     Soles: on the floor side of the foot's box, midway between its heel and the tip of the toes' box, which
     ends 4.3 mm above the floor but does not move against the foot. Palms: at the centres of the hands' boxes.
@@ -297,7 +297,7 @@ def problem_text(repository: Path) -> str:
     ]
     for name, (link, place) in frames.items():
         human += ["[[human.frames]]", f'name = "{name}"', f'link = "{link}"', f"xyz_m = {place}"]
-    text = (repository / "problems" / "icub_lifting.toml").read_text(encoding="utf-8")
+    text = (repository / "problems" / "point_grasp.toml").read_text(encoding="utf-8")
     before, rest = text.split("[human]\n")
     after = rest[rest.index("[payload]") :]
     assert "heights_m = [0.8, 1.0, 1.2]" in after
@@ -308,8 +308,8 @@ def problem_text(repository: Path) -> str:
 
 @pytest.fixture(scope="module")
 def users_problem(repository: Path) -> DesignProblem:
-    """The default problem with the published body as a user's person."""
-    default = read_source(repository / "problems" / "icub_lifting.toml")
+    """The point-grasp problem with the published body as a user's person."""
+    default = read_source(repository / "problems" / "point_grasp.toml")
     files = {**default.files, PUBLISHED: reference_text(PUBLISHED)}
     return build_problem(ProblemSource(path=default.path, text=problem_text(repository), files=files))
 

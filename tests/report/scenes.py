@@ -1,4 +1,4 @@
-"""Random postures of the default problem's robot and person, without solving anything."""
+"""Random postures of the point-grasp problem's robot and person, without solving anything."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ CASES = [(human, payload, height) for human in PEOPLE for payload in LOADS for h
 
 
 def problem_of_several(problem: DesignProblem) -> DesignProblem:
-    """The default problem with other people and loads."""
+    """The point-grasp problem with other people and loads."""
     people = "".join(
         f'[[human]]\nname = "{name}"\nstature_m = {one.stature}\nmass_kg = {one.mass}\nsex = "{one.sex}"\n'
         for name, one in PEOPLE.items()

@@ -14,7 +14,7 @@ from evodesign.runlog.directory import name_in_path
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
-        ("icub-lifting", "icub-lifting"),
+        ("point-grasp", "point-grasp"),
         ("v1.2_b", "v1.2_b"),
         ("../x", "_._x"),
         ("<script>", "_script_"),

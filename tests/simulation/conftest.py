@@ -1,4 +1,4 @@
-"""Holds of the default problem's unscaled robot and person, with either grasp, to be simulated."""
+"""Holds of the point-grasp problem's unscaled robot and person, with either grasp, to be simulated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A browser, and a small real run: named designs of the default problem and some random ones, logged."""
+"""A browser, and a small real run: named designs of the point-grasp problem and some random ones, logged."""
 
 from __future__ import annotations
 

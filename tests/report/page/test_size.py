@@ -35,11 +35,11 @@ def jittered(part: Any, generator: random.Random) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["icub_lifting", "icub_hardware"])
+@pytest.mark.parametrize("name", ["point_grasp", "icub_hardware"])
 def test_a_page_of_a_thousand_designs_is_smaller_than_4_mb(
     name: str, repository: Path, real_run: RunLog, tmp_path: Path
 ) -> None:
-    """Postures are those of the default problem, whose robot and person that of hardware has too."""
+    """Postures are those of the point-grasp problem, whose robot and person that of hardware has too."""
     generator = random.Random(3)
     problem = build_problem(read_source(repository / "problems" / f"{name}.toml"))
     sized = {each.name: 20.0 for each in problem.space.parameters if each.name.startswith("margin.")}
