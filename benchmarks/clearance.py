@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import time
 from collections import Counter
 from dataclasses import replace
@@ -44,6 +45,7 @@ DEEP = 0.005  # [m]
 GAP = 0.005  # [m]
 SHOWN = 8
 UPPER_ARMS = (("l_upper_arm", "l_forearm"), ("r_upper_arm", "r_forearm"))
+TABLE = re.compile(r"^\[collisions\].*?(?=^\[|\Z)", re.MULTILINE | re.DOTALL)
 COLUMNS = (("lowest_m", 3), ("highest_m", 3), ("deepest_mm", 0), ("arms_deg", 0))
 
 
@@ -125,8 +127,15 @@ def raised_sideways(result: DesignResult, case: CaseDetail) -> float:
 
 
 def with_table(source: ProblemSource) -> ProblemSource:
-    """The problem with a `[collisions]` table."""
+    """The problem with a `[collisions]` table: its own, or one that says nothing."""
+    if TABLE.search(source.text):
+        return source
     return msgspec.structs.replace(source, text=f"{source.text}\n[collisions]\n")
+
+
+def without_table(source: ProblemSource) -> ProblemSource:
+    """The problem without its `[collisions]` table."""
+    return msgspec.structs.replace(source, text=TABLE.sub("", source.text))
 
 
 def write(name: str, found: object) -> None:
@@ -153,7 +162,7 @@ def main() -> None:
         write("front", rows)
         return
     source = read_source(Path("problems") / f"{arguments.problem}.toml")
-    own = build_problem(source)
+    own = build_problem(without_table(source))
     apart = build_problem(with_table(source))
     found = {"[collisions]": measured(apart, arguments.designs), "neither": measured(own, arguments.designs)}
     scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=GAP)) for each in own.scenes)

@@ -110,8 +110,9 @@ def unscaled_genome(space: DesignSpace, tree: Tree) -> Genome | None:
     values = space.unscaled(tree)
     genome = space.genome(values)
     inside = all(0.0 <= coordinate <= 1.0 for coordinate in genome)
-    alike = zip(space.values(genome), values, strict=True)
-    return genome if inside and all(math.isclose(a, b, rel_tol=1e-9) for a, b in alike) else None
+    both = zip(space.values(genome), values, strict=True)
+    alike = all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in both)
+    return genome if inside and alike else None
 
 
 CHOSEN = {ParameterKind.DENSITY: "material", ParameterKind.ACTUATOR: "model"}

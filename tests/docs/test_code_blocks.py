@@ -22,6 +22,7 @@ NOT_RUN = {"distributed.md": "from dask_jobqueue"}
 """Pages whose code needs what no test has: a batch system."""
 
 SMALLER = {
+    "icub-lifting": "point-grasp",
     r"evaluations=240": "evaluations=12, population=6",
     r"evaluations=480": "evaluations=18",
     r"pop_size=24": "pop_size=4",

@@ -45,3 +45,11 @@ def test_outside_the_bounds_it_is_no_start(repository: Path, text: str) -> None:
     changed = text.replace(START, "").replace("lower = 0.6", "lower = 1.1")
     assert changed.count("lower = 1.1") > 0
     assert build_problem(msgspec.structs.replace(source, text=changed)).start == ()
+
+
+@pytest.mark.parametrize("name", ["icub_hardware", "icub_lifting", "point_grasp", "shared_lifting"])
+def test_it_begins_the_searches_of_shipped_problems(repository: Path, name: str) -> None:
+    """Also where one of its values is zero, which a genome meets but for rounding."""
+    problem = build_problem(read_source(repository / "problems" / f"{name}.toml"))
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    assert problem.space.values(problem.start[0]) == pytest.approx(values, abs=1e-12)
