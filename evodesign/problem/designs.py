@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated
 
 import msgspec
@@ -20,6 +20,7 @@ from evodesign.tree.model import Tree
 __all__ = [
     "DesignEntry",
     "PopulationFile",
+    "alike",
     "designs_text",
     "read_designs",
     "start_genomes",
@@ -110,9 +111,12 @@ def unscaled_genome(space: DesignSpace, tree: Tree) -> Genome | None:
     values = space.unscaled(tree)
     genome = space.genome(values)
     inside = all(0.0 <= coordinate <= 1.0 for coordinate in genome)
-    both = zip(space.values(genome), values, strict=True)
-    alike = all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in both)
-    return genome if inside and alike else None
+    return genome if inside and alike(space.values(genome), values) else None
+
+
+def alike(values: Iterable[float], others: Iterable[float]) -> bool:
+    """Whether parameters have the same values but for rounding."""
+    return all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in zip(values, others, strict=True))
 
 
 CHOSEN = {ParameterKind.DENSITY: "material", ParameterKind.ACTUATOR: "model"}

@@ -5,13 +5,13 @@ Marked are the unscaled robot, the best of each objective, knees, and what the u
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import to_minimise
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.designs import alike
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
 from evodesign.report.page.content import Mark, Points
 from evodesign.report.subset import subsample
@@ -30,13 +30,10 @@ def unscaled(problem: DesignProblem, evaluations: Sequence[Evaluation]) -> tuple
     """The evaluation of the file's own robot, if the run holds one."""
     wanted = problem.space.named(problem.space.unscaled(problem.scene.robot.tree))
     for evaluation in evaluations:
-        if _equal(evaluation.assessment.design, wanted):
+        design = evaluation.assessment.design
+        if alike((design[name] for name in wanted), wanted.values()):
             return (Mark(number=evaluation.number, kind="unscaled", label="unscaled robot"),)
     return ()
-
-
-def _equal(design: Mapping[str, float], wanted: Mapping[str, float]) -> bool:
-    return all(math.isclose(design[name], value, rel_tol=1e-9) for name, value in wanted.items())
 
 
 def chosen(objectives: Sequence[Objective], front: Sequence[Evaluation]) -> tuple[Mark, ...]:
