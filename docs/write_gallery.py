@@ -76,7 +76,7 @@ class Entry:
 
 
 ENTRIES = (
-    Entry("icub_lifting", "icub-lifting", "The default problem: lengths and densities of the iCub."),
+    Entry("point_grasp", "point-grasp", "Point grasps: lengths and densities of the iCub."),
     Entry(
         "icub_materials",
         "icub-materials",
