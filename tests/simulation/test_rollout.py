@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -87,7 +88,7 @@ def test_what_is_no_feedback_is_refused_by_name(key: str, value: float) -> None:
 
 @pytest.mark.slow
 def test_a_lift_follows_its_path(lifted: Lifted) -> None:
-    solution = lifted.solve(replace(LIFT, knots=16))
+    solution = lifted.solve(msgspec.structs.replace(LIFT, knots=16))
     assert solution.course is not None
     plan = lift_plan(solution.course, STEP)
     assert plan.times[-1] == pytest.approx(solution.lift.seconds)
