@@ -227,7 +227,7 @@ def test_shipped_problems_are_known_by_name_and_can_be_copied(repository: Path, 
     files = {tomllib.loads(path.read_text())["name"] for path in (repository / "problems").glob("*.toml")}
     assert set(names) == files
     assert all(sentence.endswith(".") for sentence in names.values())
-    with pytest.raises(InputError, match="did you mean 'point-grasp'"):
+    with pytest.raises(InputError, match="did you mean 'icub-lifting'"):
         evodesign.open_problem("icub-liftin")
     for name in names:
         copied = copy_source(read_source(name), tmp_path / name)

@@ -126,7 +126,7 @@ def test_a_sparse_segment_of_ten_gigabytes_is_refused_by_every_command(work: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("share", "evaluations"), [(0.3, range(1, 12)), (0.9, range(12, 13))])
+@pytest.mark.parametrize(("share", "evaluations"), [(0.37, range(1, 12)), (0.9, range(12, 13))])
 def test_what_stands_around_a_hole_of_ten_gigabytes_is_read(
     share: float, evaluations: range, work: Path
 ) -> None:
