@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from evodesign.problem.design_result import DesignResult
 
 from benchmarks.public_robots import timed
 from evodesign.mechanics.scene import HUMAN, ROBOT
@@ -30,7 +31,6 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import distance_json, solved_distances
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.source import read_source
 from tests.robots import HUMANOIDS
 

@@ -24,6 +24,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.analysis.front import front
 from evodesign.body.placement import Placement
@@ -33,7 +34,6 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import solved_distances
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.source import read_source
 from evodesign.records import CaseDetail, ProblemSource
 from evodesign.report.subset import subsample

@@ -30,6 +30,7 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.analysis.hypervolume import hypervolume
 from evodesign.pool.registry import make_pool
@@ -39,7 +40,7 @@ from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.problem.objectives import objective_values
 from evodesign.problem.source import read_source
 from evodesign.records import Assessment, Evaluation, Genome, Objective, SearchSettings, Sense, Status
 from evodesign.searches.base import JOINT_STARTS, Outcome

@@ -18,12 +18,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import evaluator_of
-from evodesign.problem.objectives import DesignResult, objective_kinds
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.sensitivities import DesignDerivative, Sensitivities
 from evodesign.problem.source import read_source
 

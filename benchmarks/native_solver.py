@@ -25,6 +25,7 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
+from evodesign.problem.design_result import DesignResult
 
 from benchmarks.inner_problem import (
     HEIGHTS,
@@ -41,7 +42,6 @@ from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.judge import AGREEMENT
-from evodesign.problem.objectives import DesignResult
 from evodesign.records import Assessment, Status
 
 BLOCK = 10

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from evodesign.api.problem import Problem
-from evodesign.motion.lifting import LiftSolution
+from evodesign.motion.solution import LiftSolution
 from evodesign.tasks.lift import Lift, profile_named
 
 __all__ = ["lift"]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from evodesign.cli.evaluate import chosen_design
-from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, SymmetryName
+from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, ProfileName, SymmetryName
 
 __all__ = ["lift"]
 
@@ -26,9 +26,7 @@ def lift(
         typer.Option(metavar="NAME", help="Which design of the file.", show_default="the file's only one"),
     ] = None,
     seconds: Annotated[float, typer.Option(metavar="S", help="Time that the lift takes [s].")] = 1.5,
-    profile: Annotated[
-        str, typer.Option(metavar="NAME", help="Height in time: minimum_jerk or free.")
-    ] = "minimum_jerk",
+    profile: ProfileName = "minimum_jerk",
     knots: Annotated[int, typer.Option(metavar="N", help="Knots of the motion.")] = 12,
     csv: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write joints and torques over time.")

@@ -111,3 +111,6 @@ Scheduler = Annotated[
 UseCache = Annotated[
     bool, typer.Option("--cache", help="Look up designs that were evaluated before, and keep new ones.")
 ]
+ProfileName = Annotated[
+    str, typer.Option("--profile", metavar="NAME", help="Height in time: minimum_jerk or free.")
+]

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, ProfileName, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
-    from evodesign.motion.lifting import LiftSolution
+    from evodesign.motion.solution import LiftSolution
     from evodesign.problem.progress import PrecomputeProgress
     from evodesign.problem.simulations import SimulatedCase
     from evodesign.report.opened_design import OpenedDesign
@@ -44,9 +44,7 @@ def simulate(
         float | None,
         typer.Option(metavar="S", help="Time [s].", show_default="2 for a hold, 1.5 for a lift"),
     ] = None,
-    profile: Annotated[
-        str, typer.Option(metavar="NAME", help="Height in time: minimum_jerk or free.")
-    ] = "minimum_jerk",
+    profile: ProfileName = "minimum_jerk",
     knots: Annotated[int, typer.Option(metavar="N", help="Knots of the lift.")] = 24,
     frequency: Annotated[
         float, typer.Option(metavar="RAD_S", help="Natural frequency of the joints' feedback [rad/s].")

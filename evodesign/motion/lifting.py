@@ -7,8 +7,8 @@ do for a start: their elbows bend in different ways.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import msgspec
@@ -20,6 +20,7 @@ from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.solver import status_of
@@ -27,9 +28,9 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.records import Case, Lift, Status, worst_status
+from evodesign.records import Lift, Status, worst_status
 
-__all__ = ["AgentEffort", "LiftProblem", "LiftSolution", "MotionCase"]
+__all__ = ["LiftProblem"]
 
 Array = NDArray[np.float64]
 
@@ -38,95 +39,6 @@ REFINEMENTS = 2
 
 OPEN = 1e-3
 """By how much [m] hands and feet of a start may be out of place."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class AgentEffort:
-    """What a lift takes of one agent.
-
-    Args:
-        torques: norm over the joints [N m] at each of the solution's times.
-        slow_torques: mean over time of the same lift infinitely slowly [N m]; None where it was not found.
-        power: of the joint torques at each time [W].
-        work: of the joint torques [J].
-    """
-
-    torques: Array
-    slow_torques: float | None
-    power: Array
-    work: float
-
-    @property
-    def mean_torque(self) -> float:
-        """Mean over time of the norm [N m], by the trapezoidal rule."""
-        return float(np.trapezoid(self.torques)) / (len(self.torques) - 1)
-
-    @property
-    def peak_torque(self) -> float:
-        """Largest norm [N m]."""
-        return float(self.torques.max())
-
-    @property
-    def static_share(self) -> float | None:
-        """Of the mean torque, how much is there when the same lift is infinitely slow."""
-        return None if self.slow_torques is None else self.slow_torques / self.mean_torque
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LiftSolution:
-    """The best checked lift, or why there is none.
-
-    Args:
-        lift: what was asked for; with the knots that it took.
-        status: solved, or why not.
-        reason: a sentence.
-        attempts: every start tried.
-        course: the motion; None unless solved.
-        checked: what the independent check found; None unless solved.
-        efforts: by agent name; empty unless solved.
-        start: where the solve of the motion began; None unless solved.
-        ending: of that solve.
-    """
-
-    lift: Lift
-    status: Status
-    reason: str
-    attempts: tuple[Attempt, ...] = ()
-    course: LiftCourse | None = None
-    checked: CheckedLift | None = None
-    efforts: Mapping[str, AgentEffort] = field(default_factory=dict)
-    start: LiftStart | None = None
-    ending: Ending | None = None
-
-    @property
-    def solved(self) -> bool:
-        """Whether there is a checked motion."""
-        return self.status is Status.SOLVED
-
-    def in_case(self, case: Case) -> MotionCase:
-        """The same as the result of a case, whose instants are the knots asked for and half-way between them.
-
-        Args:
-            case: whose task is the lift, with the knots that were asked for.
-        """
-        solution = MotionCase(case, self.status, self.reason, attempts=self.attempts, motion=self)
-        if self.course is None or self.checked is None or not isinstance(case.task, Lift):
-            return solution
-        return replace(
-            solution,
-            instants=self.course.instants(case.task.result_times),
-            residuals=self.checked.knots,
-            attempt=min(
-                (each for each in self.attempts if each.status is Status.SOLVED), key=lambda each: each.cost
-            )
-            if self.lift.knots == case.task.knots
-            else self.attempts[-1],
-        )
-
-    @property
-    def times(self) -> Array:
-        """Of all that is told over time [s]; none unless solved."""
-        return np.empty(0) if self.course is None else fine_times(self.course)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,17 +56,6 @@ class _Motion:
     start: LiftStart
     ending: Ending
     attempts: tuple[Attempt, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class MotionCase(CaseSolution):
-    """A lift as the result of a case.
-
-    Args:
-        motion: that the instants are of.
-    """
-
-    motion: LiftSolution | None = None
 
 
 class LiftProblem:

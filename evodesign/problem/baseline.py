@@ -30,9 +30,10 @@ from evodesign.posture.results import CaseSolution
 from evodesign.posture.terms.base import Residual
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.constraints import refuse_constraints
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
-from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.problem.objectives import objective_values
 from evodesign.records import Assessed, Assessment, Genome, Hold, ProblemSource, Status
 
 __all__ = [

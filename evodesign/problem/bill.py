@@ -72,7 +72,7 @@ def _postures(cases: Sequence[CaseDetail]) -> Iterator[tuple[str, AgentPosture]]
         name = ", ".join(part for part in (str(detail.case.task), detail.case.label) if part)
         for instant in detail.instants:
             own = instant.agents[ROBOT]
-            yield name, logged_posture(own, own)
+            yield name, logged_posture(own)
             for disturbance, agents in instant.disturbed.items():
                 yield f"{name}, {disturbance}", logged_posture(own, agents[ROBOT])
 

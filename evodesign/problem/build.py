@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import msgspec
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.contact import Ground
-from evodesign.mechanics.scene import Scene, StanceLimits, scene_of
+from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.solver import available
@@ -20,32 +18,30 @@ from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.agents import (
     human_agents,
-    refuse_unknown,
-    refuse_unrated,
     robot_agent,
 )
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints
 from evodesign.problem.descriptors import search_descriptors
-from evodesign.problem.design_hardware import (
-    actuator_parameters,
-    wall_parameters,
-    walls_of,
-)
 from evodesign.problem.design_space import (
     check_allocations,
-    density_parameters,
     effort_weights,
     refuse_choices,
     robot_share,
 )
 from evodesign.problem.designs import read_designs, start_genomes, unscaled_genome
 from evodesign.problem.file import ProblemFile, SearchTable
-from evodesign.problem.hardware_objectives import refuse_without_hardware
+from evodesign.problem.from_tables import (
+    ground_of,
+    objectives_of,
+    space_of,
+    stance_of,
+    tasks_of,
+    worker_limits,
+)
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
-from evodesign.problem.motion_objectives import refuse_still
-from evodesign.problem.objectives import HUMAN_EFFORT, SHARED_REACH, objective_kind, objective_kinds
+from evodesign.problem.objectives import SHARED_REACH
 from evodesign.problem.source import decode_toml
 from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
@@ -63,11 +59,8 @@ from evodesign.records import (
     Task,
 )
 from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS, POPULATIONS, USUAL_POPULATION
-from evodesign.tree.model import Tree
 
 __all__ = ["DesignProblem", "build_problem"]
-
-GIGABYTE = 10**9
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,7 +221,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         InputError: naming file, key, what was wanted and what was found.
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
-    robot, ground, stance = robot_agent(tables, source), _ground(tables), _stance(tables, source)
+    robot, ground, stance = robot_agent(tables, source), ground_of(tables), stance_of(tables, source)
     refuse_unlimited(tables, source, robot)
     people, loads = human_agents(tables, source), payloads(tables, source)
     refuse_stiff_arms(source, loads, (robot, *people))
@@ -238,7 +231,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     )
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
-    space = _space(tables, source, robot.tree)
+    space = space_of(tables, source, robot.tree)
     resolved = resolved_symmetry(tables, source, scenes, space)
     scenes = with_collisions(tables, source, resolved.scenes, space)
     robot = scenes[0].robot
@@ -263,12 +256,12 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         source=msgspec.structs.replace(source, method=options.method),
         scenes=scenes,
         space=space,
-        tasks=_tasks(tables, source),
+        tasks=tasks_of(tables, source),
         weights=weights,
-        objectives=_objectives(tables, source, scenes),
+        objectives=objectives_of(tables, source, scenes),
         constraints=constraints_of(tables, source, robot, people),
         options=options,
-        limits=_limits(tables),
+        limits=worker_limits(tables),
         symmetry=resolved.symmetry,
         symmetry_notes=resolved.notes,
         start_portfolio=tables.solver.start_portfolio,
@@ -278,129 +271,3 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         joint_start=joint_start(tables, source, start),
         stances=standing_cases(tables, source, robot),
     )
-
-
-def _ground(tables: ProblemFile) -> Ground:
-    limits = tables.limits
-    return Ground(limits.friction, limits.torsional_friction_m, limits.least_foot_force_n)
-
-
-def _stance(tables: ProblemFile, source: ProblemSource) -> StanceLimits:
-    limits = tables.limits
-    least, most = limits.feet_apart_m
-    if least >= most:
-        raise InputError(source.path, "limits.feet_apart_m", "a rising pair", f"[{least:g}, {most:g}]")
-    return StanceLimits(
-        trunk_clearance=limits.trunk_clearance_m,
-        feet_apart=limits.feet_apart_m,
-        feet_stagger=limits.feet_stagger_m,
-        foot_yaw=limits.foot_yaw_rad,
-        base_tilt=limits.base_tilt_rad,
-        push=limits.push_n,
-        feet_gap=limits.feet_gap_m,
-    )
-
-
-def _limits(tables: ProblemFile) -> Limits:
-    solver = tables.solver
-    return Limits(seconds=solver.evaluation_seconds, memory=int(solver.evaluation_memory_gb * GIGABYTE))
-
-
-def _tasks(tables: ProblemFile, source: ProblemSource) -> tuple[Task, ...]:
-    heights = tables.task.heights_m or ()
-    if not heights and not tables.task.lift:
-        raise InputError(source.path, "task", "heights_m, a [[task.lift]], or both", "neither")
-    for position, height in enumerate(heights):
-        if height in heights[:position]:
-            raise InputError(
-                source.path, f"task.heights_m[{position}]", "each height once", f"{height:g} twice"
-            )
-    lifts: dict[str, Lift] = {}
-    for position, table in enumerate(tables.task.lift):
-        key = f"task.lift[{position}]"
-        if table.from_m == table.to_m:
-            found = f"{table.to_m:g}"
-            raise InputError(source.path, f"{key}.to_m", "another height than from_m", found)
-        lift = Lift(table.from_m, table.to_m, table.seconds, table.profile, table.knots)
-        if lift.name in lifts:
-            raise InputError(source.path, key, "each lift once", f"{lift} twice")
-        lifts[lift.name] = lift
-    return (*(Hold(height_m=height) for height in heights), *lifts.values())
-
-
-def _space(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpace:
-    parameters = [
-        DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
-    ]
-    parameters += density_parameters(tables, source)
-    parameters += wall_parameters(tables, source)
-    parameters += actuator_parameters(tables, source, tree)
-    parameters += [
-        DesignParameter(ParameterKind.ALLOCATION, t.name, (), t.lower, t.upper)
-        for t in tables.design.allocation
-    ]
-    if not parameters:
-        raise InputError(source.path, "design", "a parameter, such as a length", "none")
-    seen: dict[tuple[ParameterKind, str], str] = {}
-    positions = dict.fromkeys(ParameterKind, 0)
-    for parameter in parameters:
-        key = f"design.{parameter.kind}[{positions[parameter.kind]}]"
-        positions[parameter.kind] += 1
-        _check_parameter(parameter, key, source, tree, seen)
-    space = DesignSpace(tuple(parameters), walls_of(tables, source, tree))
-    if space.margins and tables.task.lift:
-        key = f"design.{parameters[space.margins[0]].kind}"
-        raise InputError(source.path, key, "rated torques where a load is lifted, no margins", "a margin")
-    try:
-        space.check(tree)
-    except InputError as error:
-        raise InputError(source.path, f"design ({error.key})", error.wanted, error.found) from error
-    return space
-
-
-def _check_parameter(
-    parameter: DesignParameter,
-    key: str,
-    source: ProblemSource,
-    tree: Tree,
-    seen: dict[tuple[ParameterKind, str], str],
-) -> None:
-    if parameter.lower >= parameter.upper:
-        wanted = f"less than upper ({parameter.upper:g})"
-        raise InputError(source.path, f"{key}.lower", wanted, f"{parameter.lower:g}")
-    for position, link in enumerate(parameter.links):
-        where = f"{key}.links[{position}]"
-        refuse_unknown(source, where, "link", link, tree.link_by_name, tree.name)
-        if (parameter.kind, link) in seen:
-            found = f"'{link}' also in {seen[parameter.kind, link]}"
-            raise InputError(source.path, where, "a link in one parameter of a kind", found)
-        seen[parameter.kind, link] = key
-    if (parameter.kind, f"name {parameter.group}") in seen:
-        raise InputError(source.path, f"{key}.name", "a unique name", f"'{parameter.group}' twice")
-    seen[parameter.kind, f"name {parameter.group}"] = key
-
-
-def _objectives(tables: ProblemFile, source: ProblemSource, scenes: Sequence[Scene]) -> tuple[Objective, ...]:
-    chosen = [
-        *((Sense.MINIMISE, position, name) for position, name in enumerate(tables.objectives.minimise)),
-        *((Sense.MAXIMISE, position, name) for position, name in enumerate(tables.objectives.maximise)),
-    ]
-    if not chosen:
-        raise InputError(source.path, "objectives", "at least one objective", "none")
-    names = [name for _, _, name in chosen]
-    objectives = []
-    for sense, position, name in chosen:
-        key = f"objectives.{sense}[{position}]"
-        kind = objective_kind(name)
-        if kind is None:
-            known = objective_kinds()
-            wanted = f"one of {', '.join(known)}"
-            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
-        if names.count(name) > 1:
-            raise InputError(source.path, key, "each objective once", f"'{name}' twice")
-        refuse_without_hardware(key, name, tables, source)
-        refuse_still(key, name, tables, source, [scene.human for scene in scenes])
-        if name.endswith(HUMAN_EFFORT):
-            refuse_unrated(key, name, source, [scene.human for scene in scenes])
-        objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
-    return tuple(objectives)

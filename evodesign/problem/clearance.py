@@ -18,8 +18,8 @@ from evodesign.collision.rules import LOAD
 from evodesign.collision.shapes import box_solid
 from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import detail_of
-from evodesign.problem.objectives import DesignResult
 from evodesign.records import AgentDetail, Case, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree

@@ -19,9 +19,9 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.demand import SizedRobot
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.inner import InnerProblems
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sizing import sized_result
 from evodesign.records import Case, Hold, Lift, Status
 from evodesign.tree.equip import mounted_solids

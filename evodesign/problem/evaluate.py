@@ -19,11 +19,12 @@ from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.design_solver import DesignSolver
 from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.inner import inner_problems
 from evodesign.problem.judge import is_judged
-from evodesign.problem.objectives import DesignResult, objective_values
+from evodesign.problem.objectives import objective_values
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import (
     AgentDetail,

@@ -52,9 +52,9 @@ from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import distance_json, solved_distances
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
 from evodesign.problem.evaluate import detail_of
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment, Hold, materials_of, task_names
 from evodesign.violations import constraints_json

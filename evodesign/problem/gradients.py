@@ -24,15 +24,13 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import WORST, ByTorque, DesignResult
 from evodesign.problem.motion_objectives import mean_over_time
 from evodesign.problem.objectives import (
     QUANTITIES,
     REACH,
     SHARED_REACH,
-    WORST,
-    ByTorque,
     CaseQuantity,
-    DesignResult,
     objective_value,
     split_name,
 )

@@ -7,7 +7,7 @@ import io
 from collections.abc import Mapping
 from typing import Any
 
-from evodesign.motion.lifting import LiftSolution
+from evodesign.motion.solution import LiftSolution
 
 __all__ = ["lift_csv", "lift_json"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from evodesign.motion.lifting import LiftSolution
+from evodesign.motion.solution import LiftSolution
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import CaseSolution

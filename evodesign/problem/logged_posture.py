@@ -10,8 +10,9 @@ from evodesign.records import AgentDetail, LoadCaseDetail
 __all__ = ["logged_posture"]
 
 
-def logged_posture(own: AgentDetail, carried: AgentDetail | LoadCaseDetail) -> AgentPosture:
-    """An agent's posture with what it carries, in it or under a disturbance."""
+def logged_posture(own: AgentDetail, disturbed: LoadCaseDetail | None = None) -> AgentPosture:
+    """An agent's posture with what it carries, undisturbed or under a disturbance."""
+    carried = disturbed or own
     return AgentPosture(
         base_position=np.array(own.base_position_m),
         base_angles=np.array(own.base_rpy_rad),

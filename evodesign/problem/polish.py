@@ -19,8 +19,8 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity, Sensitivities
 from evodesign.records import Assessment, Constraint, Genome, Sense
 from evodesign.searches.descent import Iterate, Slopes, descend

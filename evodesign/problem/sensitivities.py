@@ -23,7 +23,7 @@ from functools import partial
 import numpy as np
 
 from evodesign.design.space import DesignParameter
-from evodesign.motion.lifting import MotionCase
+from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
@@ -31,8 +31,9 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.inner import InnerProblems, inner_problems
-from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.objectives import objective_value
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Status
 

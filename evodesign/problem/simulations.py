@@ -9,7 +9,7 @@ import msgspec
 
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.motion.lifting import LiftSolution
+from evodesign.motion.solution import LiftSolution
 from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import CaseDetail
 from evodesign.simulation.feedback import Feedback
@@ -115,7 +115,7 @@ def simulated_holds(
     if not seconds > 0.0:
         raise InputError("--seconds", "", "a positive number", f"{seconds}")
     for detail in cases:
-        postures = {name: logged_posture(agent, agent) for name, agent in detail.agents.items()}
+        postures = {name: logged_posture(agent) for name, agent in detail.agents.items()}
         plan = hold_plan(postures, detail.height_m, seconds, STEP)
         yield _followed(scene_of(scenes, detail.case.pair), detail.case.name, robot, plan, feedback)
 

@@ -23,8 +23,8 @@ from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit, LimitTable
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.problem.demand import Demand
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.hardware_objectives import StanceModel
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sizing import BOUNDS
 
 __all__ = ["CaseDerivative", "along_design", "program_slopes", "reach_along_design"]

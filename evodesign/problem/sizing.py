@@ -19,7 +19,7 @@ from evodesign.design.space import TYPICAL, DesignSpace
 from evodesign.hardware.sizing import TOLERANCE, Sizing, sized
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.demand import Demand, SizedRobot, demand_of
-from evodesign.problem.objectives import DesignResult
+from evodesign.problem.design_result import DesignResult
 from evodesign.records import Status
 
 __all__ = ["BOUNDS", "SizingRounds", "sized_result"]

@@ -26,10 +26,11 @@ from evodesign.analysis.sequel_claims import (
 )
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.designs import read_designs
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.named_files import read_text
-from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.objectives import objective_value
 from evodesign.problem.shipped import SHIPPED
 from evodesign.records import Evaluation
 from evodesign.report.sequel import SequelReproduction

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evodesign.motion.lifting import LiftProblem, LiftSolution
+from evodesign.motion.solution import LiftSolution
+
+from evodesign.motion.lifting import LiftProblem
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem

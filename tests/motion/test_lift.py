@@ -10,6 +10,7 @@ import msgspec
 import mujoco
 import numpy as np
 import pytest
+from evodesign.motion.solution import LiftSolution
 from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
@@ -18,7 +19,6 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES
 from evodesign.motion.check import LiftChecker
 from evodesign.motion.instant import KnotBlocks
-from evodesign.motion.lifting import LiftSolution
 from evodesign.motion.program import LiftProgram
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.program import ConstraintBlock

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
@@ -14,7 +15,6 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import DesignResult
 from evodesign.records import Status
 from tests.posture.violations import violations
 

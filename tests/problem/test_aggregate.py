@@ -7,12 +7,13 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome
-from evodesign.problem.objectives import DesignResult, objective_kind, objective_value
+from evodesign.problem.objectives import objective_kind, objective_value
 from evodesign.problem.source import read_source
 
 TALL = 'stature_m = 1.9\nmass_kg = 85.0\nsex = "male"\n'

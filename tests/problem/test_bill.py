@@ -9,6 +9,7 @@ import msgspec
 import mujoco
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT, SIDES
@@ -16,7 +17,7 @@ from evodesign.posture.results import AgentPosture
 from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, detail_of
-from evodesign.problem.objectives import DesignResult, objective_kinds
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.source import read_source
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.kinematics import euler_rotation

@@ -7,6 +7,7 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.collision.rules import LOAD
 from evodesign.errors import RunError
@@ -16,7 +17,6 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import Clearances, overlaps, solved_distances
 from evodesign.problem.evaluate import Evaluator, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
-from evodesign.problem.objectives import DesignResult
 
 GAP = 0.01
 

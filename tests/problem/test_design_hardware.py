@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError
@@ -18,7 +19,7 @@ from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.hardware_objectives import cost
 from evodesign.problem.model_json import model_json
-from evodesign.problem.objectives import DesignResult, objective_kinds
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
 from evodesign.tree.equip import actuators_of

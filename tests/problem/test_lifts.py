@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 import pinocchio as pin
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
@@ -25,7 +26,7 @@ from evodesign.problem.design_solver import DesignSolver
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.inner import inner_problems
-from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.objectives import objective_value
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source
 from evodesign.records import Assessed, Assessment, CaseDetail, Hold, InstantDetail, Lift, Status, task_names

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
@@ -23,7 +24,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.notes import notes
-from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.objectives import objective_value
 from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import CaseDetail, CaseOutcome, ProblemSource

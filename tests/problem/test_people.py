@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import msgspec
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, Sex
@@ -16,7 +17,7 @@ from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import DesignResult, objective_value
+from evodesign.problem.objectives import objective_value
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.urdf_write import urdf_text
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from evodesign.problem.design_result import DesignResult
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.hardware.actuators import actuator_law
@@ -17,7 +18,7 @@ from evodesign.problem import sizing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
-from evodesign.problem.objectives import DesignResult, objective_kinds
+from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.sizing import BOUNDS
 from evodesign.records import Hold, Objective, Sense, Status

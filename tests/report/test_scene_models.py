@@ -9,25 +9,13 @@ import pytest
 from evodesign.body.placement import Placement
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import AgentModel
-from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
-from evodesign.records import AgentDetail
+from evodesign.problem.logged_posture import logged_posture
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene, placed_scene
 from evodesign.tree.frames import link_frames
 from evodesign.tree.kinematics import Pose, axis_rotation, euler_rotation, forward
 from tests.report.scenes import random_cast, random_detail
 from tests.tree.crane import crane
-
-
-def posture_of(detail: AgentDetail) -> AgentPosture:
-    return AgentPosture(
-        base_position=np.array(detail.base_position_m),
-        base_angles=np.array(detail.base_rpy_rad),
-        joints=detail.joints_rad,
-        torques=detail.torques_n_m,
-        hand_wrenches={side: np.array(wrench) for side, wrench in detail.hand_wrenches.items()},
-        foot_wrenches={side: np.array(wrench) for side, wrench in detail.foot_wrenches.items()},
-    )
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -53,7 +41,8 @@ def test_links_stand_where_pinocchio_puts_them(problem: DesignProblem) -> None:
     height = random_detail(problem, 7).cases[0]
     stage = placed_scene(models, height)
     for agent in models.agents:
-        state = AgentModel.of(agent, models.trees[agent.name]).at(posture_of(height.agents[agent.name]))
+        own = height.agents[agent.name]
+        state = AgentModel.of(agent, models.trees[agent.name]).at(logged_posture(own))
         for link in models.trees[agent.name].link_by_name:
             rotation, origin = state.pose(link)
             frame = stage.frames[agent.name][link]

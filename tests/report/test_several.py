@@ -23,6 +23,7 @@ from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.logged_posture import logged_posture
 from evodesign.problem.progress import SILENT
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
@@ -35,7 +36,6 @@ from tests.report.page.reading import check_to_seven_digits
 from tests.report.replay.test_replay import frames
 from tests.report.scenes import random_company
 from tests.report.several import CASES, LOADS, PEOPLE, problem_of_several, write_several
-from tests.report.test_scene_models import posture_of
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +116,7 @@ def test_recording_shows_each_case_with_its_own_person_and_load(
         time = 2_000_000_000 * number
         scene = next(s for s in several.scenes if (s.human.label, s.payload.label) == (human, payload))
         tree = human_tree(PEOPLE[human])
-        posture = posture_of(run.details[1].cases[number].agents[HUMAN])
+        posture = logged_posture(run.details[1].cases[number].agents[HUMAN])
         state = AgentModel.of(scene.human, tree).at(posture)
         world_from = frames(seen["/tf", time])
         for link in ("LeftPalm", "RightPalm", "Head", "LeftSole"):

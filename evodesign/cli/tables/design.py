@@ -15,9 +15,9 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import detail_of
-from evodesign.problem.objectives import DesignResult
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment
 

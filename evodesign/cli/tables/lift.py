@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.motion.lifting import LiftSolution
+from evodesign.motion.solution import LiftSolution
 
 __all__ = ["lift_tables"]
 

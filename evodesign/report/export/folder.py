@@ -21,7 +21,7 @@ from evodesign.report.export.design import ExportedDesign, design_json, postures
 from evodesign.report.export.readme import MESHES, readme_text
 from evodesign.report.opened_design import open_design
 from evodesign.report.replay.layout import layout_text
-from evodesign.report.replay.recording import time_scale, write_replay
+from evodesign.report.replay.recording import replay_frames, time_scale, write_frames
 from evodesign.runlog.run import RunLog
 from evodesign.tree.mesh_write import mesh_files
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
@@ -125,7 +125,7 @@ def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, byte
     contents["postures.csv"] = postures_csv(scene_set, cases).encode()
     contents["wrenches.csv"] = wrenches_csv(scene_set, cases).encode()
     recording = io.BytesIO()
-    write_replay(recording, scene_set, cases, urdfs, _about(design))
+    write_frames(recording, scene_set, replay_frames(scene_set, cases), urdfs, _about(design))
     contents["replay.mcap"] = recording.getvalue()
     contents["layout.json"] = layout_text(scene_set, cases).encode()
     return contents, left_out

@@ -17,7 +17,7 @@ from evodesign.errors import RunError
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Detail
 from evodesign.report.page.content import DesignContent
-from evodesign.report.replay.recording import time_scale, write_replay
+from evodesign.report.replay.recording import replay_frames, time_scale, write_frames
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
@@ -93,7 +93,8 @@ class Downloads:
         }
         try:
             scene_set = SceneSet.of(self._problem.scenes, robot)
-            write_replay(stream, scene_set, detail.cases, {"robot.urdf": urdf_text(robot)}, about)
+            frames = replay_frames(scene_set, detail.cases)
+            write_frames(stream, scene_set, frames, {"robot.urdf": urdf_text(robot)}, about)
         except RunError:  # postures of strangers, whom the page does not draw
             return ""
         recorded = stream.getvalue()

@@ -31,11 +31,11 @@ __all__ = [
     "Timed",
     "descriptor_set",
     "nanoseconds_at",
+    "replay_frames",
     "several",
     "time_scale",
     "timed",
     "write_frames",
-    "write_replay",
 ]
 
 NANOSECONDS: Final = 1_000_000_000
@@ -84,26 +84,11 @@ def time_scale(cases: Sequence[CaseDetail]) -> str:
     return "10 s per metre of the load's height"
 
 
-def write_replay(
-    stream: IO[bytes],
-    scene_set: SceneSet,
-    cases: Sequence[CaseDetail],
-    attachments: Mapping[str, str],
-    about: Mapping[str, str],
-) -> None:
-    """Write a replay.
-
-    Args:
-        stream: to an empty file.
-        scene_set: who stands there.
-        cases: postures, in any order; of several people or loads, in the problem's.
-        attachments: URDF texts by file name.
-        about: what the recording is of, kept as the metadata record `evodesign`.
-    """
+def replay_frames(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> Iterator[Frame]:
+    """The frames of a replay: postures, in any order; of several people or loads, in the problem's."""
     shown = timed(cases)
     held = [(time + HOLD, last) for time, last in shown[-1:]]
-    frames = ((time, scene_set.placed_scene(detail), detail) for time, detail in (*shown, *held))
-    write_frames(stream, scene_set, frames, attachments, about)
+    return ((time, scene_set.placed_scene(detail), detail) for time, detail in (*shown, *held))
 
 
 def write_frames(
@@ -113,7 +98,15 @@ def write_frames(
     attachments: Mapping[str, str],
     about: Mapping[str, str],
 ) -> None:
-    """Write a recording of frames in rising order of time; the other arguments are those of a replay."""
+    """Write a recording.
+
+    Args:
+        stream: to an empty file.
+        scene_set: who stands there.
+        frames: in rising order of time.
+        attachments: URDF texts by file name.
+        about: what the recording is of, kept as the metadata record `evodesign`.
+    """
     writer = Writer(stream, compression=CompressionType.ZSTD)
     writer.start(profile="", library="evodesign")
     writer.add_metadata("evodesign", dict(about))

@@ -20,13 +20,13 @@ from mcap.reader import make_reader
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import Detail
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE
-from evodesign.report.replay.recording import write_replay
+from evodesign.report.replay.recording import replay_frames, write_frames
 from evodesign.report.scene_models import SceneModels, SceneSet, looks_of, placed_scene
 from tests.report.scenes import random_cast, random_company, random_detail
-from tests.report.test_scene_models import posture_of
 
 CLASSES = {
     "foxglove.FrameTransforms": FrameTransforms,
@@ -62,9 +62,9 @@ class Replay:
 def replay(problem: DesignProblem) -> Replay:
     models, detail = random_cast(problem, 4), random_detail(problem, 4, (1.2, 0.8, 1.0))
     stream = io.BytesIO()
-    write_replay(
-        stream, SceneSet((models,)), detail.cases, {"robot.urdf": "<robot/>"}, {"problem": "<script>"}
-    )
+    company = SceneSet((models,))
+    frames = replay_frames(company, detail.cases)
+    write_frames(stream, company, frames, {"robot.urdf": "<robot/>"}, {"problem": "<script>"})
     content = stream.getvalue()
     messages = {}
     for schema, channel, message in make_reader(io.BytesIO(content), validate_crcs=True).iter_messages():
@@ -118,7 +118,7 @@ def test_frames_stand_where_pinocchio_puts_the_links(replay: Replay) -> None:
         assert np.allclose(world_from["load"][:3, 3], [0.0, 0.0, at], rtol=0.0, atol=TOLERANCE)
         for agent in replay.models.agents:
             tree = replay.models.trees[agent.name]
-            state = AgentModel.of(agent, tree).at(posture_of(detail.agents[agent.name]))
+            state = AgentModel.of(agent, tree).at(logged_posture(detail.agents[agent.name]))
             turn = np.diag([agent.sign, agent.sign, 1.0])
             for link in tree.link_by_name:
                 rotation, origin = state.pose(link)
@@ -225,7 +225,9 @@ def test_models_are_attached_and_the_recording_says_of_what_it_is(replay: Replay
 
 def test_one_height_gives_a_recording_with_a_length(problem: DesignProblem) -> None:
     stream = io.BytesIO()
-    write_replay(stream, random_company(problem, 1), random_detail(problem, 1, (1.0,)).cases, {}, {})
+    company = random_company(problem, 1)
+    frames = replay_frames(company, random_detail(problem, 1, (1.0,)).cases)
+    write_frames(stream, company, frames, {}, {})
     times = {message.log_time for _, _, message in make_reader(io.BytesIO(stream.getvalue())).iter_messages()}
     assert times == {10_000_000_000, 11_000_000_000}
 

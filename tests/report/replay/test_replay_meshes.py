@@ -13,7 +13,7 @@ from mcap.reader import make_reader
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
 from evodesign.report.replay.layout import layout_text
-from evodesign.report.replay.recording import write_replay
+from evodesign.report.replay.recording import replay_frames, write_frames
 from evodesign.report.replay.surfaces import MESHES as TOPIC
 from evodesign.tree.mesh_write import triangles_of, vertices_of
 from tests.problem.mesh_robot import MESHES, write_mesh_problem
@@ -26,7 +26,7 @@ def test_triangles_are_told_once_and_shapes_of_other_links_as_before(
     problem = build_problem(read_source(write_mesh_problem(tmp_path_factory.mktemp("clad"))))
     company, detail = random_company(problem, 5), random_detail(problem, 5, (1.2, 0.8))
     stream = io.BytesIO()
-    write_replay(stream, company, detail.cases, {}, {})
+    write_frames(stream, company, replay_frames(company, detail.cases), {}, {})
     told = [
         (message.log_time, channel.topic, message.data)
         for _, channel, message in make_reader(io.BytesIO(stream.getvalue())).iter_messages()

@@ -1,0 +1,186 @@
+"""Parts of a problem, each from the tables of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.errors import InputError, nearest_name
+from evodesign.mechanics.contact import Ground
+from evodesign.mechanics.scene import Scene, StanceLimits
+from evodesign.pool.base import Limits
+from evodesign.problem.agents import (
+    refuse_unknown,
+    refuse_unrated,
+)
+from evodesign.problem.design_hardware import (
+    actuator_parameters,
+    wall_parameters,
+    walls_of,
+)
+from evodesign.problem.design_space import (
+    density_parameters,
+)
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.hardware_objectives import refuse_without_hardware
+from evodesign.problem.motion_objectives import refuse_still
+from evodesign.problem.objectives import HUMAN_EFFORT, objective_kind, objective_kinds
+from evodesign.records import (
+    Hold,
+    Lift,
+    Objective,
+    ProblemSource,
+    Sense,
+    Task,
+)
+from evodesign.tree.model import Tree
+
+__all__ = ["ground_of", "objectives_of", "space_of", "stance_of", "tasks_of", "worker_limits"]
+
+GIGABYTE = 10**9
+
+
+def ground_of(tables: ProblemFile) -> Ground:
+    """Friction and least forces on the ground."""
+    limits = tables.limits
+    return Ground(limits.friction, limits.torsional_friction_m, limits.least_foot_force_n)
+
+
+def stance_of(tables: ProblemFile, source: ProblemSource) -> StanceLimits:
+    """Where feet and trunk may be; InputError for a pair that does not rise."""
+    limits = tables.limits
+    least, most = limits.feet_apart_m
+    if least >= most:
+        raise InputError(source.path, "limits.feet_apart_m", "a rising pair", f"[{least:g}, {most:g}]")
+    return StanceLimits(
+        trunk_clearance=limits.trunk_clearance_m,
+        feet_apart=limits.feet_apart_m,
+        feet_stagger=limits.feet_stagger_m,
+        foot_yaw=limits.foot_yaw_rad,
+        base_tilt=limits.base_tilt_rad,
+        push=limits.push_n,
+        feet_gap=limits.feet_gap_m,
+    )
+
+
+def worker_limits(tables: ProblemFile) -> Limits:
+    """What one evaluation may take of time and memory."""
+    solver = tables.solver
+    return Limits(seconds=solver.evaluation_seconds, memory=int(solver.evaluation_memory_gb * GIGABYTE))
+
+
+def tasks_of(tables: ProblemFile, source: ProblemSource) -> tuple[Task, ...]:
+    """Holds, then lifts.
+
+    Raises:
+        InputError: there is none, or one twice.
+    """
+    heights = tables.task.heights_m or ()
+    if not heights and not tables.task.lift:
+        raise InputError(source.path, "task", "heights_m, a [[task.lift]], or both", "neither")
+    for position, height in enumerate(heights):
+        if height in heights[:position]:
+            raise InputError(
+                source.path, f"task.heights_m[{position}]", "each height once", f"{height:g} twice"
+            )
+    lifts: dict[str, Lift] = {}
+    for position, table in enumerate(tables.task.lift):
+        key = f"task.lift[{position}]"
+        if table.from_m == table.to_m:
+            found = f"{table.to_m:g}"
+            raise InputError(source.path, f"{key}.to_m", "another height than from_m", found)
+        lift = Lift(table.from_m, table.to_m, table.seconds, table.profile, table.knots)
+        if lift.name in lifts:
+            raise InputError(source.path, key, "each lift once", f"{lift} twice")
+        lifts[lift.name] = lift
+    return (*(Hold(height_m=height) for height in heights), *lifts.values())
+
+
+def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSpace:
+    """The hardware that may change, and the allocation of the load.
+
+    Raises:
+        InputError: no parameter, or one that the tree has no use for.
+    """
+    parameters = [
+        DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
+    ]
+    parameters += density_parameters(tables, source)
+    parameters += wall_parameters(tables, source)
+    parameters += actuator_parameters(tables, source, tree)
+    parameters += [
+        DesignParameter(ParameterKind.ALLOCATION, t.name, (), t.lower, t.upper)
+        for t in tables.design.allocation
+    ]
+    if not parameters:
+        raise InputError(source.path, "design", "a parameter, such as a length", "none")
+    seen: dict[tuple[ParameterKind, str], str] = {}
+    positions = dict.fromkeys(ParameterKind, 0)
+    for parameter in parameters:
+        key = f"design.{parameter.kind}[{positions[parameter.kind]}]"
+        positions[parameter.kind] += 1
+        _check_parameter(parameter, key, source, tree, seen)
+    space = DesignSpace(tuple(parameters), walls_of(tables, source, tree))
+    if space.margins and tables.task.lift:
+        key = f"design.{parameters[space.margins[0]].kind}"
+        raise InputError(source.path, key, "rated torques where a load is lifted, no margins", "a margin")
+    try:
+        space.check(tree)
+    except InputError as error:
+        raise InputError(source.path, f"design ({error.key})", error.wanted, error.found) from error
+    return space
+
+
+def _check_parameter(
+    parameter: DesignParameter,
+    key: str,
+    source: ProblemSource,
+    tree: Tree,
+    seen: dict[tuple[ParameterKind, str], str],
+) -> None:
+    if parameter.lower >= parameter.upper:
+        wanted = f"less than upper ({parameter.upper:g})"
+        raise InputError(source.path, f"{key}.lower", wanted, f"{parameter.lower:g}")
+    for position, link in enumerate(parameter.links):
+        where = f"{key}.links[{position}]"
+        refuse_unknown(source, where, "link", link, tree.link_by_name, tree.name)
+        if (parameter.kind, link) in seen:
+            found = f"'{link}' also in {seen[parameter.kind, link]}"
+            raise InputError(source.path, where, "a link in one parameter of a kind", found)
+        seen[parameter.kind, link] = key
+    if (parameter.kind, f"name {parameter.group}") in seen:
+        raise InputError(source.path, f"{key}.name", "a unique name", f"'{parameter.group}' twice")
+    seen[parameter.kind, f"name {parameter.group}"] = key
+
+
+def objectives_of(
+    tables: ProblemFile, source: ProblemSource, scenes: Sequence[Scene]
+) -> tuple[Objective, ...]:
+    """What a search improves.
+
+    Raises:
+        InputError: there is none, one twice, one that is not known, or one that lacks what it is a value of.
+    """
+    chosen = [
+        *((Sense.MINIMISE, position, name) for position, name in enumerate(tables.objectives.minimise)),
+        *((Sense.MAXIMISE, position, name) for position, name in enumerate(tables.objectives.maximise)),
+    ]
+    if not chosen:
+        raise InputError(source.path, "objectives", "at least one objective", "none")
+    names = [name for _, _, name in chosen]
+    objectives = []
+    for sense, position, name in chosen:
+        key = f"objectives.{sense}[{position}]"
+        kind = objective_kind(name)
+        if kind is None:
+            known = objective_kinds()
+            wanted = f"one of {', '.join(known)}"
+            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
+        if names.count(name) > 1:
+            raise InputError(source.path, key, "each objective once", f"'{name}' twice")
+        refuse_without_hardware(key, name, tables, source)
+        refuse_still(key, name, tables, source, [scene.human for scene in scenes])
+        if name.endswith(HUMAN_EFFORT):
+            refuse_unrated(key, name, source, [scene.human for scene in scenes])
+        objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
+    return tuple(objectives)

@@ -1,0 +1,195 @@
+"""What came of designs, one by one, generation by generation, and on the front."""
+
+from __future__ import annotations
+
+import msgspec
+
+from evodesign.records.cases import Case, Status
+from evodesign.records.parameters import Genome
+from evodesign.records.postures import CaseDetail
+from evodesign.tasks import Record
+
+__all__ = [
+    "NO_SECONDS",
+    "Assessed",
+    "Assessment",
+    "CaseGradient",
+    "CaseOutcome",
+    "Detail",
+    "Evaluation",
+    "Front",
+    "Generation",
+    "Gradients",
+    "ReachOutcome",
+    "Turn",
+]
+
+
+class ReachOutcome(Record, frozen=True):
+    """Interval of load heights [m] that the robot can hold; bounds are None when not solved."""
+
+    lowest_m: float | None
+    highest_m: float | None
+    status: Status
+    reason: str
+
+
+class CaseOutcome(Record, frozen=True, omit_defaults=True):
+    """One undisturbed case of one design, in short.
+
+    `disturbed` holds torque norms by disturbance and agent, where the problem has disturbances. `fallbacks`
+    counts solves by IPOPT because the native method had found no posture.
+    """
+
+    case: Case
+    status: Status
+    reason: str
+    robot_torque_norm: float | None
+    human_torque_norm: float | None
+    iterations: int
+    residual: float | None
+    disturbed: dict[str, dict[str, float]] = msgspec.field(default_factory=dict)
+    fallbacks: int = 0
+
+
+NO_SECONDS = 0.0
+"""One object, by whose identity msgspec leaves a default out of what is written."""
+
+
+class CaseGradient(Record, frozen=True, omit_defaults=True):
+    """A quantity in one case, in its unit, and how it moves with the genome.
+
+    Attributes:
+        value: of the quantity.
+        slopes: as in `Gradients.values`, in the order of the continuous parameters; None where the
+            posture has no derivative.
+    """
+
+    value: float
+    slopes: tuple[float, ...] | None = None
+
+
+class Gradients(Record, frozen=True, omit_defaults=True):
+    """How quantities of a design move with its genome.
+
+    Attributes:
+        values: by quantity (objectives, constrained quantities, and `height` for the margin by which required
+            heights are missed) and by parameter, the derivative in the quantity's unit per unit of the
+            genome's coordinate. Discrete parameters have none.
+        absent: by quantity, why its gradient does not exist.
+        cases: by objective that is the mean over a few cases, what it is the mean of.
+    """
+
+    values: dict[str, dict[str, float]]
+    absent: dict[str, str]
+    cases: dict[str, tuple[CaseGradient, ...]] = msgspec.field(default_factory=dict)
+
+
+class Assessment(Record, frozen=True):
+    """The results of a design: a property of problem and genome alone.
+
+    `objectives` holds natural values (a maximised one is not negated) and lacks those that do not exist, as
+    does `constraints`, which is left out where there are none. `violation` is zero for a feasible design,
+    None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
+    required heights are missed, plus for each constraint its excess relative to its bound
+    (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
+    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them. `rated`
+    holds the rated torques [N m] of sized actuators, by the parameter that is their margin.
+    """
+
+    design: dict[str, float]
+    objectives: dict[str, float]
+    violation: float | None
+    status: Status
+    reason: str
+    reach: ReachOutcome | None = None
+    cases: tuple[CaseOutcome, ...] = ()
+    constraints: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+    judged: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+    gradients: Gradients | msgspec.UnsetType = msgspec.UNSET
+    rated: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+
+    @property
+    def rated_torques(self) -> dict[str, float]:
+        """Those of sized actuators [N m], by the parameter that is their margin, if there are any."""
+        return {} if self.rated is msgspec.UNSET else self.rated
+
+    @property
+    def constrained(self) -> dict[str, float]:
+        """Values of constrained quantities by name, without those that do not exist."""
+        return {} if self.constraints is msgspec.UNSET else self.constraints
+
+
+class Assessed(Record, frozen=True):
+    """What a worker gives back: the results of a genome, and its postures in the cases that were solved.
+
+    `gradient_seconds` is what the gradients took of the evaluation's time [s].
+    """
+
+    assessment: Assessment
+    cases: tuple[CaseDetail, ...] = ()
+    gradient_seconds: float = NO_SECONDS
+
+
+class Detail(Record, frozen=True):
+    """The postures of an evaluation that no earlier one dominates: every design of a front has one."""
+
+    evaluation: int
+    cases: tuple[CaseDetail, ...]
+
+
+class Turn(Record, frozen=True):
+    """When an asynchronous search was asked for a genome.
+
+    Attributes:
+        number: in the order of asking.
+        told: how many evaluations the search had been told.
+    """
+
+    number: int
+    told: int
+
+
+class Evaluation(Record, frozen=True, omit_defaults=True):
+    """One assessed genome with its place in the run. Only times and `worker` may differ between runs.
+
+    `gradient_seconds` are those of `seconds` that gradients took. An asynchronous run has a `turn`, and
+    counts its evaluations in the order in which they came.
+    """
+
+    number: int
+    generation: int
+    genome: Genome
+    assessment: Assessment
+    seconds: float
+    worker: str
+    turn: Turn | None = None
+    gradient_seconds: float = NO_SECONDS
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every constraint holds."""
+        return self.assessment.violation == 0.0
+
+
+class Generation(Record, frozen=True):
+    """State of a run after a generation, as scalars that a plot panel shows.
+
+    `hypervolume` is taken against `reference` (natural values, fixed at the first generation that holds a
+    feasible design); both are None before that.
+    """
+
+    number: int
+    evaluations: int
+    feasible_share: float
+    hypervolume: float | None
+    reference: dict[str, float] | None
+    best: dict[str, float]
+    seconds: float
+
+
+class Front(Record, frozen=True):
+    """Numbers of the non-dominated feasible evaluations after a generation."""
+
+    generation: int
+    evaluations: tuple[int, ...]
