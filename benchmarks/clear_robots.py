@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-from evodesign.problem.design_result import DesignResult
 
 from benchmarks.public_robots import timed
 from evodesign.mechanics.scene import HUMAN, ROBOT
@@ -29,6 +28,7 @@ from evodesign.pool.worker import SerialPool
 from evodesign.posture.precompute.meetings import REACH
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import distance_json, solved_distances
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source

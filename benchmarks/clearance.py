@@ -24,7 +24,6 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.analysis.front import front
 from evodesign.body.placement import Placement
@@ -32,6 +31,7 @@ from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import solved_distances
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source

@@ -30,7 +30,6 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.analysis.hypervolume import hypervolume
 from evodesign.pool.registry import make_pool
@@ -38,6 +37,7 @@ from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.objectives import objective_values

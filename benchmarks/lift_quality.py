@@ -17,13 +17,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from evodesign.motion.solution import LiftSolution
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from benchmarks.lift_speed import ENDS
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import TOLERANCE_OF_LIFTS, LiftProblem
 from evodesign.motion.program import LiftProgram
+from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting

@@ -20,11 +20,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from evodesign.problem.design_result import DesignResult
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_designs
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
 from evodesign.records import Status

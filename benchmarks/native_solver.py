@@ -25,7 +25,6 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from evodesign.problem.design_result import DesignResult
 
 from benchmarks.inner_problem import (
     HEIGHTS,
@@ -40,6 +39,7 @@ from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.judge import AGREEMENT
 from evodesign.records import Assessment, Status

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from evodesign.problem.design_result import WORST
 
 from evodesign.problem.constraints import constraint_key
+from evodesign.problem.design_result import WORST
 from evodesign.problem.objectives import QUANTITIES, objective_kind, objective_kinds
 from evodesign.records import Sense
 

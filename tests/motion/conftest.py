@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from evodesign.motion.solution import LiftSolution
 
 from evodesign.motion.lifting import LiftProblem
+from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.method import MethodName
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evodesign.motion.solution import LiftSolution
-
 from evodesign.motion.lifting import LiftProblem
+from evodesign.motion.solution import LiftSolution
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem

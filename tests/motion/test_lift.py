@@ -10,7 +10,6 @@ import msgspec
 import mujoco
 import numpy as np
 import pytest
-from evodesign.motion.solution import LiftSolution
 from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
@@ -20,6 +19,7 @@ from evodesign.mechanics.scene import SIDES
 from evodesign.motion.check import LiftChecker
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram
+from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.program import ConstraintBlock
 from evodesign.nlp.solver import Solver

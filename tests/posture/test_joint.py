@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
@@ -14,6 +13,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 from tests.posture.violations import violations

@@ -7,11 +7,11 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator, case_outcome
 from evodesign.problem.objectives import objective_kind, objective_value
 from evodesign.problem.source import read_source

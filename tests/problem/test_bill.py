@@ -9,13 +9,13 @@ import msgspec
 import mujoco
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import ROBOT, SIDES
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator, detail_of
 from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.source import read_source

@@ -7,7 +7,6 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.collision.rules import LOAD
 from evodesign.errors import RunError
@@ -15,6 +14,7 @@ from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import Clearances, overlaps, solved_distances
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
 

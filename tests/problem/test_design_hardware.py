@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError
 from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients

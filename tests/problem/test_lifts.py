@@ -10,7 +10,6 @@ import msgspec
 import numpy as np
 import pinocchio as pin
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
@@ -22,6 +21,7 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.design_solver import DesignSolver
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients

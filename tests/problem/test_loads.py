@@ -8,7 +8,6 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
@@ -21,6 +20,7 @@ from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, k
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.notes import notes

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.design.walls import Wall
 from evodesign.hardware.actuators import actuator_law
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import objective_kinds
 from evodesign.records import Status

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import msgspec
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, Sex
@@ -16,6 +15,7 @@ from evodesign.human.body import human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.objectives import objective_value
 from evodesign.records import ProblemSource, Status

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from evodesign.problem.design_result import DesignResult
 
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.hardware.actuators import actuator_law
@@ -16,6 +15,7 @@ from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem import sizing
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.objectives import objective_kinds
