@@ -21,7 +21,7 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.collision.clearance import SolidBodies, places_of
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
-from evodesign.tree.frames import link_frames
+from evodesign.tree.frames import link_frames, link_poses
 from evodesign.tree.model import Joint, JointKind, Tree
 
 __all__ = ["checked_pairs", "collision_pairs", "holding_links"]
@@ -136,12 +136,14 @@ def _near_by(tree: Tree, joints: Collection[str], bodies: frozenset[str], first:
 def _always_in_touch(tree: Tree, joints: Collection[str], pairs: Collection[BodyPair]) -> frozenset[BodyPair]:
     """Pairs that overlap in most postures, drawn from the joints' ranges; always the same ones."""
     rng, bodies = np.random.default_rng(0), SolidBodies.of_tree(tree)
-    moving = [joint for joint in tree.joints if joint.name in joints]
+    ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
+    drawn = rng.uniform(*np.array([*ranges.values()]).reshape(-1, 2).T, (SAMPLES, len(ranges)))
+    poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
+    turns, origins = (np.array([poses[name][part] for name in bodies.names]) for part in (0, 1))
     counts: Counter[tuple[str, str]] = Counter()
     places = places_of(bodies.names, pairs)
-    for _ in range(SAMPLES):
-        positions = {joint.name: float(rng.uniform(*_range(joint))) for joint in moving}
-        placed = bodies.placed(link_frames(tree, Placement(), positions))
+    for sample in range(SAMPLES):
+        placed = bodies.placed_at(turns[:, sample], origins[:, sample])
         counts.update((gap.first, gap.second) for gap in placed.overlapping(places))
     return frozenset(pair for pair, count in counts.items() if count > MOST * SAMPLES)
 

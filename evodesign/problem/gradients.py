@@ -134,6 +134,11 @@ class _Design:
     def _lowest(self) -> ReachDerivative | NotDifferentiable:
         return self._of_reach(LOWEST)
 
+    @cached_property
+    def _by_differences(self) -> Mapping[str, ObjectiveSensitivity]:
+        """Of every quantity, along the exact tangent: the slow way, for those that have no other."""
+        return self._sensitivities.at(self._values, self._result).sensitivities()
+
     def _of_reach(self, sense: float) -> ReachDerivative | NotDifferentiable:
         found = self._sensitivities.of_reach(self._result.program_values, sense, exact=False)
         return reach_along_design(found, self._given)
@@ -157,7 +162,7 @@ class _Design:
             return self._of_shared_reach()
         if name in OF_THE_ROBOT:
             return self._of_robot(name)
-        sensitivity = self._sensitivities.at(self._values, self._result).sensitivities()[name]
+        sensitivity = self._by_differences[name]
         if sensitivity.gradient is None:
             return NotDifferentiable("; ".join(sensitivity.notes) or "no derivative exists")
         return np.array(list(sensitivity.gradient.values()))

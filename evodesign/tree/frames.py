@@ -10,10 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+from numpy.typing import NDArray
+
 from evodesign.body.placement import Matrix, Placement, Vector, scale
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["link_frames", "parent_from_child"]
+__all__ = ["link_frames", "link_poses", "parent_from_child"]
+
+Array = NDArray[np.float64]
 
 
 def link_frames(
@@ -31,6 +36,30 @@ def link_frames(
         moved = parent_from_child(joint, positions.get(joint.name, 0.0))
         frames[joint.child] = frames[joint.parent] @ moved
     return frames
+
+
+def link_poses(tree: Tree, positions: Mapping[str, Array]) -> dict[str, tuple[Array, Array]]:
+    """The place of every link in the root's frame, in n postures at once, by link name.
+
+    Args:
+        tree: of numbers.
+        positions: joint positions [rad or m] by name, shape (n,) each; joints left out stand at zero.
+    Returns:
+        Rotations root_from_link, shape (n, 3, 3), and origins [m], shape (n, 3).
+    """
+    count = max((len(each) for each in positions.values()), default=1)
+    poses = {tree.root: (np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3)))}
+    for joint in tree.joints:
+        turns, origins = poses[joint.parent]
+        place, axis = joint.parent_from_child, np.array(joint.axis, float)
+        origins, turns = origins + turns @ np.array(place.translation, float), turns @ np.array(place.rotation)
+        moved = positions.get(joint.name)
+        if moved is not None and joint.kind is JointKind.PRISMATIC:
+            origins = origins + moved[:, None] * (turns @ axis)
+        elif moved is not None and joint.kind is not JointKind.FIXED:
+            turns = turns @ np.array([_turn(joint.axis, angle) for angle in moved.tolist()])
+        poses[joint.child] = turns, origins
+    return poses
 
 
 def parent_from_child(joint: Joint, position: float) -> Placement:

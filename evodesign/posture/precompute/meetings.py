@@ -36,7 +36,7 @@ __all__ = ["REACH", "found_meetings", "with_meetings"]
 REACH = "reach"
 """Whose pairs are the robot's at extreme heights, beside those of the agents."""
 
-DESIGNS, AT_REACH, FEWEST = 40, 16, 4
+DESIGNS, AT_REACH, FEWEST = 28, 12, 4
 """Whose postures are looked at, at the tasks and at extreme heights, with all people and loads together, and
 at least with each."""
 

@@ -26,7 +26,7 @@ from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
-from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
+from evodesign.posture.precompute.precomputed import NO_STARTS, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Hold, Task
 
@@ -36,6 +36,9 @@ REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
 WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
+
+PARTED_SHARE = 0.5
+"""Of the usual designs so many are trained with where bodies are kept apart, whose solves take twice as long."""
 
 PARTED_STARTS = 1
 """Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
@@ -216,10 +219,10 @@ def stages(
         for scene in setting.scenes
         if not (setting.symmetric and _push_alone(scene, setting.space))
     ]
+    starts = [Piece(Subject.POSTURE, middle, task) for task in longest]
     found = [
         meetings,
-        [Piece(Subject.HIGHEST, middle), Piece(Subject.LOWEST, middle), *programs, *people],
-        [Piece(Subject.POSTURE, middle, task) for task in longest],
+        [*programs, Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle), *starts, *people],
     ]
     if setting.symmetric and setting.middle.disturbances:
         found.append([_wider(middle, task, tasks) for task in longest])
@@ -340,7 +343,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
     own = Setting(scene, space, setting.weights, options)
-    reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
+    reach = ReachProblem(own, symmetric=setting.symmetric, known=replace(known, highest=NO_STARTS, lowest=NO_STARTS))
     if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
@@ -359,6 +362,9 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})
 
+    parted = scene.robot.collisions is not None
+    if parted:
+        training = replace(training, designs=int(PARTED_SHARE * training.designs))
     looked_at = LOOKED_AT * training.designs
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
     if task is None or piece.subject is not Subject.WIDER:
@@ -366,6 +372,6 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     offers = [start for other in piece.beside for start in known.postures[other].starts]
     settings = [replace(own, scene=each) for each in setting.scenes]
     landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
-    few = list(islice(designs, WIDER_DESIGNS))
+    few = list(islice(designs, int(WIDER_DESIGNS * (PARTED_SHARE if parted else 1.0))))
     cases = ((each, design) for design in few for each in landscapes)
     return widened(known.postures[task], offers, cases, MOST_WIDER)
