@@ -137,15 +137,17 @@ def _always_in_touch(tree: Tree, joints: Collection[str], pairs: Collection[Body
     """Pairs that overlap in most postures, drawn from the joints' ranges; always the same ones."""
     rng, bodies = np.random.default_rng(0), SolidBodies.of_tree(tree)
     ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
-    drawn = rng.uniform(*np.array([*ranges.values()]).reshape(-1, 2).T, (SAMPLES, len(ranges)))
+    lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
+    drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
     poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
     turns, origins = (np.array([poses[name][part] for name in bodies.names]) for part in (0, 1))
     counts: Counter[tuple[str, str]] = Counter()
     places = places_of(bodies.names, pairs)
-    for sample in range(SAMPLES):
+    samples = turns.shape[1]  # one where nothing moves
+    for sample in range(samples):
         placed = bodies.placed_at(turns[:, sample], origins[:, sample])
         counts.update((gap.first, gap.second) for gap in placed.overlapping(places))
-    return frozenset(pair for pair, count in counts.items() if count > MOST * SAMPLES)
+    return frozenset(pair for pair, count in counts.items() if count > MOST * samples)
 
 
 def _range(joint: Joint) -> tuple[float, float]:

@@ -34,7 +34,7 @@ from evodesign.problem.objectives import (
     objective_value,
     split_name,
 )
-from evodesign.problem.sensitivities import STEP, Sensitivities, five_point
+from evodesign.problem.sensitivities import STEP, ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Case, CaseGradient, Gradients
 from evodesign.violations import HEIGHT

@@ -52,7 +52,8 @@ def link_poses(tree: Tree, positions: Mapping[str, Array]) -> dict[str, tuple[Ar
     for joint in tree.joints:
         turns, origins = poses[joint.parent]
         place, axis = joint.parent_from_child, np.array(joint.axis, float)
-        origins, turns = origins + turns @ np.array(place.translation, float), turns @ np.array(place.rotation)
+        origins = origins + turns @ np.array(place.translation, float)
+        turns = turns @ np.array(place.rotation, float)
         moved = positions.get(joint.name)
         if moved is not None and joint.kind is JointKind.PRISMATIC:
             origins = origins + moved[:, None] * (turns @ axis)

@@ -38,7 +38,7 @@ WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
 WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
 
 PARTED_SHARE = 0.5
-"""Of the usual designs so many are trained with where bodies are kept apart, whose solves take twice as long."""
+"""Of the usual designs so many are trained with where bodies are kept apart: solves take twice as long."""
 
 PARTED_STARTS = 1
 """Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
@@ -343,7 +343,8 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
     own = Setting(scene, space, setting.weights, options)
-    reach = ReachProblem(own, symmetric=setting.symmetric, known=replace(known, highest=NO_STARTS, lowest=NO_STARTS))
+    beside = replace(known, highest=NO_STARTS, lowest=NO_STARTS)
+    reach = ReachProblem(own, symmetric=setting.symmetric, known=beside)
     if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
