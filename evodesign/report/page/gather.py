@@ -208,10 +208,12 @@ def _opened(
 
 
 def _most_designs(details: Collection[Detail]) -> int:
-    """How many designs have their postures in the page: fewer of many people and loads, whose pages grow."""
+    """How many designs have their postures in the page: fewer of many people, loads and disturbances."""
     pairs = max((len({each.case.pair for each in detail.cases}) for detail in details), default=1)
-    lifts = any(isinstance(each.case.task, Lift) for detail in details for each in detail.cases)
-    many = pairs * (2 if lifts else 1)
+    cases = [each for detail in details for each in detail.cases]
+    lifts = any(isinstance(each.case.task, Lift) for each in cases)
+    disturbed = max((len(instant.disturbed) for each in cases for instant in each.instants), default=0)
+    many = pairs * (1 + disturbed) * (2 if lifts else 1)
     return MOST_POSTURES if many < 2 else max(MOST_POSTURES // many, MOST_POSTURES // 5)
 
 
