@@ -19,6 +19,7 @@ from evodesign.posture.precompute.pieces import (
 )
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.prepared import prepared_pieces
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
 from evodesign.records import ProblemSource
@@ -29,6 +30,8 @@ WORK: Mapping[Subject, float] = {
     Subject.MEETINGS: 0.3,
     Subject.HIGHEST: 1.0,
     Subject.LOWEST: 1.0,
+    Subject.REACH_PROGRAM: 1.0,
+    Subject.UNDISTURBED_PROGRAM: 1.3,
     Subject.PROGRAM: 2.0,
     Subject.POSTURE: 1.7,
     Subject.WIDER: 0.5,
@@ -65,7 +68,7 @@ def precomputed(
 
     Args:
         problem: to be made ready.
-        cache: of pieces worked out before; None to work out everything.
+        cache: of pieces worked out before; None to work out everything that does not come with evodesign.
         pool: where pieces are worked out.
         watcher: is shown what is worked out.
         after: what the caller will work out next, to be told along with the pieces.
@@ -75,19 +78,24 @@ def precomputed(
     """
     setting, known = precompute_setting(problem), Precomputed()
     tasks, portfolios, people = problem.holds, problem.start_portfolio, problem.person_reaches
+    given = prepared_pieces(problem.source)
     staged = [*stages(setting, tasks, portfolios=portfolios, person_reaches=people)]
     pieces = {
         piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
         for stage, pieces in enumerate(staged)
         for piece in pieces
     }
-    absent = [piece for piece in pieces if cache is None or cache.read(key_of(setting, piece)) is None]
+
+    def content_of(piece: Piece) -> bytes | None:
+        return given.get(piece) or (cache.read(key_of(setting, piece)) if cache else None)
+
+    absent = [piece for piece in pieces if content_of(piece) is None]
     if absent or after:
         watcher.missing([*(pieces[piece] for piece in absent), *after], pool.processes)
     for stage in staged:
         missing = {}
         for piece in stage:
-            content = cache.read(key_of(setting, piece)) if cache else None
+            content = content_of(piece)
             found = with_piece(known, piece, content) if content else None
             if found is None:
                 missing[piece] = pieces[piece]

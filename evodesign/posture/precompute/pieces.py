@@ -30,7 +30,16 @@ from evodesign.posture.precompute.precomputed import NO_STARTS, PersonReach, Pre
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Hold, Task
 
-__all__ = ["Piece", "PrecomputeSetting", "Subject", "compute_piece", "key_of", "stages", "with_piece"]
+__all__ = [
+    "PROGRAMS",
+    "Piece",
+    "PrecomputeSetting",
+    "Subject",
+    "compute_piece",
+    "key_of",
+    "stages",
+    "with_piece",
+]
 
 REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
@@ -68,13 +77,18 @@ class Subject(StrEnum):
     PERSON_REACH = "the person's reach"
     HIGHEST = "starts of the highest load"
     LOWEST = "starts of the lowest load"
+    REACH_PROGRAM = "the program of reach"
+    UNDISTURBED_PROGRAM = "the program of undisturbed postures"
     PROGRAM = "the program of postures"
     POSTURE = "starts of postures"
     WIDER = "starts of other heights"
 
 
-OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.PROGRAM)
+OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
 """Of one person with one load; other pieces serve everyone."""
+
+PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
+"""Machine code, which is found again in the cache of functions."""
 
 OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
 """Portfolios of starts."""
@@ -181,7 +195,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
     Subject.HIGHEST: NO_PART_OF_PIECES,
     Subject.LOWEST: NO_PART_OF_PIECES,
-    Subject.PROGRAM: NO_PART_OF_PIECES,
+    **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
     Subject.POSTURE: NO_PART_OF_PIECES,
     Subject.WIDER: NO_PART_OF_WIDER,
 }
@@ -213,20 +227,23 @@ def stages(
     middle = setting.middle.pair
     around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
     longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
-    # compiled here, side by side, or one worker would wait for another in the stages that solve them
-    programs = [
-        Piece(Subject.PROGRAM, scene.pair)
-        for scene in setting.scenes
-        if not (setting.symmetric and _push_alone(scene, setting.space))
-    ]
     starts = [Piece(Subject.POSTURE, middle, task) for task in longest]
-    found = [
-        meetings,
-        [*programs, Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle), *starts, *people],
-    ]
+    extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
+    found = [meetings, [*_programs(setting), *extremes, *starts, *people]]
     if setting.symmetric and setting.middle.disturbances:
         found.append([_wider(middle, task, tasks) for task in longest])
     return found
+
+
+def _programs(setting: PrecomputeSetting) -> list[Piece]:
+    """What is compiled beforehand, side by side, or one worker would wait for another; longest work last."""
+    joint = [each for each in setting.scenes if not (setting.symmetric and _push_alone(each, setting.space))]
+    disturbed = [scene for scene in joint if scene.disturbances]
+    return [
+        *([Piece(Subject.REACH_PROGRAM, setting.middle.pair)] if joint else []),
+        *(Piece(Subject.UNDISTURBED_PROGRAM, scene.pair) for scene in disturbed),
+        *(Piece(Subject.PROGRAM, scene.pair) for scene in joint),
+    ]
 
 
 def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Hold]) -> Piece:
@@ -282,8 +299,8 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         found = _person(setting, scene, piece.task)
     elif piece.subject is Subject.PERSON_REACH:
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
-    elif piece.subject is Subject.PROGRAM:
-        _compile(setting, scene)
+    elif piece.subject in PROGRAMS:
+        _compile(setting, piece.subject, scene)
         found = None
     else:
         found = _portfolio(setting, piece, known)
@@ -304,7 +321,7 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
             reach = msgspec.json.decode(content, type=PersonReach | None)
             reaches = {**known.person_reaches, **({piece.pair: reach} if reach else {})}
             return replace(known, person_reaches=reaches)
-        if piece.subject is Subject.PROGRAM:
+        if piece.subject in PROGRAMS:
             msgspec.json.decode(content, type=None)
             return known
         found = msgspec.json.decode(content, type=StartPortfolio)
@@ -330,13 +347,18 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
     return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.heights[0])
 
 
-def _compile(setting: PrecomputeSetting, scene: Scene) -> None:
-    """Compile a scene's programs, which are found again in the cache of functions."""
-    for each in (scene, scene.undisturbed) if scene.disturbances else (scene,):
-        own = Setting(each, setting.space, setting.weights, setting.options)
-        problem = PostureProblem(own, setting.symmetry)
-        for task in {type(task): task for task in setting.tasks}.values():
-            _ = problem.landscape(task).solver.parted
+def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None:
+    """Compile a scene's program, with all rows and without those that are switched on when needed."""
+    own = Setting(scene, setting.space, setting.weights, setting.options)
+    if subject is Subject.REACH_PROGRAM:
+        reach = ReachProblem(own, symmetric=setting.symmetric)
+        _ = reach.landscape(HIGHEST).solver.parted
+        return
+    if subject is Subject.UNDISTURBED_PROGRAM:
+        own = replace(own, scene=scene.undisturbed)
+    problem = PostureProblem(own, setting.symmetry)
+    for task in {type(task): task for task in setting.tasks}.values():
+        _ = problem.landscape(task).solver.parted
 
 
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
