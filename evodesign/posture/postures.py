@@ -105,6 +105,7 @@ class PostureProblem:
         task: Task,
         checker: Checker,
         neighbour: Neighbour | None = None,
+        others: Sequence[Neighbour] = (),
     ) -> CaseSolution:
         """The best checked posture of a design in one case.
 
@@ -113,9 +114,10 @@ class PostureProblem:
             task: of the problem.
             checker: the independent check, made for this design.
             neighbour: what the same design led to in a similar scene; fewer starts do beside it.
+            others: what it led to elsewhere, for a case in which the portfolio leads nowhere.
         """
         trials: list[Trial] = []
-        for trial in self._trials(design, task, checker, neighbour):
+        for trial in self._trials(design, task, checker, neighbour, others):
             trials.append(trial)
             if trial.best is not None:
                 break
@@ -167,7 +169,12 @@ class PostureProblem:
         return self._formulation(name, task, self._methods(name)[0]).landscape(task)
 
     def _trials(
-        self, design: Sequence[float], task: Task, checker: Checker, neighbour: Neighbour | None
+        self,
+        design: Sequence[float],
+        task: Task,
+        checker: Checker,
+        neighbour: Neighbour | None,
+        others: Sequence[Neighbour] = (),
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn.
 
@@ -187,6 +194,8 @@ class PostureProblem:
                 yield trial
                 if trial.overlaps or all(each.status is Status.INFEASIBLE for each in trial.attempts):
                     break
+                for other in others if portfolio and method is self._methods(name)[0] else ():
+                    yield formulation.solve_beside(design, task, (), other, checker)
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""

@@ -123,7 +123,7 @@ class _OneDesign:
         for solution in before:
             postures = self._solver.inner.postures[solution.case.pair]
             near = postures.followed(values, solution) if solution.solved else solution
-            found.append(near or self._in_case(values, solution.case, None, Unchecked(), None))
+            found.append(near or self._in_case(values, solution.case, None, Unchecked()))
         return tuple(found)
 
     def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
@@ -158,22 +158,26 @@ class _OneDesign:
     def _cases(
         self, values: Sequence[float], reach: Reach | None, check: Checker, before: Cases = ()
     ) -> Cases:
-        problem, found = self._problem, list[CaseSolution]()
-        for number, case in enumerate(problem.cases):
-            if before and not before[number].solved:
-                found.append(before[number])
-                continue
-            if isinstance(case.task, Lift):
-                found.append(self._lifted(values, case, case.task, reach, check, found))
-                continue
-            scene = shared_scene(problem.scene_of(case), problem.space, values)
-            checker = check.elsewhere(scene, self._solver.people[case.person])
-            near = self._neighbour(found, case)
-            if before:
-                near = Neighbour(before[number], same_load=True, unchecked=True)
-            lost = any(each.attempts and not each.solved for each in found)
-            found.append(self._in_case(values, case, reach, checker, near, lost=lost))
-        return tuple(found)
+        """Holds first, at last those that were not found at once; then lifts, which go between holds."""
+        cases, found = self._problem.cases, dict[Case, CaseSolution]()
+        lifts = {case: case.task for case in cases if isinstance(case.task, Lift)}
+        for case, earlier in zip(cases, before or [None] * len(cases), strict=True):
+            if earlier is not None and not earlier.solved:
+                found[case] = earlier
+            elif case not in lifts:
+                near = self._neighbour([*found.values()], case)
+                if earlier is not None:
+                    near = Neighbour(earlier, same_load=True, unchecked=True)
+                found[case] = self._begun(values, case, reach, check, near)
+        lost = False
+        for case, begun in found.items():
+            if begun.attempts and not begun.solved and case not in lifts:
+                found[case] = self._searched(values, case, reach, check, [*found.values()], lost=lost)
+                lost = lost or not found[case].solved
+        for case, lift in lifts.items():
+            if case not in found:
+                found[case] = self._lifted(values, case, lift, reach, check, [*found.values()])
+        return tuple(found[case] for case in cases)
 
     def _lifted(
         self,
@@ -192,13 +196,12 @@ class _OneDesign:
         failed = [solution for solution in found if not solution.solved]
         if failed:
             return CaseSolution(case, failed[0].status, NOT_TRIED)
-        scene = shared_scene(self._problem.scene_of(case), self._problem.space, values)
-        human = self._solver.people[case.person]
-        checker, held = check.elsewhere(scene, human), [*found]
+        scene, human = self._problem.scene_of(case), self._solver.people[case.person]
+        held = [*found]
         for hold in (Hold(height_m=height) for height in lift.heights):
             end = scene.case(hold)
             if all(solution.case != end for solution in held):
-                held.append(self._in_case(values, end, reach, checker, self._neighbour(held, end)))
+                held.append(self._in_case(values, end, reach, check, held))
         ends = [
             next(solution for solution in held if solution.case == scene.case(Hold(height_m=height)))
             for height in lift.heights
@@ -222,28 +225,71 @@ class _OneDesign:
         values: Sequence[float],
         case: Case,
         reach: Reach | None,
-        checker: Checker,
+        check: Checker,
+        found: Sequence[CaseSolution] = (),
+    ) -> CaseSolution:
+        """The posture in a case, beside what is found of others."""
+        begun = self._begun(values, case, reach, check, self._neighbour(found, case))
+        if begun.solved or not begun.attempts:
+            return begun
+        return self._searched(values, case, reach, check, found)
+
+    def _begun(
+        self,
+        values: Sequence[float],
+        case: Case,
+        reach: Reach | None,
+        check: Checker,
         neighbour: Neighbour | None,
+    ) -> CaseSolution:
+        """What the formulation that is tried first leads to, unless the case is known to be out of reach."""
+        beyond = None if reach is None else _beyond(case, reach)
+        if beyond is not None:
+            return beyond
+        checker = self._checker(values, case, check)
+        return self._solver.inner.postures[case.pair].begun(values, case.task, checker, neighbour)
+
+    def _searched(
+        self,
+        values: Sequence[float],
+        case: Case,
+        reach: Reach | None,
+        check: Checker,
+        found: Sequence[CaseSolution],
         *,
         lost: bool = False,
     ) -> CaseSolution:
-        """The posture in a case; a reach that is not known is asked for where there is none at once.
+        """The posture in a case within reach to which the first formulation did not lead at once.
 
         Where another case has none (`lost`), the design is infeasible, and no refuge is sought.
         """
-        postures = self._solver.inner.postures[case.pair]
-        if reach is None:
-            begun = postures.begun(values, case.task, checker, neighbour)
-            if begun.solved:
-                return begun
-            reach = self._reach(values)
-        beyond = _beyond(case, reach)
+        beyond = _beyond(case, reach or self._reach(values))
         if beyond is not None:
             return beyond
-        if not lost:
-            return postures.solve(values, case.task, checker, neighbour)
-        begun = postures.begun(values, case.task, checker, neighbour)
-        return begun if begun.solved else replace(begun, reason=f"{begun.reason} ({LESS})")
+        postures, near = self._solver.inner.postures[case.pair], self._neighbour(found, case)
+        checker = self._checker(values, case, check)
+        if lost:
+            begun = postures.begun(values, case.task, checker, near)
+            return begun if begun.solved else replace(begun, reason=f"{begun.reason} ({LESS})")
+        return postures.solve(values, case.task, checker, near, self._elsewhere(found, case))
+
+    def _elsewhere(self, found: Sequence[CaseSolution], case: Case) -> list[Neighbour]:
+        """Solutions of other tasks, those at the nearest heights first."""
+        joints = self._problem.scene_of(case).human.joints
+        others = [
+            each
+            for each in found
+            if each.solved
+            and each.case.task != case.task
+            and self._problem.scene_of(each.case).human.joints == joints
+        ]
+        others.sort(key=lambda each: abs(each.case.task.heights[0] - case.task.heights[0]))
+        return [Neighbour(each, same_load=False) for each in others]
+
+    def _checker(self, values: Sequence[float], case: Case, check: Checker) -> Checker:
+        """The check, in a case."""
+        scene = shared_scene(self._problem.scene_of(case), self._problem.space, values)
+        return check.elsewhere(scene, self._solver.people[case.person])
 
 
 def _beyond(case: Case, reach: Reach) -> CaseSolution | None:
