@@ -13,11 +13,11 @@ FOLDER ?=
 PYTEST := $(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 QUICK := tests/analysis tests/body tests/conformance/test_searches.py tests/design tests/golden tests/human tests/runlog \
 	tests/searches tests/test_evolve.py tests/tree
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+PIP := $(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check --constraint constraints.txt
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot api docs clean
+.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot prepared api docs clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST) | expand --tabs=20
@@ -93,6 +93,9 @@ fuzz: $(VENV)/installed-dev  ## segments, problems, robots and designs spoilt by
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py
+
+prepared: $(VENV)/installed  ## work out what comes along with the default problem
+	$(BIN)/python problems/write_prepared.py
 
 api: $(VENV)/installed  ## write docs/api.md from the docstrings
 	$(BIN)/python -m docs.write_api

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, settings
 
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.posture.precompute.pieces import key_of, stages
+from evodesign.posture.precompute.pieces import OF_STARTS, key_of, stages
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
@@ -103,18 +103,19 @@ def known(problem: DesignProblem) -> Precomputed:
     compiled = build_problem(msgspec.structs.replace(problem.source, method=None))
     with cache.lock("default"), JoblibPool(2) as pool:
         precomputed(compiled, cache, pool, PrecomputeProgress())
-        for lent, key in zip(keys_of(compiled), keys_of(problem), strict=True):
+        for lent, key in zip(keys_of_starts(compiled), keys_of_starts(problem), strict=True):
             content = cache.read(lent)
             assert content is not None
             cache.store(key, content)
         return precomputed(problem, cache, pool, PrecomputeProgress())
 
 
-def keys_of(problem: DesignProblem) -> list[str]:
-    """What a problem's pieces are kept under."""
+def keys_of_starts(problem: DesignProblem) -> list[str]:
+    """What a problem's portfolios are kept under."""
     setting = precompute_setting(problem)
     asked = {"portfolios": problem.start_portfolio, "person_reaches": problem.person_reaches}
-    return [key_of(setting, piece) for part in stages(setting, problem.holds, **asked) for piece in part]
+    pieces = [piece for stage in stages(setting, problem.holds, **asked) for piece in stage]
+    return [key_of(setting, piece) for piece in pieces if piece.subject in OF_STARTS]
 
 
 @pytest.fixture(scope="session")

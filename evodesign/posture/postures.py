@@ -106,6 +106,7 @@ class PostureProblem:
         checker: Checker,
         neighbour: Neighbour | None = None,
         others: Sequence[Neighbour] = (),
+        starts: Sequence[Start] = (),
     ) -> CaseSolution:
         """The best checked posture of a design in one case.
 
@@ -115,9 +116,10 @@ class PostureProblem:
             checker: the independent check, made for this design.
             neighbour: what the same design led to in a similar scene; fewer starts do beside it.
             others: what it led to elsewhere, for a case in which the portfolio leads nowhere.
+            starts: of this design alone, for the same case.
         """
         trials: list[Trial] = []
-        for trial in self._trials(design, task, checker, neighbour, others):
+        for trial in self._trials(design, task, checker, neighbour, others, starts):
             trials.append(trial)
             if trial.best is not None:
                 break
@@ -175,6 +177,7 @@ class PostureProblem:
         checker: Checker,
         neighbour: Neighbour | None,
         others: Sequence[Neighbour] = (),
+        starts: Sequence[Start] = (),
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn.
 
@@ -192,10 +195,15 @@ class PostureProblem:
                         yield formulation.finished(design, task, raw, checker)
                 trial = formulation.solve(design, task, portfolio, checker)
                 yield trial
-                if trial.overlaps or all(each.status is Status.INFEASIBLE for each in trial.attempts):
+                if trial.overlaps:
                     break
-                for other in others if portfolio and method is self._methods(name)[0] else ():
-                    yield formulation.solve_beside(design, task, (), other, checker)
+                if portfolio and method is self._methods(name)[0]:
+                    for other in others:
+                        yield formulation.solve_beside(design, task, (), other, checker)
+                    if starts:
+                        yield formulation.solve(design, task, starts, checker)
+                if all(each.status is Status.INFEASIBLE for each in trial.attempts):
+                    break
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""

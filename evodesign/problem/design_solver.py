@@ -12,9 +12,10 @@ from functools import cached_property
 
 from evodesign.mechanics.added_mass import AddedMasses
 from evodesign.mechanics.stance_case import StanceTorques
+from evodesign.nlp.program import Start
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker, Unchecked
-from evodesign.posture.formulations.reach import Reach, common_reach
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, Reach, common_reach
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.problem.build import DesignProblem
@@ -172,7 +173,7 @@ class _OneDesign:
         lost = False
         for case, begun in found.items():
             if begun.attempts and not begun.solved and case not in lifts:
-                found[case] = self._searched(values, case, reach, check, [*found.values()], lost=lost)
+                found[case] = self._searched(values, begun, reach, check, [*found.values()], lost=lost)
                 lost = lost or not found[case].solved
         for case, lift in lifts.items():
             if case not in found:
@@ -232,7 +233,7 @@ class _OneDesign:
         begun = self._begun(values, case, reach, check, self._neighbour(found, case))
         if begun.solved or not begun.attempts:
             return begun
-        return self._searched(values, case, reach, check, found)
+        return self._searched(values, begun, reach, check, found)
 
     def _begun(
         self,
@@ -252,26 +253,38 @@ class _OneDesign:
     def _searched(
         self,
         values: Sequence[float],
-        case: Case,
+        begun: CaseSolution,
         reach: Reach | None,
         check: Checker,
         found: Sequence[CaseSolution],
         *,
         lost: bool = False,
     ) -> CaseSolution:
-        """The posture in a case within reach to which the first formulation did not lead at once.
+        """The posture in a case within reach to which the first formulation did not lead at once (`begun`).
 
-        Where another case has none (`lost`), the design is infeasible, and no refuge is sought.
+        Where another case has none (`lost`), the design is infeasible, and nothing else is tried.
         """
-        beyond = _beyond(case, reach or self._reach(values))
+        case, reach = begun.case, reach or self._reach(values)
+        beyond = _beyond(case, reach)
         if beyond is not None:
             return beyond
-        postures, near = self._solver.inner.postures[case.pair], self._neighbour(found, case)
-        checker = self._checker(values, case, check)
         if lost:
-            begun = postures.begun(values, case.task, checker, near)
-            return begun if begun.solved else replace(begun, reason=f"{begun.reason} ({LESS})")
-        return postures.solve(values, case.task, checker, near, self._elsewhere(found, case))
+            return replace(begun, reason=f"{begun.reason} ({LESS})")
+        return self._solver.inner.postures[case.pair].solve(
+            values,
+            case.task,
+            self._checker(values, case, check),
+            self._neighbour(found, case),
+            self._elsewhere(found, case),
+            self._ends(values, case, reach),
+        )
+
+    def _ends(self, values: Sequence[float], case: Case, reach: Reach) -> list[Start]:
+        """How the robot holds the load at the end of its reach that is nearer."""
+        low, high = (abs(case.task.heights[0] - (end or 0.0)) for end in (reach.lowest, reach.highest))
+        sense = HIGHEST if high < low else LOWEST
+        _, raw = self._solver.inner.reaches[case.payload].extreme(values, sense)
+        return [raw.values] if raw.status is Status.SOLVED else []
 
     def _elsewhere(self, found: Sequence[CaseSolution], case: Case) -> list[Neighbour]:
         """Solutions of other tasks, those at the nearest heights first."""

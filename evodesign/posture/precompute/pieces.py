@@ -31,6 +31,7 @@ from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Hold, Task
 
 __all__ = [
+    "OF_STARTS",
     "PROGRAMS",
     "Piece",
     "PrecomputeSetting",
@@ -92,6 +93,9 @@ PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
 
 OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
 """Portfolios of starts."""
+
+UNDISTURBED = (*OF_STARTS, Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM)
+"""Follow from what is held undisturbed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,7 +272,7 @@ def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
     parted = apart and piece.subject is not Subject.MEETINGS
     without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
-    if piece.subject in OF_STARTS and not parted:
+    if piece.subject in UNDISTURBED and not parted:
         setting = _all_undisturbed(setting)
     data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
     return digest((data, code_digest(__name__)), without=without)

@@ -1,6 +1,6 @@
 """Write the pieces of problems that come with evodesign, as any machine would work them out.
 
-    python -m benchmarks.write_prepared problems/icub_lifting.toml ... [--jobs 2]
+    python problems/write_prepared.py [problems/icub_lifting.toml ...] [--jobs 2]
 
 Each problem is made ready in the user's cache as if nothing came with it; all its pieces but machine code go
 to evodesign/problem/data/. To be run anew when a test says that a problem is another one now, or when the
@@ -15,13 +15,16 @@ from pathlib import Path
 
 import msgspec
 
-from benchmarks.inner_problem import known_at
 from evodesign.nlp.disk_cache import user_cache
+from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.precompute.pieces import PROGRAMS, key_of, stages
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.prepared import DATA, Prepared, prepared_digest
 from evodesign.problem.source import read_source
+
+DEFAULT = [Path(__file__).parent / "icub_lifting.toml"]
 
 
 def prepared(problem: DesignProblem) -> Prepared:
@@ -39,7 +42,7 @@ def prepared(problem: DesignProblem) -> Prepared:
 def main() -> None:
     """Work out the problems that are asked for."""
     parser = argparse.ArgumentParser(description="write the pieces of problems that come with evodesign")
-    parser.add_argument("problems", nargs="+", type=Path)
+    parser.add_argument("problems", nargs="*", type=Path, default=DEFAULT)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     DATA.mkdir(exist_ok=True)
@@ -47,7 +50,8 @@ def main() -> None:
         target = DATA / f"{path.stem}.json"
         target.unlink(missing_ok=True)
         problem = build_problem(read_source(path))
-        known_at(problem, options.jobs)
+        with JoblibPool(options.jobs) as pool:
+            cached_precomputed(problem, pool)
         target.write_bytes(msgspec.json.encode(prepared(problem)) + b"\n")
         print(f"{target.name}: {target.stat().st_size / 1000.0:.0f} kB")
 
