@@ -53,7 +53,6 @@ def main() -> None:
         with JoblibPool(options.jobs) as pool:
             cached_precomputed(problem, pool)
         target.write_bytes(msgspec.json.encode(prepared(problem)) + b"\n")
-        print(f"{target.name}: {target.stat().st_size / 1000.0:.0f} kB")
 
 
 if __name__ == "__main__":
