@@ -17,7 +17,8 @@ import msgspec
 
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.posture.precompute.pieces import PROGRAMS, key_of, stages
+from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.plan import PROGRAMS, stages
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.precompute import precompute_setting

@@ -14,7 +14,8 @@ from hypothesis import HealthCheck, settings
 
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
-from evodesign.posture.precompute.pieces import OF_STARTS, key_of, stages
+from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.plan import OF_STARTS, stages
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator

@@ -25,14 +25,8 @@ from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.pieces import (
-    NO_PART_OF,
-    OF_STARTS,
-    Piece,
-    PrecomputeSetting,
-    Subject,
-    key_of,
-)
+from evodesign.posture.precompute.keys import NO_PART_OF, key_of
+from evodesign.posture.precompute.plan import OF_STARTS, Piece, PrecomputeSetting, Subject
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile

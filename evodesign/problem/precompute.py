@@ -8,15 +8,9 @@ from dataclasses import dataclass, field
 from evodesign.errors import InputError, RunError
 from evodesign.nlp.disk_cache import Cache
 from evodesign.pool.base import Limits, Pool
-from evodesign.posture.precompute.pieces import (
-    Piece,
-    PrecomputeSetting,
-    Subject,
-    compute_piece,
-    key_of,
-    stages,
-    with_piece,
-)
+from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.pieces import compute_piece, with_piece
+from evodesign.posture.precompute.plan import Piece, PrecomputeSetting, Subject, stages
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.prepared import prepared_pieces

@@ -15,7 +15,7 @@ from pathlib import Path
 import msgspec
 
 from evodesign.identity import Exceptions, digest
-from evodesign.posture.precompute.pieces import Piece
+from evodesign.posture.precompute.plan import Piece
 from evodesign.problem.file import ProblemFile, SolverTable
 from evodesign.problem.source import decode_toml
 from evodesign.records import ProblemSource

@@ -13,7 +13,8 @@ from numpy.polynomial import chebyshev
 
 from evodesign.mechanics.scene import Grasp, GraspDirection, Scene
 from evodesign.posture.formulations.human_value import LARGEST_ERROR, HumanProblem, chebyshev_sum
-from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, stages, with_piece
+from evodesign.posture.precompute.pieces import compute_piece, with_piece
+from evodesign.posture.precompute.plan import Piece, Subject, stages
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import symmetric_forms

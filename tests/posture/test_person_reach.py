@@ -11,7 +11,9 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.formulations.reach import person_reach
-from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, key_of, stages, with_piece
+from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.pieces import compute_piece, with_piece
+from evodesign.posture.precompute.plan import Piece, Subject, stages
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import DesignProblem

@@ -16,7 +16,9 @@ from evodesign.nlp.codegen import Library
 from evodesign.nlp.method import MethodName
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.posture.precompute.pieces import Piece, Subject, compute_piece, key_of, stages, with_piece
+from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.pieces import compute_piece, with_piece
+from evodesign.posture.precompute.plan import Piece, Subject, stages
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem

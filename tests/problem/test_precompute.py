@@ -10,7 +10,8 @@ import pytest
 
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Finished, Pool
-from evodesign.posture.precompute.pieces import Piece, key_of
+from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.plan import Piece
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.precompute import COMPILING, precompute_setting, precomputed

@@ -11,7 +11,8 @@ import pytest
 
 from evodesign.pool.base import Pool
 from evodesign.pool.worker import Finished
-from evodesign.posture.precompute.pieces import PROGRAMS, Piece, Subject, compute_piece, stages
+from evodesign.posture.precompute.pieces import compute_piece
+from evodesign.posture.precompute.plan import PROGRAMS, Piece, Subject, stages
 from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
 from evodesign.problem.build import build_problem
 from evodesign.problem.precompute import precompute_setting, precomputed

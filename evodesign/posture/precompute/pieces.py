@@ -7,40 +7,33 @@ piece and the code but for named exceptions; so a score depends neither on a cac
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 from itertools import islice
 
 import msgspec
 import numpy as np
 
 from evodesign.collision.rules import BodyPair
-from evodesign.design.space import DesignSpace
-from evodesign.identity import Exceptions, code_digest, digest
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Grasp, Payload, Scene, scene_of
-from evodesign.nlp.solver import SolverOptions
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio, widened
-from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
-from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
+from evodesign.posture.precompute.plan import (
+    OF_STARTS,
+    PROGRAMS,
+    Piece,
+    PrecomputeSetting,
+    Subject,
+    all_undisturbed,
+)
 from evodesign.posture.precompute.precomputed import NO_STARTS, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.records import Case, Hold, Task
+from evodesign.records import Case, Task
 
-__all__ = [
-    "OF_STARTS",
-    "PROGRAMS",
-    "Piece",
-    "PrecomputeSetting",
-    "Subject",
-    "compute_piece",
-    "key_of",
-    "stages",
-    "with_piece",
-]
+__all__ = ["compute_piece", "with_piece"]
 
 REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
@@ -70,214 +63,6 @@ LOOKED_AT = 12
 """Designs looked at for each one that training asks for, where only some hold the load at a height."""
 
 
-class Subject(StrEnum):
-    """What a piece is about; the value is how it is told."""
-
-    MEETINGS = "bodies that come near each other"
-    PERSON = "the person's part"
-    PERSON_REACH = "the person's reach"
-    HIGHEST = "starts of the highest load"
-    LOWEST = "starts of the lowest load"
-    REACH_PROGRAM = "the program of reach"
-    UNDISTURBED_PROGRAM = "the program of undisturbed postures"
-    PROGRAM = "the program of postures"
-    POSTURE = "starts of postures"
-    WIDER = "starts of other heights"
-
-
-OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
-"""Of one person with one load; other pieces serve everyone."""
-
-PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
-"""Machine code, which is found again in the cache of functions."""
-
-OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
-"""Portfolios of starts."""
-
-UNDISTURBED = (*OF_STARTS, Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM)
-"""Follow from what is held undisturbed."""
-
-
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """A part of a preparation.
-
-    Args:
-        subject: what it is about.
-        pair: names of the person and the load that it is of, or is worked out with.
-        task: None if it belongs to none.
-        beside: other tasks that it follows from.
-    """
-
-    subject: Subject
-    pair: tuple[str, str]
-    task: Task | None = None
-    beside: tuple[Task, ...] = ()
-
-    def __str__(self) -> str:
-        name = str(self.subject) if self.task is None else f"{self.subject} at {self.task}"
-        who = self.pair if self.subject in OF_PEOPLE else ()
-        return ", ".join(part for part in (name, *who) if part)
-
-
-@dataclass(frozen=True, slots=True)
-class PrecomputeSetting:
-    """What the pieces of a problem follow from; as for `PostureProblem`.
-
-    Args:
-        scenes: every person with every load.
-        middle: the scene that portfolios are made in.
-    """
-
-    scenes: tuple[Scene, ...]
-    middle: Scene
-    space: DesignSpace
-    weights: EffortWeights
-    options: SolverOptions
-    symmetry: Symmetry
-    tasks: tuple[Hold, ...]
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether symmetric postures are looked for, at least at first."""
-        return self.symmetry is not Symmetry.OFF
-
-
-NO_PART_OF_PIECES: Exceptions = {
-    PrecomputeSetting: {
-        "scenes": "the one that a piece is worked out in counts",
-        "middle": "says which scene that is",
-        "symmetry": "polishing comes later: whether postures are symmetric counts",
-        "tasks": "a piece is about one of them, or none",
-    },
-    Piece: {"pair": "says which scene that is"},
-    Agent: {"label": "is a word for results"},
-    Payload: {"label": "is a word for results"},
-    SolverOptions: {
-        "compiled": "IPOPT gives the same bits with machine code, and the native method has no other"
-    },
-}
-
-NO_PART_OF_A_PERSONS: Exceptions = {
-    **NO_PART_OF_PIECES,
-    PrecomputeSetting: {
-        **NO_PART_OF_PIECES[PrecomputeSetting],
-        "space": "a person stands behind the load, whatever the robot's hardware",
-    },
-    Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
-}
-
-NO_PART_OF_WIDER: Exceptions = {
-    **NO_PART_OF_PIECES,
-    PrecomputeSetting: {
-        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "scenes"
-    },
-}
-
-NO_PART_OF_MEETINGS: Exceptions = {
-    **NO_PART_OF_PIECES,
-    PrecomputeSetting: {
-        name: why
-        for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items()
-        if name not in ("tasks", "scenes")
-    },
-}
-
-NO_PART_OF_PARTED: Exceptions = {
-    **NO_PART_OF_PIECES,
-    PrecomputeSetting: {
-        name: why
-        for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items()
-        if name in ("middle", "symmetry")
-    },
-}
-"""Where bodies are kept apart every piece follows from the meetings of all scenes at all tasks."""
-
-NO_PART_OF: Mapping[Subject, Exceptions] = {
-    Subject.MEETINGS: NO_PART_OF_MEETINGS,
-    Subject.PERSON: NO_PART_OF_A_PERSONS,
-    Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
-    Subject.HIGHEST: NO_PART_OF_PIECES,
-    Subject.LOWEST: NO_PART_OF_PIECES,
-    **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
-    Subject.POSTURE: NO_PART_OF_PIECES,
-    Subject.WIDER: NO_PART_OF_WIDER,
-}
-"""Fields on which a piece does not depend, by its subject, with the reason."""
-
-
-def stages(
-    setting: PrecomputeSetting, tasks: Sequence[Hold], *, portfolios: bool, person_reaches: bool
-) -> list[list[Piece]]:
-    """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
-
-    Args:
-        setting: of the problem.
-        tasks: of the problem.
-        portfolios: whether solves begin at portfolios of starts.
-        person_reaches: whether the people's own reach is asked for.
-    """
-    parting = [scene for scene in setting.scenes if scene.robot.collisions is not None]
-    meetings = [Piece(Subject.MEETINGS, scene.pair) for scene in parting]
-    people = [Piece(Subject.PERSON_REACH, scene.pair) for scene in setting.scenes if person_reaches]
-    people += [
-        Piece(Subject.PERSON, scene.pair, task)
-        for scene in setting.scenes
-        for task in tasks
-        if setting.symmetric and _push_alone(scene, setting.space) and isinstance(task, Hold)
-    ]
-    if not portfolios:
-        return [meetings, people]
-    middle = setting.middle.pair
-    around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
-    longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
-    starts = [Piece(Subject.POSTURE, middle, task) for task in longest]
-    extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
-    found = [meetings, [*_programs(setting), *extremes, *starts, *people]]
-    if setting.symmetric and setting.middle.disturbances:
-        found.append([_wider(middle, task, tasks) for task in longest])
-    return found
-
-
-def _programs(setting: PrecomputeSetting) -> list[Piece]:
-    """What is compiled beforehand, side by side, or one worker would wait for another; longest work last."""
-    joint = [each for each in setting.scenes if not (setting.symmetric and _push_alone(each, setting.space))]
-    disturbed = [scene for scene in joint if scene.disturbances]
-    return [
-        *([Piece(Subject.REACH_PROGRAM, setting.middle.pair)] if joint else []),
-        *(Piece(Subject.UNDISTURBED_PROGRAM, scene.pair) for scene in disturbed),
-        *(Piece(Subject.PROGRAM, scene.pair) for scene in joint),
-    ]
-
-
-def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Hold]) -> Piece:
-    return Piece(Subject.WIDER, pair, task, tuple(other for other in tasks if other != task))
-
-
-def _push_alone(scene: Scene, space: DesignSpace) -> bool:
-    """Whether the push is all that the load passes on, and no design weighs the person's effort anew."""
-    shared = scene.robot_share is not None or space.allocation_names
-    alone = scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0
-    return alone and not shared and not scene.disturbances
-
-
-def _all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
-    """Without disturbances: portfolios are made so, as postures are solved so first."""
-    scenes = tuple(scene.undisturbed for scene in setting.scenes)
-    return replace(setting, scenes=scenes, middle=setting.middle.undisturbed)
-
-
-def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
-    """The digest under which a piece is kept: of all that it may follow from, and of the code."""
-    apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
-    parted = apart and piece.subject is not Subject.MEETINGS
-    without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
-    if piece.subject in UNDISTURBED and not parted:
-        setting = _all_undisturbed(setting)
-    data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
-    return digest((data, code_digest(__name__)), without=without)
-
-
 def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
     """A piece, as it is kept.
 
@@ -297,7 +82,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
     if piece.subject in OF_STARTS:
-        setting = _all_undisturbed(setting)
+        setting = all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.PERSON and piece.task is not None:
         found = _person(setting, scene, piece.task)

@@ -1,0 +1,95 @@
+"""The keys under which pieces are kept: digests of all that they may follow from, and of the code."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from evodesign.identity import Exceptions, code_digest, digest
+from evodesign.mechanics.scene import Agent, Payload, Scene, scene_of
+from evodesign.nlp.solver import SolverOptions
+from evodesign.posture.precompute.plan import (
+    PROGRAMS,
+    UNDISTURBED,
+    Piece,
+    PrecomputeSetting,
+    Subject,
+    all_undisturbed,
+)
+
+__all__ = ["NO_PART_OF", "key_of"]
+
+CODE = "evodesign.posture.precompute.pieces"
+"""The module that works pieces out."""
+
+NO_PART_OF_PIECES: Exceptions = {
+    PrecomputeSetting: {
+        "scenes": "the one that a piece is worked out in counts",
+        "middle": "says which scene that is",
+        "symmetry": "polishing comes later: whether postures are symmetric counts",
+        "tasks": "a piece is about one of them, or none",
+    },
+    Piece: {"pair": "says which scene that is"},
+    Agent: {"label": "is a word for results"},
+    Payload: {"label": "is a word for results"},
+    SolverOptions: {
+        "compiled": "IPOPT gives the same bits with machine code, and the native method has no other"
+    },
+}
+
+NO_PART_OF_A_PERSONS: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        **NO_PART_OF_PIECES[PrecomputeSetting],
+        "space": "a person stands behind the load, whatever the robot's hardware",
+    },
+    Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
+}
+
+NO_PART_OF_WIDER: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "scenes"
+    },
+}
+
+NO_PART_OF_MEETINGS: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why
+        for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items()
+        if name not in ("tasks", "scenes")
+    },
+}
+
+NO_PART_OF_PARTED: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why
+        for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items()
+        if name in ("middle", "symmetry")
+    },
+}
+"""Where bodies are kept apart every piece follows from the meetings of all scenes at all tasks."""
+
+NO_PART_OF: Mapping[Subject, Exceptions] = {
+    Subject.MEETINGS: NO_PART_OF_MEETINGS,
+    Subject.PERSON: NO_PART_OF_A_PERSONS,
+    Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
+    Subject.HIGHEST: NO_PART_OF_PIECES,
+    Subject.LOWEST: NO_PART_OF_PIECES,
+    **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
+    Subject.POSTURE: NO_PART_OF_PIECES,
+    Subject.WIDER: NO_PART_OF_WIDER,
+}
+"""Fields on which a piece does not depend, by its subject, with the reason."""
+
+
+def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
+    """The digest under which a piece is kept: of all that it may follow from, and of the code."""
+    apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
+    parted = apart and piece.subject is not Subject.MEETINGS
+    without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
+    if piece.subject in UNDISTURBED and not parted:
+        setting = all_undisturbed(setting)
+    data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
+    return digest((data, code_digest(CODE)), without=without)

@@ -1,0 +1,159 @@
+"""What has to be worked out of a problem before any robot is evaluated, and in which order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from evodesign.design.space import DesignSpace
+from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.nlp.solver import SolverOptions
+from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.postures import Symmetry
+from evodesign.records import Hold, Task
+
+__all__ = [
+    "OF_STARTS",
+    "PROGRAMS",
+    "UNDISTURBED",
+    "Piece",
+    "PrecomputeSetting",
+    "Subject",
+    "all_undisturbed",
+    "stages",
+]
+
+
+class Subject(StrEnum):
+    """What a piece is about; the value is how it is told."""
+
+    MEETINGS = "bodies that come near each other"
+    PERSON = "the person's part"
+    PERSON_REACH = "the person's reach"
+    HIGHEST = "starts of the highest load"
+    LOWEST = "starts of the lowest load"
+    REACH_PROGRAM = "the program of reach"
+    UNDISTURBED_PROGRAM = "the program of undisturbed postures"
+    PROGRAM = "the program of postures"
+    POSTURE = "starts of postures"
+    WIDER = "starts of other heights"
+
+
+OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
+"""Of one person with one load; other pieces serve everyone."""
+
+PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
+"""Machine code, which is found again in the cache of functions."""
+
+OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
+"""Portfolios of starts."""
+
+UNDISTURBED = (*OF_STARTS, Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM)
+"""Follow from what is held undisturbed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of a preparation.
+
+    Args:
+        subject: what it is about.
+        pair: names of the person and the load that it is of, or is worked out with.
+        task: None if it belongs to none.
+        beside: other tasks that it follows from.
+    """
+
+    subject: Subject
+    pair: tuple[str, str]
+    task: Task | None = None
+    beside: tuple[Task, ...] = ()
+
+    def __str__(self) -> str:
+        name = str(self.subject) if self.task is None else f"{self.subject} at {self.task}"
+        who = self.pair if self.subject in OF_PEOPLE else ()
+        return ", ".join(part for part in (name, *who) if part)
+
+
+@dataclass(frozen=True, slots=True)
+class PrecomputeSetting:
+    """What the pieces of a problem follow from; as for `PostureProblem`.
+
+    Args:
+        scenes: every person with every load.
+        middle: the scene that portfolios are made in.
+    """
+
+    scenes: tuple[Scene, ...]
+    middle: Scene
+    space: DesignSpace
+    weights: EffortWeights
+    options: SolverOptions
+    symmetry: Symmetry
+    tasks: tuple[Hold, ...]
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether symmetric postures are looked for, at least at first."""
+        return self.symmetry is not Symmetry.OFF
+
+
+def stages(
+    setting: PrecomputeSetting, tasks: Sequence[Hold], *, portfolios: bool, person_reaches: bool
+) -> list[list[Piece]]:
+    """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
+
+    Args:
+        setting: of the problem.
+        tasks: of the problem.
+        portfolios: whether solves begin at portfolios of starts.
+        person_reaches: whether the people's own reach is asked for.
+    """
+    parting = [scene for scene in setting.scenes if scene.robot.collisions is not None]
+    meetings = [Piece(Subject.MEETINGS, scene.pair) for scene in parting]
+    people = [Piece(Subject.PERSON_REACH, scene.pair) for scene in setting.scenes if person_reaches]
+    people += [
+        Piece(Subject.PERSON, scene.pair, task)
+        for scene in setting.scenes
+        for task in tasks
+        if setting.symmetric and _push_alone(scene, setting.space) and isinstance(task, Hold)
+    ]
+    if not portfolios:
+        return [meetings, people]
+    middle = setting.middle.pair
+    around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
+    longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
+    starts = [Piece(Subject.POSTURE, middle, task) for task in longest]
+    extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
+    found = [meetings, [*_programs(setting), *extremes, *starts, *people]]
+    if setting.symmetric and setting.middle.disturbances:
+        found.append([_wider(middle, task, tasks) for task in longest])
+    return found
+
+
+def _programs(setting: PrecomputeSetting) -> list[Piece]:
+    """What is compiled beforehand, side by side, or one worker would wait for another; longest work last."""
+    joint = [each for each in setting.scenes if not (setting.symmetric and _push_alone(each, setting.space))]
+    disturbed = [scene for scene in joint if scene.disturbances]
+    return [
+        *([Piece(Subject.REACH_PROGRAM, setting.middle.pair)] if joint else []),
+        *(Piece(Subject.UNDISTURBED_PROGRAM, scene.pair) for scene in disturbed),
+        *(Piece(Subject.PROGRAM, scene.pair) for scene in joint),
+    ]
+
+
+def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Hold]) -> Piece:
+    return Piece(Subject.WIDER, pair, task, tuple(other for other in tasks if other != task))
+
+
+def _push_alone(scene: Scene, space: DesignSpace) -> bool:
+    """Whether the push is all that the load passes on, and no design weighs the person's effort anew."""
+    shared = scene.robot_share is not None or space.allocation_names
+    alone = scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0
+    return alone and not shared and not scene.disturbances
+
+
+def all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
+    """Without disturbances: portfolios are made so, as postures are solved so first."""
+    scenes = tuple(scene.undisturbed for scene in setting.scenes)
+    return replace(setting, scenes=scenes, middle=setting.middle.undisturbed)
