@@ -169,7 +169,7 @@ class Solver:
         Args:
             parameters: that it was found for.
             raw: the solution; one that failed stays as it is.
-            gain: of its cost, below which rows are not kept in better ways.
+            gain: of its cost, below which rows are not kept in better ways; if infinite, none are sought.
         """
         switches = self.program.switches
         if switches is None or raw.status is not Status.SOLVED:
@@ -194,7 +194,7 @@ class Solver:
         """Rows that hold a solution are kept in better ways, as long as it gains by them."""
         switches = self.program.switches
         for _ in range(ROUNDS):
-            if switches is None or found.status is not Status.SOLVED:
+            if switches is None or found.status is not Status.SOLVED or gain == np.inf:
                 break
             least, rows = max(gain, GAIN * abs(found.cost)), found.multipliers.constraints
             better = switches.better(found.values, parameters, rows, least)
