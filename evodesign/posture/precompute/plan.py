@@ -49,7 +49,7 @@ PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
 OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
 """Portfolios of starts."""
 
-UNDISTURBED = (*OF_STARTS, Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM)
+UNDISTURBED = (*OF_STARTS, Subject.UNDISTURBED_PROGRAM)
 """Follow from what is held undisturbed."""
 
 
