@@ -91,6 +91,7 @@ class Judge:
     def judged(self, number: int, design: Design, joint: bool) -> tuple[Ends, list[Row]]:
         """The reach of a design, and a row for each height that it can reach."""
         result = self._evaluator.solve(design)
+        design = tuple(result.program_values)  # with the actuators that were sized
         rng = np.random.default_rng(number)
         ends = self._ends(result.reach, design, rng)
         found = []
