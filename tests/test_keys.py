@@ -26,7 +26,7 @@ from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import NO_PART_OF, key_of
-from evodesign.posture.precompute.plan import OF_STARTS, Piece, PrecomputeSetting, Subject
+from evodesign.posture.precompute.plan import UNDISTURBED, Piece, PrecomputeSetting, Subject
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile
@@ -192,7 +192,7 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
 def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, subject: Subject) -> None:
     setting, without = setting_of(problem), NO_PART_OF[subject]
     scene = setting.middle
-    if subject in OF_STARTS:  # worked out where nothing disturbs
+    if subject in UNDISTURBED:  # worked out where nothing disturbs
         without = {**without, Scene: {"disturbances": "none"}}
     one = replace(setting, scenes=(scene,))
 

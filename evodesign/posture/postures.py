@@ -123,12 +123,7 @@ class PostureProblem:
             trials.append(trial)
             if trial.best is not None:
                 break
-        best = trials[-1].best
-        if self._symmetry is Symmetry.POLISH and best is not None:
-            setting = self._solved_by(self._methods(WHOLE)[0], WHOLE)
-            whole = _whole(WHOLE, setting, self._known, self._solvers, type(task))
-            trials.append(whole.polish(design, task, best.instants, checker))
-        return case_solution(self._setting.scene.case(task), trials)
+        return self._finished(design, task, checker, trials)
 
     def begun(
         self,
@@ -136,10 +131,28 @@ class PostureProblem:
         task: Task,
         checker: Checker,
         neighbour: Neighbour | None = None,
+        *,
+        polished: bool = True,
     ) -> CaseSolution:
-        """What the formulation that is tried first leads to; arguments as in `solve`."""
-        trial = next(self._trials(design, task, checker, neighbour))
-        return case_solution(self._setting.scene.case(task), [trial])
+        """What the formulation that is tried first leads to; arguments as in `solve`.
+
+        Where the problem asks for it, it is polished, unless another design's posture is to follow from it.
+        """
+        trials = [next(self._trials(design, task, checker, neighbour))]
+        if not polished:
+            return case_solution(self._setting.scene.case(task), trials)
+        return self._finished(design, task, checker, trials)
+
+    def _finished(
+        self, design: Sequence[float], task: Task, checker: Checker, trials: Sequence[Trial]
+    ) -> CaseSolution:
+        """The best posture of some trials, polished where the problem asks for it."""
+        best, found = trials[-1].best, [*trials]
+        if self._symmetry is Symmetry.POLISH and best is not None:
+            setting = self._solved_by(self._methods(WHOLE)[0], WHOLE)
+            whole = _whole(WHOLE, setting, self._known, self._solvers, type(task))
+            found.append(whole.polish(design, task, best.instants, checker))
+        return case_solution(self._setting.scene.case(task), found)
 
     def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
         """The robot's postures of another design near those of a solution, not checked; None if not found.

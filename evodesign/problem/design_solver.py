@@ -248,7 +248,8 @@ class _OneDesign:
         if beyond is not None:
             return beyond
         checker = self._checker(values, case, check)
-        return self._solver.inner.postures[case.pair].begun(values, case.task, checker, neighbour)
+        postures, polished = self._solver.inner.postures[case.pair], reach is not None
+        return postures.begun(values, case.task, checker, neighbour, polished=polished)
 
     def _searched(
         self,

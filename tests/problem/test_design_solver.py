@@ -33,7 +33,9 @@ def test_after_a_case_without_posture_no_refuge_is_sought_in_others(
     asked: list[tuple[str, float]] = []
 
     def answer(way: str) -> object:
-        def solve(self: PostureProblem, design: object, task: Hold, *others: object) -> CaseSolution:
+        def solve(
+            self: PostureProblem, design: object, task: Hold, *others: object, polished: bool = True
+        ) -> CaseSolution:
             asked.append((way, task.height_m))
             return failed(task)
 
@@ -53,7 +55,9 @@ def test_a_hold_that_is_not_found_begins_at_the_nearest_others_and_at_the_end_of
     three = replace(problem, tasks=tuple(Hold(height_m=height) for height in (0.8, 1.0, 1.2)))
     begin, given = PostureProblem.begun, []
 
-    def begun(self: PostureProblem, design: object, task: Hold, *others: object) -> CaseSolution:
+    def begun(
+        self: PostureProblem, design: object, task: Hold, *others: object, polished: bool
+    ) -> CaseSolution:
         return failed(task) if task.height_m == 0.8 else begin(self, design, task, *others)
 
     def solve(
