@@ -18,26 +18,30 @@ import msgspec
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.precompute.keys import key_of
-from evodesign.posture.precompute.plan import PROGRAMS, stages
+from evodesign.posture.precompute.plan import PROGRAMS, Piece
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.precompute import precompute_setting
+from evodesign.problem.precompute import precompute_setting, precomputed, staged_pieces
 from evodesign.problem.prepared import DATA, Prepared, prepared_digest
+from evodesign.problem.progress import SILENT
 from evodesign.problem.source import read_source
 
 DEFAULT = [Path(__file__).parent / "icub_lifting.toml"]
 
 
-def prepared(problem: DesignProblem) -> Prepared:
-    """What the user's cache holds of a problem that was made ready."""
+def prepared(problem: DesignProblem, jobs: int) -> Prepared:
+    """What is worked out of a problem, or was before, by so many jobs."""
     cache, setting = user_cache("precomputed", os.environ), precompute_setting(problem)
-    asked = {"portfolios": problem.start_portfolio, "person_reaches": problem.person_reaches}
-    pieces = [piece for stage in stages(setting, problem.holds, **asked) for piece in stage]
-    contents = {each: cache.read(key_of(setting, each)) for each in pieces if each.subject not in PROGRAMS}
-    return Prepared(
-        made_for=prepared_digest(problem.source),
-        pieces=tuple((piece, msgspec.Raw(content)) for piece, content in contents.items() if content),
-    )
+    with JoblibPool(jobs) as pool:
+        precomputed(problem, cache, pool, SILENT, given={})
+
+    def content(piece: Piece) -> msgspec.Raw:
+        found = cache.read(key_of(setting, piece))
+        if found is None:
+            raise RuntimeError(f"{piece}: worked out, and not in the cache")
+        return msgspec.Raw(found)
+
+    pieces = [piece for stage in staged_pieces(problem) for piece in stage if piece.subject not in PROGRAMS]
+    return Prepared(prepared_digest(problem.source), tuple((piece, content(piece)) for piece in pieces))
 
 
 def main() -> None:
@@ -48,12 +52,8 @@ def main() -> None:
     options = parser.parse_args()
     DATA.mkdir(exist_ok=True)
     for path in options.problems:
-        target = DATA / f"{path.stem}.json"
-        target.unlink(missing_ok=True)
-        problem = build_problem(read_source(path))
-        with JoblibPool(options.jobs) as pool:
-            cached_precomputed(problem, pool)
-        target.write_bytes(msgspec.json.encode(prepared(problem)) + b"\n")
+        content = msgspec.json.encode(prepared(build_problem(read_source(path)), options.jobs))
+        (DATA / f"{path.stem}.json").write_bytes(content + b"\n")
 
 
 if __name__ == "__main__":

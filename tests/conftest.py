@@ -15,11 +15,11 @@ from hypothesis import HealthCheck, settings
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.precompute.keys import key_of
-from evodesign.posture.precompute.plan import OF_STARTS, stages
+from evodesign.posture.precompute.plan import OF_STARTS
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.precompute import precompute_setting, precomputed
+from evodesign.problem.precompute import precompute_setting, precomputed, staged_pieces
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
 from tests.machine import NEEDS, leave_out, left_out
@@ -113,10 +113,8 @@ def known(problem: DesignProblem) -> Precomputed:
 
 def keys_of_starts(problem: DesignProblem) -> list[str]:
     """What a problem's portfolios are kept under."""
-    setting = precompute_setting(problem)
-    asked = {"portfolios": problem.start_portfolio, "person_reaches": problem.person_reaches}
-    pieces = [piece for stage in stages(setting, problem.holds, **asked) for piece in stage]
-    return [key_of(setting, piece) for piece in pieces if piece.subject in OF_STARTS]
+    pieces = (piece for stage in staged_pieces(problem) for piece in stage if piece.subject in OF_STARTS)
+    return [key_of(precompute_setting(problem), piece) for piece in pieces]
 
 
 @pytest.fixture(scope="session")

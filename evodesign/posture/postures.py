@@ -132,11 +132,12 @@ class PostureProblem:
         checker: Checker,
         neighbour: Neighbour | None = None,
         *,
-        polished: bool = True,
+        polished: bool,
     ) -> CaseSolution:
         """What the formulation that is tried first leads to; arguments as in `solve`.
 
-        Where the problem asks for it, it is polished, unless another design's posture is to follow from it.
+        Where the problem asks for polish, `polished` says whether this posture needs it: one that another
+        round of sizing goes on from does not.
         """
         trials = [next(self._trials(design, task, checker, neighbour))]
         if not polished:
@@ -192,7 +193,7 @@ class PostureProblem:
         others: Sequence[Neighbour] = (),
         starts: Sequence[Start] = (),
     ) -> Iterator[Trial]:
-        """What each formulation leads to, in turn.
+        """What each formulation leads to, in turn: from its portfolio, and then from what else is known.
 
         Where all starts ended at postures that violate the constraints no more than any near them, no other
         method is asked: IPOPT solves no such height either (docs/benchmarks.md). Nor where bodies overlap

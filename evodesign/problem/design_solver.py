@@ -171,10 +171,10 @@ class _OneDesign:
                     near = Neighbour(earlier, same_load=True, unchecked=True)
                 found[case] = self._begun(values, case, reach, check, near)
         lost = False
-        for case, begun in found.items():
-            if begun.attempts and not begun.solved and case not in lifts:
-                found[case] = self._searched(values, begun, reach, check, [*found.values()], lost=lost)
-                lost = lost or not found[case].solved
+        for begun in [*found.values()]:
+            if begun.attempts and not begun.solved and all(begun is not earlier for earlier in before):
+                now = self._searched(values, begun, reach, check, [*found.values()], lost=lost)
+                found[begun.case], lost = now, lost or not now.solved
         for case, lift in lifts.items():
             if case not in found:
                 found[case] = self._lifted(values, case, lift, reach, check, [*found.values()])
@@ -277,15 +277,14 @@ class _OneDesign:
             self._checker(values, case, check),
             self._neighbour(found, case),
             self._elsewhere(found, case),
-            self._ends(values, case, reach),
+            self._at_end_of_reach(values, case, reach),
         )
 
-    def _ends(self, values: Sequence[float], case: Case, reach: Reach) -> list[Start]:
-        """How the robot holds the load at the end of its reach that is nearer."""
+    def _at_end_of_reach(self, values: Sequence[float], case: Case, reach: Reach) -> tuple[Start, ...]:
+        """How the robot holds the load at the nearer end of its reach; nothing if that is not known."""
         low, high = (abs(case.task.heights[0] - (end or 0.0)) for end in (reach.lowest, reach.highest))
-        sense = HIGHEST if high < low else LOWEST
-        _, raw = self._solver.inner.reaches[case.payload].extreme(values, sense)
-        return [raw.values] if raw.status is Status.SOLVED else []
+        reached = self._solver.inner.reaches[case.payload]
+        return reached.extreme_posture(values, HIGHEST if high < low else LOWEST)
 
     def _elsewhere(self, found: Sequence[CaseSolution], case: Case) -> list[Neighbour]:
         """Solutions of other tasks, those at the nearest heights first."""

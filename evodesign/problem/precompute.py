@@ -18,7 +18,7 @@ from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
 from evodesign.records import ProblemSource
 
-__all__ = ["COMPILING", "precompute_setting", "precomputed"]
+__all__ = ["COMPILING", "precompute_setting", "precomputed", "staged_pieces"]
 
 WORK: Mapping[Subject, float] = {
     Subject.MEETINGS: 0.3,
@@ -51,29 +51,36 @@ def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
     )
 
 
+def staged_pieces(problem: DesignProblem) -> list[list[Piece]]:
+    """The pieces that a problem is made ready by, stage after stage."""
+    portfolios, people = problem.start_portfolio, problem.person_reaches
+    return stages(precompute_setting(problem), problem.holds, portfolios=portfolios, person_reaches=people)
+
+
 def precomputed(
     problem: DesignProblem,
     cache: Cache | None,
     pool: Pool,
     watcher: PrecomputeProgress,
     after: Sequence[PendingPiece] = (),
+    given: Mapping[Piece, bytes] | None = None,
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
 
     Args:
         problem: to be made ready.
-        cache: of pieces worked out before; None to work out everything that does not come with evodesign.
+        cache: of pieces worked out before; None to work out everything that is not given.
         pool: where pieces are worked out.
         watcher: is shown what is worked out.
         after: what the caller will work out next, to be told along with the pieces.
+        given: contents of pieces that need not be worked out; None for those that come with evodesign.
     Raises:
         RunError: a piece could not be worked out; it says which and why.
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = precompute_setting(problem), Precomputed()
-    tasks, portfolios, people = problem.holds, problem.start_portfolio, problem.person_reaches
-    given = prepared_pieces(problem.source)
-    staged = [*stages(setting, tasks, portfolios=portfolios, person_reaches=people)]
+    given = prepared_pieces(problem.source) if given is None else given
+    staged = staged_pieces(problem)
     pieces = {
         piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
         for stage, pieces in enumerate(staged)
@@ -81,7 +88,9 @@ def precomputed(
     }
 
     def content_of(piece: Piece) -> bytes | None:
-        return given.get(piece) or (cache.read(key_of(setting, piece)) if cache else None)
+        if piece in given:
+            return given[piece]
+        return cache.read(key_of(setting, piece)) if cache else None
 
     absent = [piece for piece in pieces if content_of(piece) is None]
     if absent or after:

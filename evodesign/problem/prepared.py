@@ -1,9 +1,8 @@
 """Pieces of problems that come with evodesign: a first search need not wait for them.
 
 Starts, pairs of bodies and the reach of people follow from the problem alone. Those of the default problem
-were worked out once, with more designs than a search could wait for, and lie in `data/`. They are given to a
-problem of the same tables and files, but for what is named here; any other one is made ready as usual.
-`make prepared` writes them anew.
+lie in `data/`, as any machine works them out. They are given to a problem of the same tables and files, but
+for what is named here; any other one is made ready as usual. `make prepared` writes them anew.
 """
 
 from __future__ import annotations

@@ -247,6 +247,19 @@ def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignPro
         assert np.allclose(exact[:, column], difference, atol=1e-6)
 
 
+def test_the_posture_at_the_end_of_reach_fits_programs_that_part_other_bodies(
+    apart: DesignProblem, met: dict
+) -> None:
+    known = replace(Evaluator(apart).known, meetings={**met, ("robot", ""): met["robot", ""][:-1]})
+    evaluator = Evaluator(apart, known)
+    values = apart.space.unscaled(apart.scene.robot.tree)
+    reach, postures = evaluator.inner.reaches[""], evaluator.inner.postures[apart.scene.pair]
+    (start,) = reach.extreme_posture(values, LOWEST)
+    assert reach.extreme(values, LOWEST)[1].values.keys() - start.keys() > {HEIGHT}, "how bodies are parted"
+    solved = postures.landscape(apart.tasks[0]).solve(tuple(values), start)
+    assert solved.values.keys() >= start.keys()
+
+
 def test_no_bodies_of_a_solved_posture_overlap(
     problem: DesignProblem, apart: DesignProblem, met: dict
 ) -> None:

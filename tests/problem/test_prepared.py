@@ -12,10 +12,10 @@ import pytest
 from evodesign.pool.base import Pool
 from evodesign.pool.worker import Finished
 from evodesign.posture.precompute.pieces import compute_piece
-from evodesign.posture.precompute.plan import PROGRAMS, Piece, Subject, stages
+from evodesign.posture.precompute.plan import PROGRAMS, Piece, Subject
 from evodesign.posture.precompute.precomputed import PersonReach, Precomputed
 from evodesign.problem.build import build_problem
-from evodesign.problem.precompute import precompute_setting, precomputed
+from evodesign.problem.precompute import precompute_setting, precomputed, staged_pieces
 from evodesign.problem.prepared import DATA, prepared_digest, prepared_pieces
 from evodesign.problem.progress import SILENT
 from evodesign.problem.source import read_source
@@ -59,15 +59,8 @@ def test_only_machine_code_is_made_of_the_default_problem(source: ProblemSource)
 
 
 def test_what_comes_along_is_what_is_asked_for(source: ProblemSource) -> None:
-    problem = build_problem(source)
-    asked = {"portfolios": problem.start_portfolio, "person_reaches": problem.person_reaches}
-    pieces = {
-        piece
-        for stage in stages(precompute_setting(problem), problem.holds, **asked)
-        for piece in stage
-        if piece.subject not in PROGRAMS
-    }
-    assert set(prepared_pieces(source)) == pieces
+    pieces = {piece for stage in staged_pieces(build_problem(source)) for piece in stage}
+    assert set(prepared_pieces(source)) == {piece for piece in pieces if piece.subject not in PROGRAMS}
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import Scene
+from evodesign.mechanics.scene import ROBOT, Scene
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
@@ -37,7 +37,7 @@ from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
-from evodesign.posture.warm_start import filled
+from evodesign.posture.warm_start import filled, layout_of
 from evodesign.records import Status, worst_status
 from evodesign.tree.model import Tree
 
@@ -211,6 +211,15 @@ class ReachProblem:
             return None, solves[0]
         best = min(solved, key=lambda raw: sense * _height(raw))
         return _height(best), best
+
+    def extreme_posture(self, design: Sequence[float], sense: float) -> tuple[Start, ...]:
+        """The robot's posture at the extreme height, for other programs to begin at; none if it is not known.
+
+        How bodies are parted is no part of it: other rows part them elsewhere.
+        """
+        height, raw = self.extreme(design, sense)
+        own = layout_of(self.program, ROBOT).values()
+        return () if height is None else ({name: raw.values[name] for name in own},)
 
     def derivative(
         self, design: Sequence[float], sense: float, *, exact: bool = True
