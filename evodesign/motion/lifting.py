@@ -1,13 +1,14 @@
 """Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
-Solves begin at the hold at either end, followed along the lift with the feet in place, so that a result
-depends on problem and design alone; the cheaper one counts. Holds of several heights joined together do not
-do for a start: their elbows bend in different ways.
+Solves begin at the robot's hold at either end, followed along the lift with the feet in place, beside persons
+whose motions were found once for the problem (`motion.starts`); so a result depends on problem and design
+alone. The cheapest one counts. Holds of several heights joined together do not do for a start: their elbows
+bend in different ways.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,6 +16,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.mechanics.scene import ROBOT
 from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
@@ -23,19 +25,23 @@ from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Start
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.results import Attempt, CaseSolution
+from evodesign.posture.results import AgentPosture, Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Lift, Status, worst_status
 
-__all__ = ["LiftProblem"]
+__all__ = ["MOVED", "LiftProblem", "lift_program", "lift_starts", "moved_posture"]
 
 Array = NDArray[np.float64]
 
 REFINEMENTS = 2
 """How often the knots are doubled until the check accepts a motion between them."""
+
+MOVED = "robot.moved"
+"""How a start moves the robot's hold: at the beginning (0) or the end (1), base [m], joints [rad]."""
 
 OPEN = 1e-3
 """By how much [m] hands and feet of a start may be out of place."""
@@ -73,9 +79,7 @@ class LiftProblem:
 
     @cached_property
     def _blocks(self) -> KnotBlocks:
-        scene = self._scene
-        halves = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
-        return KnotBlocks(halves, self._setting)
+        return _blocks(self._setting, symmetric=self._symmetric)
 
     def solve(
         self,
@@ -85,6 +89,7 @@ class LiftProblem:
         robot: AgentModel,
         human: AgentModel,
         *,
+        known: Sequence[Start] = (),
         slowly: bool = True,
     ) -> LiftSolution:
         """The best checked motion of a design; where the check finds it too coarse, with more knots.
@@ -95,6 +100,7 @@ class LiftProblem:
             holds: the design's posture at the beginning and at the end.
             robot: the design's, for the check.
             human: the person's.
+            known: starts of the lift; none: its holds.
             slowly: whether the same lift is found infinitely slowly, too.
         """
         ends = dict(zip(("beginning", "end"), holds, strict=True))
@@ -104,15 +110,9 @@ class LiftProblem:
                 return LiftSolution(lift, posture.status, f"{where}: {posture.reason}")
         checker = LiftChecker(self._scene, robot, human, Checker(self._scene, robot, human))
         program, mass = self._program(lift.knots), self._scene.payload.mass
-        begins = {"beginning": 0, "end": lift.knots - 1}
-        starts = {
-            name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
-        }
+        starts = lift_starts(program, lift, [end.postures for end in holds], design, known or ({},))
         solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
-        attempts = tuple(
-            _attempt(f"hold at the {name}", ending, seconds, program.method)
-            for name, ending, seconds in solves
-        )
+        attempts = tuple(_attempt(name, ending, seconds, program.method) for name, ending, seconds in solves)
         solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
         if not solved:
             return self._none(design, lift, list(starts.values()), attempts)
@@ -200,12 +200,74 @@ class LiftProblem:
 
     def _program(self, knots: int) -> LiftProgram:
         if knots not in self._programs:
-            self._programs[knots] = LiftProgram(self._blocks, knots, self._options)
+            self._programs[knots] = LiftProgram(self._blocks, knots, _options(self._setting))
         return self._programs[knots]
 
-    @property
-    def _options(self) -> SolverOptions:
-        return replace(self._setting.options, tolerance=TOLERANCE_OF_LIFTS)
+
+def lift_starts(
+    program: LiftProgram,
+    lift: Lift,
+    ends: Sequence[Mapping[str, AgentPosture]],
+    design: Sequence[float],
+    known: Sequence[Start],
+) -> dict[str, LiftStart]:
+    """Where solves of a design's lift begin, by a name.
+
+    A start has a motion of the person, or it is that of the hold. The robot follows the lift from its hold at
+    either end; where the start moves it (`MOVED`), from that one, moved.
+
+    Args:
+        program: of the lift's knots.
+        lift: it.
+        ends: postures at the beginning and at the end, by agent name.
+        design: one number per parameter.
+        known: starts that serve any design.
+    """
+    knots, names = (0, lift.knots - 1), ("hold at the beginning", "hold at the end")
+    followed = [program.followed(lift, each, knot, design) for each, knot in zip(ends, knots, strict=True)]
+    starts: dict[str, LiftStart] = {}
+    for number, start in enumerate(known, 1):
+        which = f", start {number}" if start else ""
+        if MOVED in start:
+            last, *change = start[MOVED]
+            postures = {**ends[int(last)], ROBOT: moved_posture(ends[int(last)][ROBOT], np.array(change))}
+            begun = program.followed(lift, postures, knots[int(last)], design)
+            starts[f"{names[int(last)]}, moved{which}"] = program.beside(begun, start)
+        else:
+            for name, begun in zip(names, followed, strict=True):
+                starts[name + which] = program.beside(begun, start)
+    return starts
+
+
+def moved_posture(posture: AgentPosture, change: Array) -> AgentPosture:
+    """A posture whose base [m] and joints [rad] are moved, in this order."""
+    joints = zip(posture.joints.items(), change[3:].tolist(), strict=True)
+    return replace(
+        posture,
+        base_position=posture.base_position + change[:3],
+        joints={name: angle + more for (name, angle), more in joints},
+    )
+
+
+def lift_program(setting: Setting, knots: int, *, symmetric: bool) -> LiftProgram:
+    """Lifts of so many knots, of a setting's undisturbed scene.
+
+    Args:
+        setting: of the scene.
+        knots: their number.
+        symmetric: whether halves of robot and person are looked for.
+    """
+    return LiftProgram(_blocks(setting, symmetric=symmetric), knots, _options(setting))
+
+
+def _blocks(setting: Setting, *, symmetric: bool) -> KnotBlocks:
+    scene = setting.scene.undisturbed
+    halves = symmetric_forms(scene) if symmetric else (whole(scene.robot), whole(scene.human))
+    return KnotBlocks(halves, setting)
+
+
+def _options(setting: Setting) -> SolverOptions:
+    return replace(setting.options, tolerance=TOLERANCE_OF_LIFTS)
 
 
 TOLERANCE_OF_LIFTS = 1e-7
