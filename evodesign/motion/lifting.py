@@ -37,7 +37,7 @@ __all__ = ["MOVED", "LiftProblem", "lift_program", "lift_starts", "moved_posture
 
 Array = NDArray[np.float64]
 
-REFINEMENTS = 2
+REFINEMENTS = 3
 """How often the knots are doubled until the check accepts a motion between them."""
 
 MOVED = "robot.moved"
