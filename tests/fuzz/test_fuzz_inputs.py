@@ -11,7 +11,8 @@ import pytest
 
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
-from tests.cli.test_bad_input import assert_explained, evodesign
+from tests.cli.here import evodesign
+from tests.cli.test_bad_input import assert_explained
 from tests.fuzz.input_cases import (
     BODY,
     MESHES,

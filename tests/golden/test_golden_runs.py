@@ -15,7 +15,7 @@ from evodesign.records import FORMAT_VERSION
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.rewrite import merge, recover
 from evodesign.runlog.run import RunLog, digest, read_run
-from tests.cli.test_bad_input import evodesign
+from tests.cli.here import evodesign
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 pytestmark = pytest.mark.slow
@@ -85,7 +85,7 @@ def lifting(version: int, tmp_path: Path) -> Path:
 
 
 def output(*arguments: object) -> str:
-    done = evodesign(*map(str, arguments))
+    done = evodesign(*arguments)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
