@@ -117,6 +117,14 @@ def test_data_have_one_digest_exactly_if_they_are_alike(one: Any, other: Any) ->
     assert (digest(one) == digest(other)) is (alike(one) == alike(other))
 
 
+def test_a_record_in_several_places_counts_in_each() -> None:
+    one = Outer(Inner(1.0), "a")
+    assert digest((one, one, one.inner)) == digest((Outer(Inner(1.0), "a"), replace(one), Inner(1.0)))
+    assert digest((one, one)) != digest((one, replace(one, name="b")))
+    without = {Outer: {"name": "for this test"}}
+    assert digest((one, one), without=without) == digest((one, replace(one, name="b")), without=without)
+
+
 def test_values_that_are_equal_or_look_so_differ_by_type() -> None:
     values = [1, 1.0, True, "1", b"1", (1,), [1], {1: 1}, {1}, {1: None}, np.float64(1.0), np.array([1.0])]
     values += [0.0, -0.0, "red", Colour.RED, Shade.RED, Inner(), Other(), Row(), None, "", (), msgspec.UNSET]
