@@ -86,9 +86,10 @@ def test_a_log_cut_at_any_byte_gives_everything_before_the_cut(step: int, tmp_pa
     whole = (tmp_path / "run/000.mcap").read_bytes()
     evaluations = toy_evaluations(HEADER, 6)
     cut_file = tmp_path / "cut.mcap"
+    cut_file.write_bytes(whole)
     counts = []
-    for length in range(0, len(whole), step):
-        cut_file.write_bytes(whole[:length])
+    for length in reversed(range(0, len(whole), step)):
+        os.truncate(cut_file, length)
         segment = read_segment(cut_file)
         count = len(segment.evaluations)
         durable = max((known for size, known in committed.items() if size <= length), default=0)
@@ -98,7 +99,7 @@ def test_a_log_cut_at_any_byte_gives_everything_before_the_cut(step: int, tmp_pa
         assert "its session was killed" in segment.note
         assert segment.headers == (HEADER,) or (segment.headers == () and length < min(committed))
         counts.append(count)
-    assert counts == sorted(counts)
+    assert counts == sorted(counts, reverse=True)
     assert set(counts) == set(range(7)), "each evaluation is safe by itself"
 
 
