@@ -251,9 +251,7 @@ def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
     page.call("Emulation.setTouchEmulationEnabled", enabled=False)
     page.wait_for(f"{SELECTED} !== {before}")
     page.wait_for("Math.abs(document.getElementById('card').getBoundingClientRect().top) < 2")
-    page.wait_for(
-        "stoodStillAt === scrollY"
-    )  # a frame of its way there would come on top of what is set next
+    page.wait_for("stoodStillAt === scrollY")  # else a frame of its way is added to what is set next
     page.resize(1440, 900)
     page.value("scrollTo(0, 0)")
     page.value("document.querySelector('.chip').click()")
