@@ -25,6 +25,7 @@ from hypothesis import strategies as st
 from evodesign import identity
 from evodesign.identity import code_digest, digest, import_closure
 from evodesign.problem.build import DesignProblem
+from tests.rewriting import write_anew
 
 EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
 PIECES = "evodesign.posture.precompute.pieces"
@@ -190,13 +191,13 @@ def test_any_changed_line_below_is_another_code_and_none_beside(tmp_path: Path) 
     assert {"posture/precompute/pieces.py", "human/data/strength.toml", "__init__.py"} <= closure.files.keys()
     for name, path in closure.files.items():
         content = path.read_bytes()
-        path.write_bytes(content + b"\n")
+        write_anew(path, content + b"\n")
         assert closure.digest() != before, name
-        path.write_bytes(content)
+        write_anew(path, content)
     beside = {path.relative_to(package).as_posix() for path in package.rglob("*.*")} - closure.files.keys()
     assert {"cli/main.py", "report/page/content.py", "searches/nsga2.py", "evolve.py"} <= beside
     for name in beside:
-        (package / name).write_bytes(b"\n")
+        write_anew(package / name, b"\n")
     assert import_closure(package, *EVALUATING).digest() == before
 
 

@@ -18,6 +18,7 @@ from evodesign.records import FORMAT_VERSION, Assessment, Evaluation, Status
 from evodesign.runlog.channels import RECORDS
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.writer import RunWriter
+from tests.rewriting import write_anew
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_front, toy_generation, toy_header
 
 HEADER = toy_header()
@@ -110,7 +111,7 @@ def test_a_flipped_bit_never_raises_nor_forges_an_evaluation(tmp_path: Path, pla
         write_small_log(tmp_path / "run")
     content = bytearray((tmp_path / "run/000.mcap").read_bytes())
     content[int(place * len(content))] ^= 1 << bit
-    (tmp_path / "flipped.mcap").write_bytes(content)
+    write_anew(tmp_path / "flipped.mcap", content)
     segment = read_segment(tmp_path / "flipped.mcap")
     written = {evaluation.number: evaluation for evaluation in toy_evaluations(HEADER, 6)}
     assert all(written[evaluation.number] == evaluation for evaluation in segment.evaluations)
