@@ -25,10 +25,11 @@ from joblib import Parallel, delayed
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
 from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, Reach, ReachProblem
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 
@@ -91,9 +92,15 @@ class Judge:
     def judged(self, number: int, design: Design, joint: bool) -> tuple[Ends, list[Row]]:
         """The reach of a design, and a row for each height that it can reach."""
         result = self._evaluator.solve(design)
+        return self._ends(number, result), self._rows(number, result, joint)
+
+    def held(self, number: int, design: Design) -> list[Row]:
+        """The rows alone."""
+        return self._rows(number, self._evaluator.solve(design), joint=False)
+
+    def _rows(self, number: int, result: DesignResult, joint: bool) -> list[Row]:
         design = tuple(result.program_values)  # with the actuators that were sized
-        rng = np.random.default_rng(number)
-        ends = self._ends(result.reach, design, rng)
+        rng = np.random.default_rng((number, 1))
         found = []
         for solution in result.cases:
             if result.reach.distance(solution.case.task.height_m) != 0.0:
@@ -112,16 +119,23 @@ class Judge:
                 both,
             )
             found.append(row)
-        return ends, found
+        return found
 
-    def _ends(self, reach: Reach, design: Design, rng: np.random.Generator) -> Ends:
+    def _ends(self, number: int, result: DesignResult) -> Ends:
+        design, rng = tuple(result.program_values), np.random.default_rng(number)
         up, down = (self._best(self._reach.landscape(sense), design, rng) for sense in (HIGHEST, LOWEST))
-        low, high = reach.lowest, reach.highest
+        low, high = result.reach.lowest, result.reach.highest
         return Ends(np.inf if low is None else low, -np.inf if high is None else high, down, -up)
 
     def _best(self, landscape: Landscape, design: Design, rng: np.random.Generator) -> float:
         ends = [landscape.solve(design, landscape.random_start(rng)) for _ in range(self._starts)]
         return min((end.cost for end in ends if end.status is Status.SOLVED), default=np.inf)
+
+
+def judge_of(problem: str, starts: int) -> Judge:
+    """That of a problem, made ready."""
+    built = problem_named(problem)
+    return Judge(built, known_at(built, 1), starts)
 
 
 def judge(
@@ -136,8 +150,7 @@ def judge(
         starts: random ones of each program.
         problem: name of a variant of the point-grasp problem, or a problem file.
     """
-    built = problem_named(problem)
-    here = Judge(built, known_at(built, 1), starts)
+    here = judge_of(problem, starts)
     return [here.judged(number, design, number < joint) for number, design in enumerate(designs, first)]
 
 

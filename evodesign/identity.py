@@ -67,36 +67,46 @@ def digest(value: object, *, without: Exceptions = NO_EXCEPTIONS) -> str:
     for kind, names in without.items():
         for name in set(names) - set(_field_names(kind) or ()):
             raise ValueError(f"{kind.__name__} has no field '{name}' that could be left out")
-    return hashlib.sha256(_code(value, without, type(value).__name__)).hexdigest()
+    return hashlib.sha256(_code(value, without, type(value).__name__, {})).hexdigest()
 
 
-def _code(value: Any, without: Exceptions, path: str) -> bytes:
+_Met = dict[int, tuple[object, bytes]]
+"""Records by identity, with their codes; held, so that no other takes an identity of theirs."""
+
+
+def _code(value: Any, without: Exceptions, path: str, met: _Met) -> bytes:
     kind: Any = type(value)
     if kind in SCALARS:
         return SCALARS[kind](value)
     if kind is tuple or kind is list:
-        parts = [_code(part, without, f"{path}[{i}]") for i, part in enumerate(value)]
+        parts = [_code(part, without, f"{path}[{i}]", met) for i, part in enumerate(value)]
         return _counted(b"t" if kind is tuple else b"l", parts)
     if isinstance(value, Enum):
-        return b"e" + _name(kind) + _code(value.value, without, path)
+        return b"e" + _name(kind) + _code(value.value, without, path, met)
     if isinstance(value, Mapping):
         pairs = [(key, f"{path}[{key!r}]") for key in value]
-        codes = [_code(key, without, place) + _code(value[key], without, place) for key, place in pairs]
+        codes = [
+            _code(key, without, place, met) + _code(value[key], without, place, met) for key, place in pairs
+        ]
         return _counted(b"m", sorted(codes))
     if isinstance(value, set | frozenset):
-        return _counted(b"S", sorted(_code(part, without, f"{path} element") for part in value))
+        return _counted(b"S", sorted(_code(part, without, f"{path} element", met) for part in value))
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind not in "OV":
-        return b"a" + _code((value.dtype.str, value.shape, value.tobytes()), without, path)
+        return b"a" + _code((value.dtype.str, value.shape, value.tobytes()), without, path, met)
     names = _field_names(kind)
     if names is None:
         raise TypeError(f"{path}: wanted frozen data, found the type {kind.__name__}")
+    if id(value) in met:
+        return met[id(value)][1]
     left_out = without.get(kind, ())
     fields = [
-        SCALARS[str](name) + _code(getattr(value, name), without, f"{path}.{name}")
+        SCALARS[str](name) + _code(getattr(value, name), without, f"{path}.{name}", met)
         for name in names
         if name not in left_out
     ]
-    return _counted(b"r" + _name(kind), fields)
+    code = _counted(b"r" + _name(kind), fields)
+    met[id(value)] = (value, code)
+    return code
 
 
 def _sized(letter: bytes, content: bytes) -> bytes:

@@ -25,6 +25,7 @@ from hypothesis import strategies as st
 from evodesign import identity
 from evodesign.identity import code_digest, digest, import_closure
 from evodesign.problem.build import DesignProblem
+from tests.rewriting import write_anew
 
 EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
 PIECES = "evodesign.posture.precompute.pieces"
@@ -117,6 +118,14 @@ def test_data_have_one_digest_exactly_if_they_are_alike(one: Any, other: Any) ->
     assert (digest(one) == digest(other)) is (alike(one) == alike(other))
 
 
+def test_a_record_in_several_places_counts_in_each() -> None:
+    one = Outer(Inner(1.0), "a")
+    assert digest((one, one, one.inner)) == digest((Outer(Inner(1.0), "a"), replace(one), Inner(1.0)))
+    assert digest((one, one)) != digest((one, replace(one, name="b")))
+    without = {Outer: {"name": "for this test"}}
+    assert digest((one, one), without=without) == digest((one, replace(one, name="b")), without=without)
+
+
 def test_values_that_are_equal_or_look_so_differ_by_type() -> None:
     values = [1, 1.0, True, "1", b"1", (1,), [1], {1: 1}, {1}, {1: None}, np.float64(1.0), np.array([1.0])]
     values += [0.0, -0.0, "red", Colour.RED, Shade.RED, Inner(), Other(), Row(), None, "", (), msgspec.UNSET]
@@ -182,13 +191,13 @@ def test_any_changed_line_below_is_another_code_and_none_beside(tmp_path: Path) 
     assert {"posture/precompute/pieces.py", "human/data/strength.toml", "__init__.py"} <= closure.files.keys()
     for name, path in closure.files.items():
         content = path.read_bytes()
-        path.write_bytes(content + b"\n")
+        write_anew(path, content + b"\n")
         assert closure.digest() != before, name
-        path.write_bytes(content)
+        write_anew(path, content)
     beside = {path.relative_to(package).as_posix() for path in package.rglob("*.*")} - closure.files.keys()
     assert {"cli/main.py", "report/page/content.py", "searches/nsga2.py", "evolve.py"} <= beside
     for name in beside:
-        (package / name).write_bytes(b"\n")
+        write_anew(package / name, b"\n")
     assert import_closure(package, *EVALUATING).digest() == before
 
 

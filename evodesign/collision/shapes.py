@@ -80,8 +80,9 @@ def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
     return ConvexSolid(geometry, rotation, position, position, radius, np.zeros(3), half)
 
 
+@functools.lru_cache(maxsize=256)
 def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
-    """The hull of a mesh at its place in its link."""
+    """The hull of a mesh at its place in its link: a design stretches a few, and all others are met again."""
     turn = np.array(mesh.stretch, float) @ np.array(mesh.link_from_mesh.rotation, float)
     points = hull_corners(surface) * np.array(mesh.scale, float) @ turn.T
     points = points + np.array(mesh.link_from_mesh.translation, float)

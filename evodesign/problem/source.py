@@ -6,6 +6,7 @@ Errors name file, key, what was wanted and what was found, so that a user can ac
 from __future__ import annotations
 
 import copy
+import functools
 import math
 import os
 import re
@@ -207,14 +208,20 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
     struct = _struct_in(kind)
     if struct is None:
         return
-    fields = {field.encode_name: field for field in msgspec.structs.fields(struct)}
+    fields = _fields(struct)
     for key, value in raw.items():
         path = f"{prefix}.{key}" if prefix else key
         if key not in fields:
             now = RENAMED.get(key)
             hint = f"; it is called '{now}' now" if now in fields else nearest_name(key, fields)
             raise InputError(source, path, f"one of the keys {', '.join(fields)}", f"'{key}'{hint}")
-        _refuse_unknown_keys(value, fields[key].type, source, path)
+        _refuse_unknown_keys(value, fields[key], source, path)
+
+
+@functools.cache
+def _fields(table: type[msgspec.Struct]) -> Mapping[str, Any]:
+    """The types of a table's values by their keys."""
+    return {field.encode_name: field.type for field in msgspec.structs.fields(table)}
 
 
 def _struct_in(kind: Any) -> type[msgspec.Struct] | None:

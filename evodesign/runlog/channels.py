@@ -13,6 +13,7 @@ validates against its schema, and nothing beside a record does.
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Mapping
 from typing import Any, Final
@@ -69,8 +70,14 @@ SCALARS = ("boolean", "integer", "number", "string")
 
 def described(header: RunHeader) -> dict[str, bytes]:
     """JSON Schema of each topic's messages, with the run's objectives and parameters as fields."""
-    names = _names(header)
-    return {topic: msgspec.json.encode(schema_of(record, names)) for topic, record in RECORDS.items()}
+    names = tuple(_names(header).items())
+    return {topic: _schema_text(record, names) for topic, record in RECORDS.items()}
+
+
+@functools.lru_cache(maxsize=64)
+def _schema_text(record: type[msgspec.Struct], names: tuple[tuple[str, tuple[str, ...]], ...]) -> bytes:
+    """The same for every segment of a run; to make it takes as long as to write a short one."""
+    return msgspec.json.encode(schema_of(record, dict(names)))
 
 
 def _names(header: RunHeader) -> Names:

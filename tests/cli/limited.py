@@ -1,8 +1,9 @@
-"""Every command on a run, in a process of limited memory and processor time: `python limited.py WORK...`.
+"""Every command on a run, in a process of limited memory and processor time: `python limited.py`.
 
-The run lies in WORK/run, a sound one in WORK/sound. The limits count from where all has been imported, which
-is done once: each run has a process of its own, forked from there. Exit code, output and errors of each
-command go to WORK/found.json; it is missing where the process was ended by its limits.
+It reads directories WORK, a line each, and answers each with a line when the commands have ended. The run
+lies in WORK/run, a sound one in WORK/sound. The limits count from where all has been imported, which is done
+once: each run has a process of its own, forked from there. Exit code, output and errors of each command go to
+WORK/found.json; it is missing where the process was ended by its limits.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ MEMORY = 300 * MEGABYTE
 SECONDS = 5.0
 """Processor time of a command; a process that takes longer is ended by the system."""
 
-IMPORTED = ("evodesign.api.sessions", "evodesign.report.page", "evodesign.report.opened_design", "plotly.io")
+IMPORTED = (
+    *("evodesign.api.sessions", "evodesign.report.page", "evodesign.report.opened_design", "plotly.io"),
+    *("evodesign.cli.main", "evodesign.searches.nsga2", "pydantic", "rich.progress", "typer.rich_utils"),
+)
 
 
 def commands(run: Path, work: Path) -> dict[str, list[str]]:
@@ -77,12 +81,15 @@ def main() -> None:
     """Call all, one run after the other."""
     for module in IMPORTED:
         importlib.import_module(module)
-    for work in map(Path, sys.argv[1:]):
+    for line in sys.stdin:
         child = os.fork()
         if child == 0:
-            run_all(work)
+            os.dup2(os.open(os.devnull, os.O_RDONLY), sys.stdin.fileno())
+            run_all(Path(line.rstrip("\n")))
             os._exit(0)
         os.waitpid(child, 0)
+        sys.stdout.write("\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -6,25 +6,11 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
 from pathlib import Path
 
 import pytest
 
-from evodesign.cli import main
-
-
-def evodesign(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    """What a command does, without a process of its own: to start one takes longer than to refuse."""
-    command = ["evodesign", *map(str, arguments)]
-    output, errors = StringIO(), StringIO()
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(errors):
-        patch.setattr(sys, "argv", command)
-        with pytest.raises(SystemExit) as left:
-            main()
-    code = left.value.code
-    return subprocess.CompletedProcess(command, int(code or 0), output.getvalue(), errors.getvalue())
+from tests.cli.here import evodesign
 
 
 def evodesign_alone(*arguments: str | Path) -> subprocess.CompletedProcess[str]:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,11 +17,11 @@ from evodesign.runlog.channels import DETAIL
 from evodesign.runlog.reader import entries
 from evodesign.runlog.run import read_run
 from evodesign.runlog.session_log import Silent
+from tests.cli.here import evodesign
 from tests.faults.synthetic import synthetic_header
 from tests.runlog import crafted
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
-COMMAND = [sys.executable, "-m", "evodesign"]
 MISSING = "note: missing evaluations: 24 to 47"
 
 
@@ -36,23 +34,17 @@ def run(tmp_path: Path) -> Path:
     return tmp_path / "run"
 
 
-def call(*arguments: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, check=False, timeout=120
-    )
-
-
 def test_a_front_without_a_removed_segment_ends_with_exit_code_four(run: Path) -> None:
-    whole = call("front", run, "--json")
+    whole = evodesign("front", run, "--json")
     assert (whole.returncode, whole.stderr) == (0, "")
     (run / "001.mcap").unlink()
-    done = call("front", run, "--json")
+    done = evodesign("front", run, "--json")
     assert done.returncode == 4
     assert json.loads(done.stdout)["evaluations"] == 36
     assert "note: segment 1 of the run is missing\n" in done.stderr
     assert MISSING in done.stderr
     assert "exit code 4, or 0 with --damaged" in done.stderr
-    accepted = call("front", run, "--json", "--damaged")
+    accepted = evodesign("front", run, "--json", "--damaged")
     assert (accepted.returncode, accepted.stdout) == (0, done.stdout)
     assert MISSING in accepted.stderr
 
@@ -60,12 +52,12 @@ def test_a_front_without_a_removed_segment_ends_with_exit_code_four(run: Path) -
 def test_a_comparison_with_a_damaged_run_ends_with_exit_code_four(run: Path, tmp_path: Path) -> None:
     other = shutil.copytree(run, tmp_path / "other")
     (run / "001.mcap").write_bytes(b"")
-    done = call("compare", other, run, "--json")
+    done = evodesign("compare", other, run, "--json")
     assert done.returncode == 4
     assert "run: missing evaluations: 24 to 47" in done.stderr
     assert f"{other} is damaged" not in done.stderr
     assert json.loads(done.stdout)["comparisons"]
-    assert call("compare", other, run, "--damaged").returncode == 0
+    assert evodesign("compare", other, run, "--damaged").returncode == 0
 
 
 @pytest.mark.slow
@@ -75,29 +67,29 @@ def test_the_page_of_a_damaged_run_says_what_is_missing(run: Path, repository: P
     content = bytearray((golden / "000.mcap").read_bytes())
     content[content.index(b"zstd", content.index(b"zstd", 40) + 40) + 30] ^= 0x20
     (golden / "000.mcap").write_bytes(content)
-    done = call("report", golden, "--output", tmp_path / "page.html")
+    done = evodesign("report", golden, "--output", tmp_path / "page.html")
     assert done.returncode == 4, done.stderr
     assert "note: 000.mcap is damaged" in done.stderr
     assert page_content(read_run(golden), ()).notes[0].startswith("000.mcap is damaged")
-    assert call("report", golden, "--output", tmp_path / "page.html", "--damaged").returncode == 0
-    shown = call("show", golden, 4, "--json")
+    assert evodesign("report", golden, "--output", tmp_path / "page.html", "--damaged").returncode == 0
+    shown = evodesign("show", golden, 4, "--json")
     assert (shown.returncode, json.loads(shown.stdout)["id"]) == (4, 4)
-    assert call("export", golden, 4, "--to", tmp_path / "design").returncode == 4
+    assert evodesign("export", golden, 4, "--to", tmp_path / "design").returncode == 4
     assert (tmp_path / "design/postures.json").exists()
-    assert call("export", golden, 4, "--to", tmp_path / "again", "--damaged").returncode == 0
+    assert evodesign("export", golden, 4, "--to", tmp_path / "again", "--damaged").returncode == 0
 
 
 def test_a_run_whose_session_was_killed_is_not_damaged(run: Path) -> None:
     path = run / "002.mcap"
     path.write_bytes(path.read_bytes()[:-3000])
-    done = call("front", run)
+    done = evodesign("front", run)
     assert done.returncode == 0
     assert "its session was killed, or is still writing" in done.stderr
 
 
 def test_verify_tells_each_gap_once(run: Path) -> None:
     (run / "001.mcap").unlink()
-    done = call("verify", run)
+    done = evodesign("verify", run)
     assert done.returncode == 2
     assert done.stdout.count("missing evaluations: 24 to 47") == 1
     assert "segment 1 of the run is missing" in done.stdout
@@ -131,18 +123,18 @@ def test_postures_that_are_not_of_the_runs_problem_are_refused_in_a_sentence(
 ) -> None:
     golden = repository / "tests/golden/lifting/format-2"
     run = with_other_postures(golden, tmp_path / "changed", change)
-    done = call("export", run, 4, "--to", tmp_path / "design")
+    done = evodesign("export", run, 4, "--to", tmp_path / "design")
     assert done.returncode == 2, done.stderr
     assert "are not those of the run's problem" in done.stderr
     assert "Traceback" not in done.stderr
     same = with_other_postures(golden, tmp_path / "same", lambda case: None)
-    assert call("export", same, 4, "--to", tmp_path / "other").returncode == 0
+    assert evodesign("export", same, 4, "--to", tmp_path / "other").returncode == 0
 
 
 def test_a_card_of_a_person_that_the_problem_has_not_is_refused_in_a_sentence(
     repository: Path, tmp_path: Path
 ) -> None:
     golden = repository / "tests/golden/lifting/format-2"
-    done = call("show", with_other_postures(golden, tmp_path / "run", with_a_stranger), 4)
+    done = evodesign("show", with_other_postures(golden, tmp_path / "run", with_a_stranger), 4)
     assert done.returncode == 2, done.stderr
     assert "its problem has no person 'nobody'" in done.stderr

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.here import evodesign
+
 COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
@@ -77,8 +79,7 @@ def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
 
 
 def test_unknown_symmetry_is_refused(quick: Path) -> None:
-    command = [*COMMAND, "evaluate", str(quick), "--symmetry", "polsh"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    done = evodesign("evaluate", quick, "--symmetry", "polsh")
     assert done.returncode == 2
     assert (
         "--symmetry: wanted one of auto, on, off, polish, found 'polsh'; did you mean 'polish'?"
@@ -92,13 +93,10 @@ def test_asymmetric_design_is_solved_whole_with_a_note_and_refused_where_symmetr
 ) -> None:
     text = quick.read_text().replace('links = ["l_upper_arm", "r_upper_arm"]', 'links = ["l_upper_arm"]', 1)
     (tmp_path / "lame.toml").write_text(text)
-    done = subprocess.run(
-        [*COMMAND, "check", str(tmp_path / "lame.toml")], capture_output=True, text=True, check=False
-    )
+    done = evodesign("check", tmp_path / "lame.toml")
     assert done.returncode == 0
     assert "note: postures are solved whole, not symmetric: " in done.stderr
     assert "'l_upper_arm' without 'r_upper_arm'" in done.stderr
-    command = [*COMMAND, "evaluate", str(tmp_path / "lame.toml"), "--symmetry", "on"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = evodesign("evaluate", tmp_path / "lame.toml", "--symmetry", "on")
     assert done.returncode == 2
     assert "--symmetry: wanted 'auto', 'off', or a scene that is its own mirror image" in done.stderr

@@ -9,7 +9,8 @@ import pytest
 
 from evodesign.problem.named_files import LONGEST_FILE
 from tests.cli.bounded import evodesign_bounded
-from tests.cli.test_bad_input import PROBLEM, ROBOT, assert_explained, evodesign, place, spoil
+from tests.cli.here import evodesign
+from tests.cli.test_bad_input import PROBLEM, ROBOT, assert_explained, place, spoil
 
 __all__ = ["place"]
 

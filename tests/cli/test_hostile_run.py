@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,10 @@ EVALUATIONS = toy_evaluations(HEADER, 12)
 COMMANDS = (*limited.commands(Path(), Path()),)
 
 Found = dict[str, tuple[int, str, str]]
+EveryCommand = Callable[[Path], Found]
+
+LONG = 600.0
+"""A wait [s] that only a command that hangs takes."""
 
 
 def prepared(work: Path) -> Path:
@@ -42,9 +47,26 @@ def work(tmp_path: Path) -> Path:
     return prepared(tmp_path)
 
 
-def call_on(*works: Path) -> None:
-    """Every command on the hostile runs."""
-    subprocess.run([sys.executable, limited.__file__, *map(str, works)], check=True, timeout=600)
+@pytest.fixture(scope="module")
+def every_command() -> Iterator[EveryCommand]:
+    """Calls every command on a hostile run; all that they need is imported once."""
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, limited.__file__], text=True, **pipes) as caller:
+
+        def call(work: Path) -> Found:
+            assert caller.stdin is not None
+            assert caller.stdout is not None
+            print(work, file=caller.stdin, flush=True)
+            assert select.select([caller.stdout], [], [], LONG)[0], "a command hangs"
+            assert caller.stdout.readline() == "\n"
+            return found_in(work)
+
+        try:
+            yield call
+            caller.communicate(timeout=LONG)
+            assert caller.returncode == 0
+        finally:
+            caller.kill()
 
 
 def found_in(work: Path) -> Found:
@@ -55,11 +77,6 @@ def found_in(work: Path) -> Found:
     for name, (_, _, errors) in found.items():
         assert "Traceback" not in errors, f"{name}: {errors[-3000:]}"
     return found
-
-
-def every_command(work: Path) -> Found:
-    call_on(work)
-    return found_in(work)
 
 
 def sound_copy(work: Path, *segments: int) -> None:
@@ -98,7 +115,7 @@ def folder(work: Path) -> None:
     ],
 )
 def test_what_is_no_regular_file_is_refused_by_every_command(
-    make: Callable[[Path], None], kind: str, work: Path
+    make: Callable[[Path], None], kind: str, work: Path, every_command: EveryCommand
 ) -> None:
     make(work)
     for name, (code, _, errors) in every_command(work).items():
@@ -106,7 +123,7 @@ def test_what_is_no_regular_file_is_refused_by_every_command(
 
 
 @pytest.mark.slow
-def test_a_lock_that_is_a_pipe_or_a_link_holds_nobody_up(work: Path) -> None:
+def test_a_lock_that_is_a_pipe_or_a_link_holds_nobody_up(work: Path, every_command: EveryCommand) -> None:
     sound_copy(work, 0)
     os.mkfifo(work / "run/lock")
     assert every_command(work)["resume"][0] in (0, 2)
@@ -118,7 +135,9 @@ def test_a_lock_that_is_a_pipe_or_a_link_holds_nobody_up(work: Path) -> None:
     assert not (work / "made elsewhere").exists()
 
 
-def test_a_sparse_segment_of_ten_gigabytes_is_refused_by_every_command(work: Path) -> None:
+def test_a_sparse_segment_of_ten_gigabytes_is_refused_by_every_command(
+    work: Path, every_command: EveryCommand
+) -> None:
     with (work / "run/000.mcap").open("wb") as file:
         file.truncate(10 * 10**9)
     for name, (code, _, errors) in every_command(work).items():
@@ -128,7 +147,7 @@ def test_a_sparse_segment_of_ten_gigabytes_is_refused_by_every_command(work: Pat
 @pytest.mark.slow
 @pytest.mark.parametrize(("share", "evaluations"), [(0.37, range(1, 12)), (0.9, range(12, 13))])
 def test_what_stands_around_a_hole_of_ten_gigabytes_is_read(
-    share: float, evaluations: range, work: Path
+    share: float, evaluations: range, work: Path, every_command: EveryCommand
 ) -> None:
     """The hole is among the evaluations, or in the index after them."""
     content = (work / "sound/000.mcap").read_bytes()
@@ -229,28 +248,19 @@ CONTENTS: dict[str, Callable[[], bytes]] = {
 }
 
 
-@pytest.fixture(scope="module")
-def crafted_runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """For each content a run with sound evaluations around it, on which every command was called."""
-    works = {}
-    for name, content in CONTENTS.items():
-        works[name] = prepared(tmp_path_factory.mktemp("crafted"))
-        parts = [
-            crafted.chunk(crafted.channels() + crafted.told(RUN, plain(HEADER))),
-            *(crafted.chunk(crafted.told(EVALUATION, plain(each), each.number)) for each in EVALUATIONS[:2]),
-            content(),
-            *(crafted.chunk(crafted.told(EVALUATION, plain(each), each.number)) for each in EVALUATIONS[4:]),
-        ]
-        (works[name] / "run/000.mcap").write_bytes(crafted.segment(parts))
-    call_on(*works.values())
-    return works
-
-
 @pytest.mark.parametrize("name", CONTENTS)
 def test_crafted_content_with_right_checksums_costs_itself_and_nothing_else(
-    name: str, crafted_runs: dict[str, Path]
+    name: str, work: Path, every_command: EveryCommand
 ) -> None:
-    found = found_in(crafted_runs[name])
+    """With sound evaluations around it."""
+    parts = [
+        crafted.chunk(crafted.channels() + crafted.told(RUN, plain(HEADER))),
+        *(crafted.chunk(crafted.told(EVALUATION, plain(each), each.number)) for each in EVALUATIONS[:2]),
+        CONTENTS[name](),
+        *(crafted.chunk(crafted.told(EVALUATION, plain(each), each.number)) for each in EVALUATIONS[4:]),
+    ]
+    (work / "run/000.mcap").write_bytes(crafted.segment(parts))
+    found = every_command(work)
     code, out, errors = found["front"]
     assert "Front of" in out
     assert (code == 0) == (name in HARMLESS), errors

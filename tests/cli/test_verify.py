@@ -1,17 +1,14 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from evodesign.evolve import Silent, start
+from tests.cli.here import evodesign
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
-
-COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
 @pytest.fixture
@@ -22,7 +19,7 @@ def run(tmp_path: Path) -> Path:
 
 
 def call(*arguments: str) -> tuple[int, str, str]:
-    done = subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, check=False, timeout=120)
+    done = evodesign(*arguments)
     return done.returncode, done.stdout, done.stderr
 
 

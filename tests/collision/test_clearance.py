@@ -12,6 +12,7 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, matrix_from_rpy
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.collision.clearance import PlacedSolids, SolidBodies, places_of
+from evodesign.collision.shapes import solids_of
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.surface import surface_of
 
@@ -124,6 +125,18 @@ def test_a_mesh_counts_as_its_hull_stretched_as_it_is() -> None:
         placed = pair(link, body("other", SHAPES[0]), at)
         found = placed.nearest(places_of(placed.names, [("one", "other")]))
         assert found.distance == pytest.approx(distance(box, SHAPES[0], at), abs=1e-4)
+
+
+def test_the_hull_of_a_mesh_that_a_design_leaves_alone_is_made_once() -> None:
+    corners = np.array([(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1)])
+    mesh = Mesh("corner.stl", surface=surface_of(corners, np.array([(0, 2, 1)]), 0.0))
+    longer = replace(mesh, stretch=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 2.0)))
+    one, again, other = (
+        solids_of(Link("one", own_inertia=Inertia(mass), meshes=(shown,)))[0]
+        for mass, shown in ((1.0, mesh), (2.0, replace(mesh)), (1.0, longer))
+    )
+    assert one is again
+    assert other.half_sides == pytest.approx(one.half_sides * [1.0, 1.0, 2.0])
 
 
 def test_the_nearest_of_many_is_found_and_the_overlapping_ones() -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from evodesign.evolve import Silent, start
 from evodesign.runlog.reader import Segment, read_segment
 from tests.faults.synthetic import Synthetic, synthetic_header
+from tests.rewriting import write_anew
 from tests.runlog.toys import OrderedPool, shuffled
 
 
@@ -76,5 +77,5 @@ def flip(folder: Path, content: bytes, count: int, seed: int) -> Report:
 
 def _read(folder: Path, content: bytes) -> Segment:
     path = folder / "changed.mcap"
-    path.write_bytes(content)
+    write_anew(path, content)
     return read_segment(path)

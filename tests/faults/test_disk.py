@@ -22,7 +22,7 @@ from evodesign.errors import RunError
 from evodesign.evolve import Silent, resume, start
 from evodesign.runlog.directory import locked
 from evodesign.runlog.run import read_run
-from tests.cli.test_bad_input import evodesign
+from tests.cli.here import evodesign
 from tests.faults.kills import Session, uninterrupted
 from tests.faults.synthetic import Size, synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence

@@ -27,6 +27,7 @@ from pathlib import Path
 from tests.fuzz.input_cases import MESHES, TEXTS, complaint, spoilt_files
 from tests.fuzz.limits import Hanging, limit_memory, time_limit
 from tests.fuzz.segment_cases import examine, messages_of, sound_run, spoilt
+from tests.rewriting import write_anew
 
 __all__ = ["TARGETS", "Tried", "main", "try_cases"]
 
@@ -66,11 +67,11 @@ def inputs(folder: Path) -> Try:
 
     def attempt(number: int) -> str:
         case = spoilt_files(number)
-        (folder / case.target).write_bytes(case.content)
+        write_anew(folder / case.target, case.content)
         try:
             read, wrong = complaint(folder)
         finally:
-            (folder / case.target).write_text(TEXTS[case.target], encoding="utf-8")
+            write_anew(folder / case.target, TEXTS[case.target].encode())
         if wrong:
             raise Finding(f"{case.target} ({', '.join(case.mutations)}): {wrong}")
         return f"{case.target}, {'read' if read else 'refused'}"

@@ -11,7 +11,8 @@ import pytest
 
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
-from tests.cli.test_bad_input import assert_explained, evodesign
+from tests.cli.here import evodesign
+from tests.cli.test_bad_input import assert_explained
 from tests.fuzz.input_cases import (
     BODY,
     MESHES,
@@ -25,6 +26,7 @@ from tests.fuzz.input_cases import (
     spoilt_files,
 )
 from tests.fuzz.limits import Hanging, time_limit
+from tests.rewriting import write_anew
 
 CASES, QUICK_CASES = 2000, 400
 
@@ -49,13 +51,13 @@ def test_whatever_the_files_hold_they_load_or_one_sentence_names_the_fault(
     loaded, refused, wrong = 0, 0, []
     for number in numbers:
         case = spoilt_files(number)
-        (folder / case.target).write_bytes(case.content)
+        write_anew(folder / case.target, case.content)
         try:
             with time_limit():
                 read, complaints = complaint(folder)
         except Hanging as hanging:
             read, complaints = False, str(hanging)
-        (folder / case.target).write_text(TEXTS[case.target], encoding="utf-8")
+        write_anew(folder / case.target, TEXTS[case.target].encode())
         loaded, refused = loaded + read, refused + (not read)
         if complaints:
             wrong.append(f"case {number}, {case.target} ({', '.join(case.mutations)}): {complaints}")

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -17,6 +15,7 @@ from evodesign.records import FORMAT_VERSION
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.rewrite import merge, recover
 from evodesign.runlog.run import RunLog, digest, read_run
+from tests.cli.here import evodesign
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 pytestmark = pytest.mark.slow
@@ -28,7 +27,6 @@ DIGEST = "0f0f30b2b942b4a73f189ccebe3fd05e92fdbd5821fa3e5a7fa29c8acdb4268b"
 
 LIFTING = FOLDER / "lifting"
 LIFTING_DIGEST = "b54f105def3043c833e7e53f7dc77237624016cccfd71dfa0f014f11a03c6e65"
-COMMAND = [sys.executable, "-m", "evodesign"]
 
 
 @pytest.fixture(params=VERSIONS)
@@ -87,7 +85,7 @@ def lifting(version: int, tmp_path: Path) -> Path:
 
 
 def output(*arguments: object) -> str:
-    done = subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, check=False)
+    done = evodesign(*arguments)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

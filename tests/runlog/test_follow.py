@@ -12,6 +12,7 @@ from evodesign.records import Evaluation, RunHeader
 from evodesign.runlog.follow import Follower
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.writer import RunWriter
+from tests.rewriting import write_anew
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_front, toy_generation, toy_header
 
 HEADER = toy_header()
@@ -54,7 +55,8 @@ def test_a_file_that_grows_byte_by_byte_gives_what_the_reader_finds(tmp_path: Pa
     found, length = [], 0
     while length < len(content):
         length = min(length + chance.randrange(1, 400), len(content))
-        file.write_bytes(content[:length])
+        with file.open("ab") as end:
+            end.write(content[file.stat().st_size : length])
         found += [logged.record for logged in follower.look()]
         evaluations = tuple(record for record in found if isinstance(record, Evaluation))
         assert evaluations == read_segment(file).evaluations
@@ -89,7 +91,7 @@ def test_damage_ends_a_segment_and_keeps_what_came_before(tmp_path: Path) -> Non
     for place in places:
         content = bytearray(whole)
         content[place] ^= 0xFF
-        file.write_bytes(content)
+        write_anew(file, content)
         follower = Follower(tmp_path)
         found = [each.record for each in follower.look() if isinstance(each.record, Evaluation)]
         assert found == list(EVALUATIONS[: len(found)])

@@ -18,6 +18,7 @@ from evodesign.records import FORMAT_VERSION, Assessment, Evaluation, Status
 from evodesign.runlog.channels import RECORDS
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.writer import RunWriter
+from tests.rewriting import write_anew
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_front, toy_generation, toy_header
 
 HEADER = toy_header()
@@ -86,9 +87,10 @@ def test_a_log_cut_at_any_byte_gives_everything_before_the_cut(step: int, tmp_pa
     whole = (tmp_path / "run/000.mcap").read_bytes()
     evaluations = toy_evaluations(HEADER, 6)
     cut_file = tmp_path / "cut.mcap"
+    cut_file.write_bytes(whole)
     counts = []
-    for length in range(0, len(whole), step):
-        cut_file.write_bytes(whole[:length])
+    for length in reversed(range(0, len(whole), step)):
+        os.truncate(cut_file, length)
         segment = read_segment(cut_file)
         count = len(segment.evaluations)
         durable = max((known for size, known in committed.items() if size <= length), default=0)
@@ -98,7 +100,7 @@ def test_a_log_cut_at_any_byte_gives_everything_before_the_cut(step: int, tmp_pa
         assert "its session was killed" in segment.note
         assert segment.headers == (HEADER,) or (segment.headers == () and length < min(committed))
         counts.append(count)
-    assert counts == sorted(counts)
+    assert counts == sorted(counts, reverse=True)
     assert set(counts) == set(range(7)), "each evaluation is safe by itself"
 
 
@@ -109,7 +111,7 @@ def test_a_flipped_bit_never_raises_nor_forges_an_evaluation(tmp_path: Path, pla
         write_small_log(tmp_path / "run")
     content = bytearray((tmp_path / "run/000.mcap").read_bytes())
     content[int(place * len(content))] ^= 1 << bit
-    (tmp_path / "flipped.mcap").write_bytes(content)
+    write_anew(tmp_path / "flipped.mcap", content)
     segment = read_segment(tmp_path / "flipped.mcap")
     written = {evaluation.number: evaluation for evaluation in toy_evaluations(HEADER, 6)}
     assert all(written[evaluation.number] == evaluation for evaluation in segment.evaluations)

@@ -244,11 +244,14 @@ def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
         "return [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t]; })()"
     )
     assert page.value("document.getElementById('card').getBoundingClientRect().top > innerHeight")
+    page.value("addEventListener('scrollend', () => { window.stoodStillAt = scrollY; })")
+    page.value("window.stoodStillAt = -1")
     page.call("Emulation.setTouchEmulationEnabled", enabled=True)
     page.call("Input.synthesizeTapGesture", x=left + x, y=top + y, gestureSourceType="touch")
     page.call("Emulation.setTouchEmulationEnabled", enabled=False)
     page.wait_for(f"{SELECTED} !== {before}")
-    page.wait_for("Math.abs(document.getElementById('card').getBoundingClientRect().top) < 40")
+    page.wait_for("Math.abs(document.getElementById('card').getBoundingClientRect().top) < 2")
+    page.wait_for("stoodStillAt === scrollY")  # else a frame of its way is added to what is set next
     page.resize(1440, 900)
     page.value("scrollTo(0, 0)")
     page.value("document.querySelector('.chip').click()")
