@@ -6,6 +6,9 @@ place; hands that hold rigidly do not turn, for else their moments would do work
 are slightly disliked. Half-way between knots hands and feet are nearly in their places; without that the
 best motion bends an elbow the other way between two knots that are exact.
 
+Rows that part bodies along directions (`posture.terms.collisions`) are left out at first. Blocks that have
+them say them at knots and half-way between, each time along directions of its own.
+
 A block's symbols are, in the program's units, step the time between knots:
 
     posture, step * its rate, step^2 * its change, load height, step^2 * its change, torques and wrenches,
@@ -16,7 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -24,7 +27,7 @@ import numpy as np
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.nlp.blocks import Block
-from evodesign.nlp.program import Expression, Variable
+from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import (
     MOVING_PARTS,
@@ -36,8 +39,10 @@ from evodesign.posture.assemble import (
     total,
 )
 from evodesign.posture.formulations.base import Setting
+from evodesign.posture.parting import Meetings, meetings_of, rows_of
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import Body
+from evodesign.posture.terms.collisions import COLLISIONS, directed
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -100,12 +105,13 @@ class KnotBlocks:
     Args:
         forms: of robot and person, whole or halves.
         setting: of the problem.
+        switched: whether rows are there that part bodies along directions.
     Attributes:
         forms: likewise.
     """
 
-    def __init__(self, forms: tuple[Form, Form], setting: Setting) -> None:
-        self.forms, self._setting = forms, setting
+    def __init__(self, forms: tuple[Form, Form], setting: Setting, *, switched: bool = False) -> None:
+        self.forms, self._setting, self._switched = forms, setting, switched
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
         scene, self._mass = any_load(setting.scene.undisturbed)
@@ -126,7 +132,34 @@ class KnotBlocks:
         names = [form.agent.name for form in self.forms]
         motions = {name: PostureMotion(self._rates[name], self._changes[name]) for name in names}
         case = CaseSymbols(self._scene, (self._height,), motions, self._lifted)
-        return assemble(self._parties, TERMS.values(), case)
+        return assemble(self._parties, TERMS.values(), case, switched=self._switched)
+
+    @cached_property
+    def parted(self) -> KnotBlocks | None:
+        """The same with rows that part bodies along directions; None where no bodies are parted."""
+        parting = any(directed(form) for form in self.forms)
+        return KnotBlocks(self.forms, self._setting, switched=True) if parting else None
+
+    @cached_property
+    def directions(self) -> int:
+        """How many numbers say along which directions bodies are parted at a time."""
+        return int(self._directions.numel())
+
+    @property
+    def _directions(self) -> Expression:
+        return ca.vertcat(ca.SX(0, 1), *self._assembly.given.values())
+
+    @cached_property
+    def meetings(self) -> tuple[Meetings, Meetings]:
+        """Of bodies that are parted along directions, with their rows at a knot and half-way between two.
+
+        The arguments of their functions are all posture symbols, the load's height, the directions and the
+        shared numbers.
+        """
+        postures = ca.vertcat(*[v.symbol for v in self.symbols.moving])
+        given, bodies = [postures, self._height, self._directions, self.shared], self._assembly.parted
+        at_knot = meetings_of(bodies, self._assembly.constraints, given)
+        return at_knot, replace(at_knot, rows=rows_of(bodies, self._half_way))
 
     @cached_property
     def symbols(self) -> Symbols:
@@ -178,24 +211,38 @@ class KnotBlocks:
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
         cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
-        column, own = self._column(), ca.vertcat(weight)
+        column, own = self._column(), ca.vertcat(weight, self._directions)
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
         return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))
 
     @cached_property
     def between(self) -> Block:
         """What is said half-way between knots, of posture, load height and places."""
-        rows = []
-        for body in self._assembly.undisturbed.bodies.values():
+        column, rows = ca.vertcat(self._posture, self._height, self._places), self._half_way
+        (stacked,) = self._in_units([ca.vertcat(*[row.expression for row in rows])], column)
+        counts = [row.expression.numel() for row in rows]
+        low, high = (
+            np.repeat(side, counts) for side in zip(*[(r.lower, r.upper) for r in rows], strict=True)
+        )
+        return Block("between", column, self._directions, self.shared, ca.SX(0.0), stacked, low, high)
+
+    @cached_property
+    def _half_way(self) -> list[ConstraintBlock]:
+        """Hands and feet nearly in place, and bodies apart where they are parted along directions."""
+        rows, bodies = [], self._assembly.undisturbed.bodies
+        for body in bodies.values():
             rows += [row.expression / HAND_CLOSURE for row in GRASP.rows(body)]
             for offset in self._soles(body):
                 rows += [offset[:3] / SOLE_CLOSURE, offset[3:] / SLANT_CLOSURE]
             rows += [turned / SLANT_CLOSURE for turned in self._grips(body)]
-        closed = CLOSURE_UNIT * ca.vertcat(*rows)
-        column = ca.vertcat(self._posture, self._height, self._places)
-        (closed,) = self._in_units([closed], column)
-        limit, none = np.full(closed.numel(), CLOSURE_UNIT), ca.SX.sym("none", 0)
-        return Block("between", column, none, self.shared, ca.SX(0.0), closed, -limit, limit)
+        closed = ConstraintBlock("closed", CLOSURE_UNIT * ca.vertcat(*rows), -CLOSURE_UNIT, CLOSURE_UNIT)
+        apart = [
+            ConstraintBlock(f"{name}.{row.name}", row.expression, row.lower, row.upper)
+            for name, body in bodies.items()
+            for row in COLLISIONS.rows(body)
+            if self._switched
+        ]
+        return [closed, *apart]
 
     @cached_property
     def closure(self) -> ca.Function:

@@ -7,7 +7,7 @@ do for a start: their elbows bend in different ways.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,6 +19,7 @@ from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.parting import LiftSolve, PartedLift
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
@@ -108,17 +109,25 @@ class LiftProblem:
         starts = {
             name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
         }
-        solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
+        solves = {
+            name: LiftSolve(start, *program.solve(lift, start, design, mass))
+            for name, start in starts.items()
+        }
+        parted = _without_overlaps(PartedLift(program, lift, design, mass), solves)
         attempts = tuple(
-            _attempt(f"hold at the {name}", ending, seconds, program.method)
-            for name, ending, seconds in solves
+            _attempt(f"hold at the {name}", each.ending, each.seconds, program.method)
+            for name, each in parted.items()
         )
-        solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
+        solved = [each for each in parted.values() if each.solved]
         if not solved:
+            overlapping = [each for each in solves.values() if each.solved]
+            if overlapping:
+                course = program.course(lift, _cheapest(overlapping).ending.symbols)
+                return _refused(lift, _in_the_way(checker.check(course)), attempts)
             return self._none(design, lift, list(starts.values()), attempts)
-        name, best, _ = min(solved, key=lambda end: end[1].cost)
-        start = replace(starts[name], symbols=best.symbols)
-        return self._checked(design, _Motion(lift, start, best, attempts), checker, slowly=slowly)
+        best = _cheapest(solved)
+        start = replace(best.start, symbols=best.ending.symbols)
+        return self._checked(design, _Motion(lift, start, best.ending, attempts), checker, slowly=slowly)
 
     def derivative(self, design: Sequence[float], solution: MotionCase) -> LiftDerivative | NotDifferentiable:
         """How the motion of a case moves with the design, with as many knots as it has.
@@ -154,15 +163,21 @@ class LiftProblem:
             if not (checked.wrong and further):
                 break
             finer = msgspec.structs.replace(lift, knots=2 * lift.knots)
-            start = self._program(finer.knots).refined(finer, course, motion.start)
-            ending, seconds = self._program(finer.knots).solve(finer, start, design, mass)
-            attempt = _attempt(f"motion of {lift.knots} knots", ending, seconds, program.method)
+            program = self._program(finer.knots)
+            start = program.refined(finer, course, motion.start)
+            solve = LiftSolve(start, *program.solve(finer, start, design, mass))
+            found = PartedLift(program, finer, design, mass).settled(solve)
+            ending = found.ending
+            attempt = _attempt(f"motion of {lift.knots} knots", ending, found.seconds, program.method)
             attempts = (*motion.attempts, attempt)
             if attempt.status is not Status.SOLVED:
+                if solve.solved:
+                    course = program.course(finer, solve.ending.symbols)
+                    return _refused(finer, _in_the_way(checker.check(course)), attempts)
                 return self._none(design, finer, [start], attempts)
-            motion = _Motion(finer, replace(start, symbols=ending.symbols), ending, attempts)
+            motion = _Motion(finer, replace(found.start, symbols=ending.symbols), ending, attempts)
         if checked.wrong:
-            return LiftSolution(lift, Status.NUMERICAL_FAILURE, checked.wrong, motion.attempts)
+            return _refused(lift, checked.wrong, motion.attempts)
         slow = program.solve(lift, motion.start, design, mass, 0.0)[0] if slowly else None
         return LiftSolution(
             lift=lift,
@@ -206,6 +221,31 @@ class LiftProblem:
     @property
     def _options(self) -> SolverOptions:
         return replace(self._setting.options, tolerance=TOLERANCE_OF_LIFTS)
+
+
+def _cheapest(solves: Sequence[LiftSolve]) -> LiftSolve:
+    return min(solves, key=lambda each: each.ending.cost)
+
+
+def _without_overlaps(parting: PartedLift, solves: Mapping[str, LiftSolve]) -> dict[str, LiftSolve]:
+    """Solves with bodies parted, but for those that even overlapping cost as much as another one parted."""
+    found, least = dict(solves), np.inf
+    for name, solve in sorted(solves.items(), key=lambda pair: pair[1].ending.cost):
+        if solve.solved and solve.ending.cost < least:
+            found[name] = parting.settled(solve)
+            least = min(least, found[name].ending.cost if found[name].solved else np.inf)
+    return found
+
+
+def _in_the_way(checked: CheckedLift) -> str:
+    """Of a motion beside which there is none with bodies parted: what the check found."""
+    found = checked.wrong or "bodies are nearer to each other than the margin"
+    return f"no motion was found in which bodies keep clear of each other; where they need not, {found}"
+
+
+def _refused(lift: Lift, wrong: str, attempts: tuple[Attempt, ...]) -> LiftSolution:
+    """What the check refuses, with what it found."""
+    return LiftSolution(lift, Status.NUMERICAL_FAILURE, wrong, attempts)
 
 
 TOLERANCE_OF_LIFTS = 1e-7

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.repeated import RepeatedProgram
+from evodesign.posture.parting import Meetings
 from evodesign.posture.results import AgentPosture
 from evodesign.records import Lift
 from evodesign.tasks.lift import LoadProfile
@@ -44,11 +45,19 @@ class LiftStart:
         symbols: of the program.
         hands: how rigid hands are turned in it, entries of rotations; none for other grasps.
         open_by: by how much hands or feet are out of place at the worst knot [m].
+        directions: that part bodies (`posture.terms.collisions`), at knots and half-way between in turn,
+            shape (2 knots - 1, numbers); of no rows where none part any.
     """
 
     symbols: Array
     hands: Array
     open_by: float
+    directions: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+    @property
+    def parts_bodies(self) -> bool:
+        """Whether a solve from here needs the rows that part bodies."""
+        return self.directions.size > 0
 
 
 class LiftProgram:
@@ -74,7 +83,7 @@ class LiftProgram:
         self._size = int(ends[-1])
 
     @cached_property
-    def _program(self) -> RepeatedProgram:
+    def _parts(self) -> list[Repeated]:
         spline, at = RestingSpline(self._knots), np.arange(float(self._knots))
         value, moved, bent = (spline.image(at, order) for order in range(3))
         knots = self._stacked(
@@ -83,11 +92,14 @@ class LiftProgram:
         )
         half_way = spline.image(at[:-1] + 0.5)
         between = self._stacked([(half_way, "postures"), (half_way, "load")], carried=False)
-        parts = [
+        return [
             Repeated(self._blocks.knot, knots, self._knots),
             Repeated(self._blocks.between, between, self._knots - 1),
         ]
-        return RepeatedProgram("lift", parts, self._options)
+
+    @cached_property
+    def _program(self) -> RepeatedProgram:
+        return RepeatedProgram("lift", self._parts, self._options)
 
     def _stacked(self, splines: Sequence[tuple[Array, str]], *, carried: bool) -> sparse.csc_matrix:
         """What blocks see: splines, torques and wrenches, places; one repetition after the other."""
@@ -112,6 +124,16 @@ class LiftProgram:
         """Who solves."""
         return self._program.method
 
+    @cached_property
+    def parted(self) -> LiftProgram | None:
+        """The same with rows that part bodies along directions; None where no bodies are parted."""
+        blocks = self._blocks.parted
+        return None if blocks is None else LiftProgram(blocks, self._knots, self._options)
+
+    def _with_rows_of(self, start: LiftStart) -> LiftProgram:
+        """The program that has the rows which a start needs: most need none."""
+        return self.parted if start.parts_bodies and self.parted is not None else self
+
     def solve(
         self, lift: Lift, start: LiftStart, design: Sequence[float], mass: float, inertia: float = 1.0
     ) -> tuple[Ending, float]:
@@ -125,8 +147,9 @@ class LiftProgram:
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
         """
         shared = np.array([*design, lift.step, mass, inertia, *start.hands])
-        low, high = self._bounds(lift)
-        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, self._own)
+        (low, high), program = self._bounds(lift), self._with_rows_of(start)
+        own = program._own(start)
+        return program._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
 
     def slopes(
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
@@ -141,14 +164,55 @@ class LiftProgram:
             mass: of the load [kg].
         """
         shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
-        return self._program.slopes(ending, self._bounds(lift), shared, self._own, len(design))
+        program, bounds = self._with_rows_of(start), self._bounds(lift)
+        return program._program.slopes(ending, bounds, shared, program._own(start), len(design))
 
-    @property
-    def _own(self) -> list[Array]:
-        """What each knot has for itself: its weight in the cost, by the trapezoidal rule."""
+    def _own(self, start: LiftStart) -> list[Array]:
+        """What each knot has for itself: its weight in the cost, by the trapezoidal rule, and directions."""
         weights = np.full((self._knots, 1), 1.0 / (self._knots - 1))
         weights[[0, -1]] /= 2.0
-        return [weights, np.empty((self._knots - 1, 0))]
+        directions = np.empty((2 * self._knots - 1, 0))
+        if self._blocks.directions and start.parts_bodies:
+            directions = start.directions
+        return [np.hstack([weights, directions[::2]]), directions[1::2]]
+
+    @property
+    def meetings(self) -> tuple[Meetings, Meetings]:
+        """Of a program with rows that part bodies, at a knot and half-way between two."""
+        return self._blocks.meetings
+
+    @property
+    def no_directions(self) -> Array:
+        """Of such a program, whose rows are all off."""
+        return np.zeros((2 * self._knots - 1, self._blocks.directions))
+
+    def meetings_at(
+        self, lift: Lift, start: LiftStart, symbols: Array, design: Sequence[float], mass: float
+    ) -> list[list[Array]]:
+        """What the meetings' functions take (`KnotBlocks.meetings`), at knots and half-way between in turn.
+
+        Args:
+            lift: with as many knots.
+            start: with directions.
+            symbols: of a solve.
+            design: one number per parameter.
+            mass: of the load [kg].
+        """
+        places = np.arange(2.0 * self._knots - 1.0) / 2.0
+        image = RestingSpline(self._knots).image(places)
+        postures, load = self._splines(symbols)
+        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        along = zip(image @ postures, image @ load, start.directions, strict=True)
+        return [[posture, np.array([height]), held, shared] for posture, height, held in along]
+
+    def rows_at(self, rows: Array) -> list[Array]:
+        """Numbers of all rows, such as multipliers, by knots and half-way between in turn."""
+        ends = [part.block.rows.numel() for part in self._parts]
+        at_knots, between = np.split(rows, [self._knots * ends[0]])
+        found: list[Array] = [*at_knots.reshape(self._knots, -1)]
+        for place, half_way in enumerate(between.reshape(self._knots - 1, -1)):
+            found.insert(2 * place + 1, half_way)
+        return found
 
     def _bounds(self, lift: Lift) -> tuple[Array, Array]:
         """Of the symbols: those of a hold, and the load's height."""
@@ -222,7 +286,11 @@ class LiftProgram:
             others.ravel(),
             start.symbols[-self._places :],
         ]
-        return LiftStart(np.concatenate(symbols), start.hands, start.open_by)
+        directions = start.directions
+        if start.parts_bodies:
+            shares = np.linspace(0.0, len(directions) - 1.0, 2 * self._knots - 1)
+            directions = directions[np.rint(shares).astype(int)]
+        return LiftStart(np.concatenate(symbols), start.hands, start.open_by, directions)
 
     @staticmethod
     def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:
@@ -274,18 +342,24 @@ class LiftProgram:
 
     def course(self, lift: Lift, symbols: Array) -> LiftCourse:
         """The motion that symbols stand for, SI units."""
-        seen, free, knots = self._blocks.symbols, self._blocks.free, self._knots
-        pieces = np.split(symbols, [self._first[name] for name in ("load", "others", "places")])
-        still = np.concatenate([v.lower / v.scale for v in seen.moving])
-        postures = np.tile(still, (knots, 1))
-        postures[:, free] = pieces[0].reshape(knots, -1)
+        seen, knots = self._blocks.symbols, self._knots
+        others = symbols[self._first["others"] : self._first["places"]]
+        postures, load = self._splines(symbols)
         return LiftCourse(
             lift=lift,
             forms=self._blocks.forms,
             coefficients=self._by_agent(seen.moving, postures),
-            carried=self._by_agent(seen.others, pieces[2].reshape(knots, -1)),
-            load=pieces[1],
+            carried=self._by_agent(seen.others, others.reshape(knots, -1)),
+            load=load,
         )
+
+    def _splines(self, symbols: Array) -> tuple[Array, Array]:
+        """Coefficients of all posture symbols, shape (knots, symbols), and of the load's height [m]."""
+        seen, free = self._blocks.symbols, self._blocks.free
+        still = np.concatenate([v.lower / v.scale for v in seen.moving])
+        postures = np.tile(still, (self._knots, 1))
+        postures[:, free] = symbols[: self._first["load"]].reshape(self._knots, -1)
+        return postures, symbols[self._first["load"] : self._first["others"]]
 
     def _by_agent(self, variables: Sequence[object], columns: Array) -> dict[str, dict[str, Array]]:
         """Columns of symbols as values by agent and part."""
