@@ -6,6 +6,9 @@ place; hands that hold rigidly do not turn, for else their moments would do work
 are slightly disliked. Half-way between knots hands and feet are nearly in their places; without that the
 best motion bends an elbow the other way between two knots that are exact.
 
+Under each disturbance wrenches and torques are others, and the motion is the same. How load cases count
+together is said of every knot by itself (`posture.load_cases`).
+
 Rows that part bodies along directions (`posture.terms.collisions`) are left out at first. Blocks that have
 them say them at knots and half-way between, each time along directions of its own.
 
@@ -39,6 +42,7 @@ from evodesign.posture.assemble import (
     total,
 )
 from evodesign.posture.formulations.base import Setting
+from evodesign.posture.load_cases import counted_together
 from evodesign.posture.parting import Meetings, meetings_of, rows_of
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import Body
@@ -81,7 +85,7 @@ class Symbols:
 
     Args:
         moving: variables of postures.
-        others: torques and wrenches.
+        others: torques and wrenches of every load case, and the cost of the worst one where that counts.
         rates, changes: time derivatives of the posture variables, SI units, by variable name.
         height: of the load [m].
         lifted: its acceleration [m/s^2].
@@ -114,7 +118,7 @@ class KnotBlocks:
         self.forms, self._setting, self._switched = forms, setting, switched
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
-        scene, self._mass = any_load(setting.scene.undisturbed)
+        scene, self._mass = any_load(setting.scene)
         values = ca.vertsplit(self.design)
         self._scene = shared_scene(scene, setting.space, values)
         self._weights = shared_weights(setting.weights, setting.space, values)
@@ -161,6 +165,36 @@ class KnotBlocks:
         at_knot = meetings_of(bodies, self._assembly.constraints, given)
         return at_knot, replace(at_knot, rows=rows_of(bodies, self._half_way))
 
+    @property
+    def disturbances(self) -> tuple[str, ...]:
+        """Names of those that have load cases, in the order of their numbers from one."""
+        return tuple(each.name for each in self._setting.scene.disturbances.cases)
+
+    @cached_property
+    def _carrying(self) -> tuple[Expression, tuple[Variable, ...], tuple[ConstraintBlock, ...]]:
+        """What torques, wrenches and the posture itself cost, with what the worst load case adds."""
+        by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
+        held = self._assembly.undisturbed
+        if not self.disturbances:
+            return total([held.effort(by_agent), *held.regularisation]), (), ()
+        (load_cases,) = self._assembly.instants
+        costs = [total([each.effort(by_agent), *each.costs]) for each in load_cases]
+        cost, variables, rows = counted_together(self._setting.scene.disturbances.effort, costs)
+        return total([cost, *held.posture_costs]), variables, rows
+
+    @cached_property
+    def worst(self) -> ca.Function | None:
+        """The least value that the worst load case's cost may have; None where the worst does not count.
+
+        Arguments are the symbols of torques, wrenches and that cost, and the design.
+        """
+        _, worst, below = self._carrying
+        if not worst:
+            return None
+        others = ca.vertcat(*[v.symbol for v in self.symbols.others])
+        least = ca.mmax(below[0].expression + worst[0].value)
+        return ca.Function("worst", [others, self.design], [least])
+
     @cached_property
     def symbols(self) -> Symbols:
         """Of the knot's block."""
@@ -169,7 +203,7 @@ class KnotBlocks:
         by_slot = {v.name: (v.key.party, v.key.part) for v in moving}  # type: ignore[attr-defined]
         return Symbols(
             moving=moving,
-            others=tuple(v for v in variables if v not in moving),
+            others=(*(v for v in variables if v not in moving), *self._carrying[1]),
             rates={name: self._rates[party][part] for name, (party, part) in by_slot.items()},
             changes={name: self._changes[party][part] for name, (party, part) in by_slot.items()},
             height=self._height,
@@ -197,20 +231,19 @@ class KnotBlocks:
     def knot(self) -> Block:
         """What is said at a knot; its own number is its weight in the cost."""
         _seen, assembly, weight = self.symbols, self._assembly, ca.SX.sym("weight")
-        by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
-        held = assembly.undisturbed
+        carrying, _, further = self._carrying
         rows, low, high = [], [], []
-        for each in assembly.constraints:
+        for each in (*assembly.constraints, *further):
             rows.append(each.expression)
             low += [each.lower] * each.expression.numel()
             high += [each.upper] * each.expression.numel()
-        for body in held.bodies.values():
+        for body in assembly.undisturbed.bodies.values():
             speeds = self._speeds(body)
             placed = ca.vertcat(*[offset[[0, 1, 5]] for offset in self._soles(body)], *self._grips(body))
             rows += [speeds, placed]
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
-        cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
+        cost = total([carrying, *map(self._smoothness, self.forms)])
         column, own = self._column(), ca.vertcat(weight, self._directions)
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
         return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))

@@ -69,7 +69,7 @@ class LiftProblem:
 
     def __init__(self, setting: Setting, *, symmetric: bool) -> None:
         self._setting, self._symmetric = setting, symmetric
-        self._scene = setting.scene.undisturbed
+        self._scene = setting.scene
         self._programs: dict[int, LiftProgram] = {}
 
     @cached_property
@@ -107,7 +107,8 @@ class LiftProblem:
         program, mass = self._program(lift.knots), self._scene.payload.mass
         begins = {"beginning": 0, "end": lift.knots - 1}
         starts = {
-            name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
+            name: program.followed(lift, ends[name].postures, knot, design, ends[name].disturbed)
+            for name, knot in begins.items()
         }
         solves = {
             name: LiftSolve(start, *program.solve(lift, start, design, mass))
@@ -276,6 +277,12 @@ def _efforts(
     return {
         name: AgentEffort(
             torques=np.array([instant.postures[name].torque_norm for instant in instants]),
+            disturbed={
+                disturbance: np.array(
+                    [instant.disturbed[disturbance][name].torque_norm for instant in instants]
+                )
+                for disturbance in course.disturbed
+            },
             slow_torques=None
             if slowly is None
             else float(np.trapezoid([i.postures[name].torque_norm for i in slowly])) / (len(times) - 1),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
@@ -18,6 +19,7 @@ from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.repeated import RepeatedProgram
+from evodesign.posture.assemble import Slot
 from evodesign.posture.parting import Meetings
 from evodesign.posture.results import AgentPosture
 from evodesign.records import Lift
@@ -241,7 +243,12 @@ class LiftProgram:
         return heights
 
     def followed(
-        self, lift: Lift, postures: Mapping[str, AgentPosture], begin: int, design: Sequence[float]
+        self,
+        lift: Lift,
+        postures: Mapping[str, AgentPosture],
+        begin: int,
+        design: Sequence[float],
+        disturbed: Mapping[str, Mapping[str, AgentPosture]] | None = None,
     ) -> LiftStart:
         """A start: a hold's posture, followed along the lift with the feet in place, by least-norm steps.
 
@@ -250,11 +257,13 @@ class LiftProgram:
             postures: of the hold, by agent name.
             begin: the knot at whose height it is, the first or the last.
             design: one number per parameter.
+            disturbed: what is carried in the hold under each disturbance; where nothing is said, what is
+                carried without.
         """
         seen, free = self._blocks.symbols, self._blocks.free
-        parts = {form.agent.name: form.parts(postures[form.agent.name]) for form in self._blocks.forms}
+        parts = self._parts_of(postures)
         moving = np.concatenate([self._known(parts, v) for v in seen.moving])[free]
-        others = np.concatenate([self._known(parts, v) for v in seen.others])
+        others = self._carried_by(postures, disturbed or {}, design)
         closure, path = self._blocks.closure, np.empty((self._knots, self._postures))
         order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
         hands = np.asarray(self._blocks.hands(moving, design)).ravel()
@@ -274,11 +283,13 @@ class LiftProgram:
         Args:
             lift: with as many knots.
             course: the motion.
-            start: where its solve began.
+            start: where its solve ended, with its knots.
         """
         seen, free, times = self._blocks.symbols, self._blocks.free, lift.knot_times
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
-        others = self._sampled(course.carriage(times), seen.others)
+        begin, knots = course.lift.knots * (self._postures + 1), course.lift.knots
+        carried = start.symbols[begin : begin + knots * self._others].reshape(knots, -1)
+        others = CubicSpline(course.lift.knot_times, carried)(times)
         spline = RestingSpline(self._knots)
         symbols = [
             spline.through(moving).ravel(),
@@ -297,6 +308,29 @@ class LiftProgram:
         """Symbols of variables over time, shape (times, symbols)."""
         columns = [values[v.key.party][v.key.part][:, : len(v.lower)] / v.scale for v in variables]
         return np.hstack(columns)
+
+    def _parts_of(self, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, Array]]:
+        """What the forms' variables are, by agent and part."""
+        return {form.agent.name: form.parts(postures[form.agent.name]) for form in self._blocks.forms}
+
+    def _carried_by(
+        self,
+        postures: Mapping[str, AgentPosture],
+        disturbed: Mapping[str, Mapping[str, AgentPosture]],
+        design: Sequence[float],
+    ) -> Array:
+        """Symbols of torques and wrenches of a hold in every load case, and of the worst one's cost."""
+        load_cases = [postures, *(disturbed.get(name, postures) for name in self._blocks.disturbances)]
+        parts, worst = [self._parts_of(each) for each in load_cases], self._blocks.worst
+        others = np.concatenate(
+            [
+                self._known(parts[v.key.load_case], v) if isinstance(v.key, Slot) else v.start / v.scale
+                for v in self._blocks.symbols.others
+            ]
+        )
+        if worst is not None:
+            others[-1] = float(worst(others, design))
+        return others
 
     @staticmethod
     def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:
@@ -351,6 +385,10 @@ class LiftProgram:
             coefficients=self._by_agent(seen.moving, postures),
             carried=self._by_agent(seen.others, others.reshape(knots, -1)),
             load=load,
+            disturbed={
+                name: self._by_agent(seen.others, others.reshape(knots, -1), load_case)
+                for load_case, name in enumerate(self._blocks.disturbances, 1)
+            },
         )
 
     def _splines(self, symbols: Array) -> tuple[Array, Array]:
@@ -361,13 +399,16 @@ class LiftProgram:
         postures[:, free] = symbols[: self._first["load"]].reshape(self._knots, -1)
         return postures, symbols[self._first["load"] : self._first["others"]]
 
-    def _by_agent(self, variables: Sequence[object], columns: Array) -> dict[str, dict[str, Array]]:
-        """Columns of symbols as values by agent and part."""
+    def _by_agent(
+        self, variables: Sequence[object], columns: Array, load_case: int = 0
+    ) -> dict[str, dict[str, Array]]:
+        """Columns of symbols of a load case as values by agent and part."""
         found: dict[str, dict[str, Array]] = {form.agent.name: {} for form in self._blocks.forms}
         first = 0
         for variable in variables:
             key, scale, size = variable.key, variable.scale, len(variable.lower)  # type: ignore[attr-defined]
-            found[key.party][key.part] = scale * columns[:, first : first + size]
+            if isinstance(key, Slot) and key.load_case == load_case:
+                found[key.party][key.part] = scale * columns[:, first : first + size]
             first += size
         return found
 
