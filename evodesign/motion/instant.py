@@ -9,8 +9,8 @@ best motion bends an elbow the other way between two knots that are exact.
 Under each disturbance wrenches and torques are others, and the motion is the same. How load cases count
 together is said of every knot by itself (`posture.load_cases`).
 
-Rows that part bodies along directions (`posture.terms.collisions`) are left out at first. Blocks that have
-them say them at knots and half-way between, each time along directions of its own.
+Rows that part bodies (`posture.terms.collisions`) are left out at first, those of floor, partner and middle
+plane too. Blocks that have them say them at knots and half-way between, along directions of each one's own.
 
 A block's symbols are, in the program's units, step the time between knots:
 
@@ -46,7 +46,7 @@ from evodesign.posture.load_cases import counted_together
 from evodesign.posture.parting import Meetings, meetings_of, rows_of
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import Body
-from evodesign.posture.terms.collisions import COLLISIONS, directed
+from evodesign.posture.terms.collisions import CLEAR, COLLISIONS, meetings
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -109,7 +109,7 @@ class KnotBlocks:
     Args:
         forms: of robot and person, whole or halves.
         setting: of the problem.
-        switched: whether rows are there that part bodies along directions.
+        switched: whether rows are there that part bodies.
     Attributes:
         forms: likewise.
     """
@@ -136,12 +136,13 @@ class KnotBlocks:
         names = [form.agent.name for form in self.forms]
         motions = {name: PostureMotion(self._rates[name], self._changes[name]) for name in names}
         case = CaseSymbols(self._scene, (self._height,), motions, self._lifted)
-        return assemble(self._parties, TERMS.values(), case, switched=self._switched)
+        terms = [term for term in TERMS.values() if self._switched or term is not COLLISIONS]
+        return assemble(self._parties, terms, case, switched=self._switched)
 
     @cached_property
     def parted(self) -> KnotBlocks | None:
-        """The same with rows that part bodies along directions; None where no bodies are parted."""
-        parting = any(directed(form) for form in self.forms)
+        """The same with rows that part bodies; None where no bodies are parted."""
+        parting = any(meetings(form) for form in self.forms)
         return KnotBlocks(self.forms, self._setting, switched=True) if parting else None
 
     @cached_property
@@ -160,10 +161,26 @@ class KnotBlocks:
         The arguments of their functions are all posture symbols, the load's height, the directions and the
         shared numbers.
         """
-        postures = ca.vertcat(*[v.symbol for v in self.symbols.moving])
-        given, bodies = [postures, self._height, self._directions, self.shared], self._assembly.parted
-        at_knot = meetings_of(bodies, self._assembly.constraints, given)
+        bodies = self._assembly.parted
+        at_knot = meetings_of(bodies, self._assembly.constraints, self._placing)
         return at_knot, replace(at_knot, rows=rows_of(bodies, self._half_way))
+
+    @cached_property
+    def beyond_planes(self) -> ca.Function:
+        """By how much bodies are nearer to planes than the margin [m], negative where they are farther."""
+        short = [
+            row.lower - row.expression
+            for body in self._assembly.undisturbed.bodies.values()
+            for row in COLLISIONS.rows(body)
+            if row.name != CLEAR
+        ]
+        return ca.Function("beyond_planes", self._placing, [ca.vertcat(ca.SX(0, 1), *short)], {"cse": True})
+
+    @property
+    def _placing(self) -> list[Expression]:
+        """What bodies and their directions follow from."""
+        postures = ca.vertcat(*[v.symbol for v in self.symbols.moving])
+        return [postures, self._height, self._directions, self.shared]
 
     @property
     def disturbances(self) -> tuple[str, ...]:

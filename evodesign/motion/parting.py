@@ -1,9 +1,10 @@
 """Motions in which bodies keep clear of each other: rows along directions, where a solve found overlaps.
 
-As for holds (`posture.terms.collisions`, `posture.parting`) rows along directions are left out at first. If
-bodies overlap at a knot or half-way between two, the solve goes on in the program that has the rows, with a
-direction of its own for each pair at each of these moments: that which parts it best there. If the motion
-that comes of it is held by a row that another direction would loosen, that one takes its place.
+Rows that part bodies (`posture.terms.collisions`, `posture.parting`) are left out at first, those of floor,
+partner and middle plane too. If bodies overlap at a knot or half-way between two, the solve goes on in the
+program that has the rows, with a direction of its own for each pair at each of these moments: that which
+parts it best there. If the motion that comes of it is held by a row that another direction would loosen, that
+one takes its place.
 """
 
 from __future__ import annotations
@@ -81,10 +82,17 @@ class PartedLift:
             if not solve.solved:
                 return solve
             on = self._changed(parted, solve.start, solve.ending.symbols, Meetings.violated)
+            on = self._off_planes(parted, solve) if on is None else on
             if on is None:
                 return solve
             solve = self._solved_from(solve, solve.ending.symbols, on)
         return replace(solve, ending=replace(solve.ending, word=UNSETTLED)) if solve.solved else solve
+
+    def _off_planes(self, parted: LiftProgram, solve: LiftSolve) -> LiftStart | None:
+        """A start with the rows of planes; None where it has them already, or no plane is crossed."""
+        start = replace(solve.start, directions=parted.no_directions)
+        moments = parted.meetings_at(self._lift, start, solve.ending.symbols, self._design, self._mass)
+        return start if not solve.start.parts_bodies and parted.crosses_planes(moments) else None
 
     def _bettered(self, parted: LiftProgram, solve: LiftSolve) -> LiftSolve:
         """Pairs that rows hold in touch are parted along better directions, as long as the motion gains."""

@@ -20,7 +20,7 @@ from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.assemble import Slot
-from evodesign.posture.parting import Meetings
+from evodesign.posture.parting import ALMOST, Meetings
 from evodesign.posture.results import AgentPosture
 from evodesign.records import Lift
 from evodesign.tasks.lift import LoadProfile
@@ -48,7 +48,7 @@ class LiftStart:
         hands: how rigid hands are turned in it, entries of rotations; none for other grasps.
         open_by: by how much hands or feet are out of place at the worst knot [m].
         directions: that part bodies (`posture.terms.collisions`), at knots and half-way between in turn,
-            shape (2 knots - 1, numbers); of no rows where none part any.
+            shape (2 knots - 1, numbers); of no rows where none are parted.
     """
 
     symbols: Array
@@ -59,7 +59,7 @@ class LiftStart:
     @property
     def parts_bodies(self) -> bool:
         """Whether a solve from here needs the rows that part bodies."""
-        return self.directions.size > 0
+        return len(self.directions) > 0
 
 
 class LiftProgram:
@@ -185,8 +185,17 @@ class LiftProgram:
 
     @property
     def no_directions(self) -> Array:
-        """Of such a program, whose rows are all off."""
+        """Of such a program, with all rows along directions off."""
         return np.zeros((2 * self._knots - 1, self._blocks.directions))
+
+    def crosses_planes(self, moments: Sequence[Sequence[Array]]) -> bool:
+        """Whether bodies are too near to floor, partner or middle plane.
+
+        Args:
+            moments: as `meetings_at` has them, of a program with rows that part bodies.
+        """
+        found = [np.asarray(self._blocks.beyond_planes(*at)) for at in moments]
+        return max((float(each.max(initial=-np.inf)) for each in found), default=-np.inf) > ALMOST
 
     def meetings_at(
         self, lift: Lift, start: LiftStart, symbols: Array, design: Sequence[float], mass: float

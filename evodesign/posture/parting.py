@@ -24,7 +24,7 @@ from evodesign.posture.terms.collisions import (
     placed_pairs,
 )
 
-__all__ = ["Meetings", "Parted", "PartedBody", "meetings_of", "parted", "rows_of"]
+__all__ = ["ALMOST", "Meetings", "Parted", "PartedBody", "meetings_of", "parted", "rows_of"]
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -260,8 +260,8 @@ def meetings_of(
     shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
     given = list(arguments)
     return Meetings(
-        _buffered("screen", given, [ca.vertcat(*least), ca.vertcat(*along)]),
-        _buffered("shapes", given, [ca.horzcat(*shapes)]),
+        _buffered("screen", given, [ca.vertcat(ca.SX(0, 1), *each) for each in (least, along)]),
+        _buffered("shapes", given, [ca.horzcat(ca.SX(2 * SHAPE, 0), *shapes)]),
         np.array(places, np.intp),
         rows_of(bodies, constraints),
         np.array(margins),
