@@ -6,9 +6,10 @@ check refuses those that overlap; and where the problem has disturbances, withou
 benchmarks/results/lift_bodies.json, under the problem's name: statuses, processor time of the lifts without
 their holds [s], and why others were not found.
 
-    python -m benchmarks.lift_bodies [--problem point-grasp] [--designs 12]
+    python -m benchmarks.lift_bodies [--problem point-grasp] [--designs 12] [--ways apart overlapping]
 
-`point-grasp` is the point-grasp problem with a [collisions] table; other problems are files.
+`point-grasp` is the point-grasp problem with a [collisions] table, `point-grasp-pushed` that with a push of
+20 N; other problems are files.
 """
 
 from __future__ import annotations
@@ -38,7 +39,12 @@ from evodesign.problem.source import read_source
 from evodesign.records import Hold
 from evodesign.tasks import Lift
 
-POINT_GRASP = "point-grasp"
+COLLISIONS = "\n[collisions]\n"
+VARIANTS: Mapping[str, str] = {
+    "point-grasp": COLLISIONS,
+    "point-grasp-pushed": f"{COLLISIONS}\n[[disturbance]]\npush_n = [-20.0, 0.0, 0.0]\n",
+}
+"""What is added to the point-grasp problem."""
 LIFT = Lift(0.8, 1.2, 1.5)
 
 
@@ -69,12 +75,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--problem", default=POINT_GRASP)
+    parser.add_argument("--problem", default="point-grasp")
     parser.add_argument("--designs", type=int, default=12)
+    parser.add_argument("--ways", nargs="+", default=["apart", "overlapping", "undisturbed"])
     options = parser.parse_args()
     problem = problem_of(options.problem)
     evaluator = evaluator_of(problem, processors())
-    ways = ways_of(problem, evaluator)
+    ways = {way: each for way, each in ways_of(problem, evaluator).items() if way in options.ways}
     tallies = {name: Tally() for name in ways}
     designs = random_designs(problem, options.designs)
     for _ in lifts(evaluator, ways, designs[0]):
@@ -85,20 +92,21 @@ def main() -> None:
             print(number, name, way, solution.status, f"{seconds:.1f} s", flush=True)
     place = HERE / "results" / "lift_bodies.json"
     known = json.loads(place.read_text()) if place.exists() else {}
-    known[problem.name] = {
+    key = options.problem if options.problem in VARIANTS else problem.name
+    known[key] = known.get(key, {}) | {
         way: {"statuses": dict(each.statuses), "seconds": round(each.seconds, 1), "others": each.others}
         for way, each in tallies.items()
     }
     place.write_text(json.dumps(known, indent=2) + "\n")
-    print(json.dumps(known[problem.name], indent=2))
+    print(json.dumps(known[key], indent=2))
 
 
 def problem_of(name: str) -> DesignProblem:
-    """A problem of a file, or the point-grasp problem with bodies that keep clear of each other."""
-    if name != POINT_GRASP:
+    """A variant of the point-grasp problem, or a problem of a file."""
+    if name not in VARIANTS:
         return build_problem(read_source(name))
     source = read_source(PROBLEM)
-    return build_problem(msgspec.structs.replace(source, text=f"{source.text}\n[collisions]\n"))
+    return build_problem(msgspec.structs.replace(source, text=source.text + VARIANTS[name]))
 
 
 def ways_of(problem: DesignProblem, evaluator: Evaluator) -> dict[str, Mapping[tuple[str, str], LiftProblem]]:

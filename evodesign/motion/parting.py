@@ -97,25 +97,29 @@ class PartedLift:
     def _bettered(self, parted: LiftProgram, solve: LiftSolve) -> LiftSolve:
         """Pairs that rows hold in touch are parted along better directions, as long as the motion gains."""
         for _ in range(ROUNDS):
-            least, gains = GAIN * abs(solve.ending.cost), list[float]()
-            prices = parted.rows_at(solve.ending.rows)
-
-            def better(meetings: Meetings, at: Sequence[Array], held: Array) -> Chosen:
-                rows = prices[len(gains)]  # noqa: B023 - called at once, one moment after the other
-                found, gain = meetings.better(at, held, meetings.prices(rows))
-                gains.append(gain)  # noqa: B023
-                return found
-
             if not solve.solved:
                 break
-            on = self._changed(parted, solve.start, solve.ending.symbols, better)
-            if on is None or not sum(gains) > least:
+            least = GAIN * abs(solve.ending.cost)
+            on = self._better_directions(parted, solve, least)
+            if on is None:
                 break
             other = self._without_overlaps(parted, self._solved_from(solve, solve.ending.symbols, on))
             if not (other.solved and other.ending.cost < solve.ending.cost - least):
                 break
             solve = other
         return solve
+
+    def _better_directions(self, parted: LiftProgram, solve: LiftSolve, least: float) -> LiftStart | None:
+        """A start with better directions; None where they gain less than the least that counts, if any."""
+        multipliers, gains = iter(parted.rows_at(solve.ending.rows)), list[float]()
+
+        def better(meetings: Meetings, at: Sequence[Array], held: Array) -> Chosen:
+            found, gain = meetings.better(at, held, meetings.prices(next(multipliers)))
+            gains.append(gain)
+            return found
+
+        on = self._changed(parted, solve.start, solve.ending.symbols, better)
+        return on if sum(gains) > least else None
 
     def _solved_from(self, before: LiftSolve, symbols: Array, start: LiftStart) -> LiftSolve:
         """The solve that goes on from symbols with the directions of a start, with the work of both."""
