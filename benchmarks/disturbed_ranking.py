@@ -23,7 +23,7 @@ from scipy.stats import kendalltau, rankdata
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio, random_start
+from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
@@ -121,7 +121,7 @@ def _with_starts(problem: DesignProblem, scene: Scene, count: int) -> PosturePro
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     landscape = PostureProblem(setting, problem.symmetry).landscape(HOLDS[0])
     rng = np.random.default_rng(0)
-    starts = (*landscape.starts, *(random_start(landscape, rng) for _ in range(count)))
+    starts = (*landscape.starts, *(landscape.random_start(rng) for _ in range(count)))
     portfolio = StartPortfolio(starts, Coverage(0, 0, 0.0))
     known = Precomputed(postures=dict.fromkeys(HOLDS, portfolio))
     return PostureProblem(setting, problem.symmetry, known)

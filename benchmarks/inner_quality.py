@@ -23,7 +23,7 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
-from evodesign.nlp.start_portfolio import Landscape, random_start
+from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, Reach, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
@@ -120,7 +120,7 @@ class Judge:
         return Ends(np.inf if low is None else low, -np.inf if high is None else high, down, -up)
 
     def _best(self, landscape: Landscape, design: Design, rng: np.random.Generator) -> float:
-        ends = [landscape.solve(design, random_start(landscape, rng)) for _ in range(self._starts)]
+        ends = [landscape.solve(design, landscape.random_start(rng)) for _ in range(self._starts)]
         return min((end.cost for end in ends if end.status is Status.SOLVED), default=np.inf)
 
 

@@ -1,8 +1,8 @@
 """Lifts of random designs whose bodies keep clear of each other, and under disturbances: how many are found.
 
 Random designs lift from 0.8 to 1.2 m in 1.5 s, with every person and load of a problem. Each lift is solved
-from the holds at both ends as `evodesign lift` does it; then with bodies that no row keeps apart, where the
-check refuses those that overlap; and where the problem has disturbances, without them. Results go to
+from the holds at both ends; then with bodies that no row keeps apart, where the check refuses those that
+overlap; and where the problem has disturbances, without them. Results go to
 benchmarks/results/lift_bodies.json, under the problem's name: statuses, processor time of the lifts without
 their holds [s], and why others were not found.
 

@@ -26,7 +26,6 @@ from evodesign.design.space import (
 )
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
-from evodesign.nlp.start_portfolio import random_start
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting
@@ -54,7 +53,7 @@ def sweep(problem: DesignProblem, allocation: str, height: float, starts: int) -
     space = DesignSpace((parameter,))
     postures = PostureProblem(Setting(scene, space, EffortWeights(), problem.options), Symmetry.ON)
     landscape, rng = postures.landscape(Hold(height_m=height)), np.random.default_rng(1)
-    tried = [*landscape.starts, *(random_start(landscape, rng) for _ in range(starts))]
+    tried = [*landscape.starts, *(landscape.random_start(rng) for _ in range(starts))]
     person = AgentModel.of(scene.human, scene.human.tree)
     for value in VALUES[allocation]:
         ends = [landscape.solve((value,), start) for start in tried]

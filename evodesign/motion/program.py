@@ -18,6 +18,7 @@ from evodesign.motion.spline import RestingSpline
 from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Start
 from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.assemble import Slot
 from evodesign.posture.parting import ALMOST, Meetings
@@ -311,6 +312,75 @@ class LiftProgram:
             shares = np.linspace(0.0, len(directions) - 1.0, 2 * self._knots - 1)
             directions = directions[np.rint(shares).astype(int)]
         return LiftStart(np.concatenate(symbols), start.hands, start.open_by, directions)
+
+    def motion_of(self, party: str, start: LiftStart) -> Start:
+        """An agent's own motion, for others to begin at: by name of variable, SI units, knot after knot."""
+        found = {name: scale * start.symbols[places] for name, (places, scale) in self._own_of(party).items()}
+        return {**found, **{name: start.hands[places] for name, places in self._hands_of(party).items()}}
+
+    def beside(self, start: LiftStart, motion: Start) -> LiftStart:
+        """A start in which an agent moves as in another one, of any number of knots; others as they did.
+
+        Args:
+            start: to be changed.
+            motion: as `motion_of` gives it; of no variable: nothing changes.
+        """
+        symbols, hands = start.symbols.copy(), start.hands.copy()
+        for party in (form.agent.name for form in self._blocks.forms):
+            for name, (places, scale) in self._own_of(party).items():
+                if name in motion:
+                    symbols[places] = self._at_knots(name, motion[name], len(places)) / scale
+            for name, places in self._hands_of(party).items():
+                if name in motion:
+                    hands[places] = motion[name]
+        return LiftStart(symbols, hands, start.open_by)
+
+    def _at_knots(self, name: str, values: Sequence[float], count: int) -> Array:
+        """A motion's numbers at this program's knots; coefficients of splines by way of their values."""
+        found = np.asarray(values, float)
+        if len(found) == count:
+            return found
+        rows = count // self._knots
+        own = found.reshape(-1, rows)
+        given, wanted = np.linspace(0.0, 1.0, len(own)), np.linspace(0.0, 1.0, self._knots)
+        if name in {v.name for v in self._blocks.symbols.moving}:
+            at_knots = RestingSpline(len(own)).image(wanted * (len(own) - 1)) @ own
+            return RestingSpline(self._knots).through(at_knots).ravel()
+        return np.column_stack([np.interp(wanted, given, column) for column in own.T]).ravel()
+
+    def _own_of(self, party: str) -> dict[str, tuple[NDArray[np.intp], float]]:
+        """Which symbols are an agent's, and their unit, by name of variable, sole or grip."""
+        seen, found = self._blocks.symbols, dict[str, tuple[NDArray[np.intp], float]]()
+        free = np.cumsum(self._blocks.free) - 1
+        knots, first = np.arange(self._knots)[:, None], 0
+        for variable in seen.moving:
+            rows = np.arange(first, first + len(variable.lower))
+            first += len(variable.lower)
+            own = free[rows[self._blocks.free[rows]]]
+            if variable.key.party == party:  # type: ignore[attr-defined]
+                found[variable.name] = (knots * self._postures + own).ravel(), variable.scale
+        first = 0
+        for variable in seen.others:
+            rows = np.arange(first, first + len(variable.lower))
+            first += len(variable.lower)
+            if isinstance(variable.key, Slot) and variable.key.party == party:
+                places = self._first["others"] + knots * self._others + rows
+                found[variable.name] = places.ravel(), variable.scale
+        names = [(who, f"{who}.{side}_place") for who, side in seen.places]
+        names += [(who, f"{who}.{side}_grip") for who, side in seen.grips]
+        for number, (who, name) in enumerate(names):
+            if who == party:
+                found[name] = self._first["places"] + 3 * number + np.arange(3), 1.0
+        return found
+
+    def _hands_of(self, party: str) -> dict[str, NDArray[np.intp]]:
+        """Where the turns of an agent's rigid hands stand among those of a start, by name."""
+        keys = [*self._blocks.symbols.grips]
+        return {
+            f"{who}.{side}_turn": 9 * number + np.arange(9)
+            for number, (who, side) in enumerate(keys)
+            if who == party
+        }
 
     @staticmethod
     def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:

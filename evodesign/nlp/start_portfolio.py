@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 import numpy as np
@@ -28,9 +28,10 @@ __all__ = [
     "NEAR",
     "Coverage",
     "Landscape",
+    "Optimum",
+    "Searched",
     "StartPortfolio",
     "Training",
-    "random_start",
     "spread_designs",
     "start_portfolio",
     "widened",
@@ -66,6 +67,46 @@ class Training:
     share: float = 0.99
 
 
+class Optimum(Protocol):
+    """Where a solve ended."""
+
+    @property
+    def cost(self) -> float:
+        """Of the last iterate."""
+        ...
+
+    @property
+    def status(self) -> Status:
+        """Solved, or why not."""
+        ...
+
+    @property
+    def values(self) -> Start:
+        """Where another solve can begin."""
+        ...
+
+
+class Searched(Protocol):
+    """A cost to be minimised, whatever the design, from one start or another."""
+
+    @property
+    def starts(self) -> tuple[Start, ...]:
+        """Fixed ones, for any design."""
+        ...
+
+    def solve(self, design: Design, start: Start) -> Optimum:
+        """The optimum that is found from a start."""
+        ...
+
+    def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
+        """Which costs are close enough to the best ones."""
+        ...
+
+    def random_start(self, rng: np.random.Generator) -> Start:
+        """Another start, drawn."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class Landscape:
     """A cost to be minimised, whatever the design.
@@ -97,6 +138,14 @@ class Landscape:
         """Which costs are close enough to the best ones."""
         return costs <= best + self.relative * np.abs(best) + self.absolute
 
+    def random_start(self, rng: np.random.Generator) -> Start:
+        """One of the fixed starts, with all that is drawn anywhere between its bounds."""
+        start = dict(self.starts[int(rng.integers(len(self.starts)))])
+        for variable in self.solver.program.variables:
+            if variable.drawn:
+                start[variable.name] = rng.uniform(variable.lower, variable.upper)
+        return start
+
 
 class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How well a portfolio serves designs that it was not made from.
@@ -124,7 +173,7 @@ class StartPortfolio(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     coverage: Coverage
 
 
-def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: Training) -> StartPortfolio:
+def start_portfolio(landscape: Searched, designs: Iterator[Design], training: Training) -> StartPortfolio:
     """The portfolio of a landscape.
 
     Args:
@@ -158,7 +207,7 @@ def start_portfolio(landscape: Landscape, designs: Iterator[Design], training: T
 
 
 def widened(
-    portfolio: StartPortfolio, offers: Sequence[Start], cases: Iterator[tuple[Landscape, Design]], most: int
+    portfolio: StartPortfolio, offers: Sequence[Start], cases: Iterator[tuple[Searched, Design]], most: int
 ) -> StartPortfolio:
     """The portfolio with those offered starts that serve cases which its own do not.
 
@@ -179,19 +228,10 @@ def widened(
     return StartPortfolio(tuple(starts[place] for place in chosen), portfolio.coverage)
 
 
-def _served(landscape: Landscape, design: Design, starts: Sequence[Start]) -> NDArray[np.bool_]:
+def _served(landscape: Searched, design: Design, starts: Sequence[Start]) -> NDArray[np.bool_]:
     """Which starts lead close to the best optimum that any of them leads to."""
     costs = np.array([_cost(landscape.solve(design, start)) for start in starts])
     return np.asarray(np.isfinite(costs) & landscape.good(costs, costs.min()))
-
-
-def random_start(landscape: Landscape, rng: np.random.Generator) -> Start:
-    """One of the fixed starts, with all that is drawn anywhere between its bounds."""
-    start = dict(landscape.starts[int(rng.integers(len(landscape.starts)))])
-    for variable in landscape.solver.program.variables:
-        if variable.drawn:
-            start[variable.name] = rng.uniform(variable.lower, variable.upper)
-    return start
 
 
 def spread_designs(
@@ -231,10 +271,10 @@ class _Study:
 
 
 def _study(
-    landscape: Landscape, design: Design, known: Sequence[Start], count: int, rng: np.random.Generator
+    landscape: Searched, design: Design, known: Sequence[Start], count: int, rng: np.random.Generator
 ) -> _Study | None:
     """The best of some known and some random starts; None where none converges."""
-    starts = [*known, *(random_start(landscape, rng) for _ in range(count))]
+    starts = [*known, *(landscape.random_start(rng) for _ in range(count))]
     ends = [landscape.solve(design, start) for start in starts]
     costs = [_cost(end) for end in ends]
     best = int(np.argmin(costs))
@@ -245,7 +285,7 @@ def _study(
     )
 
 
-def _crossed(landscape: Landscape, study: _Study, others: Sequence[_Study]) -> _Study:
+def _crossed(landscape: Searched, study: _Study, others: Sequence[_Study]) -> _Study:
     """The study with a better optimum, if those of others lead to one."""
     for other in others:
         end = landscape.solve(study.design, other.optimum)
@@ -254,7 +294,7 @@ def _crossed(landscape: Landscape, study: _Study, others: Sequence[_Study]) -> _
     return study
 
 
-def _cost(end: RawSolution) -> float:
+def _cost(end: Optimum) -> float:
     """Cost of a solve that converged; infinite for one that did not."""
     return end.cost if end.status is Status.SOLVED else np.inf
 
@@ -263,7 +303,7 @@ def _best(studies: Sequence[_Study]) -> Costs:
     return np.array([study.cost for study in studies])
 
 
-def _least_costs(landscape: Landscape, chosen: Sequence[Start], studies: Sequence[_Study]) -> Costs:
+def _least_costs(landscape: Searched, chosen: Sequence[Start], studies: Sequence[_Study]) -> Costs:
     """The least cost of each design from some starts; infinite where none converges."""
     costs = np.full((len(studies), 1 + len(chosen)), np.inf)
     for row, study in enumerate(studies):
@@ -274,7 +314,7 @@ def _least_costs(landscape: Landscape, chosen: Sequence[Start], studies: Sequenc
 
 
 def _grown(
-    landscape: Landscape, chosen: tuple[Start, ...], studies: Sequence[_Study], training: Training
+    landscape: Searched, chosen: tuple[Start, ...], studies: Sequence[_Study], training: Training
 ) -> tuple[Start, ...]:
     """The starts with others added until every study is served, or there are as many as there may be.
 

@@ -15,7 +15,6 @@ from evodesign.nlp.solver import Solver, SolverOptions
 from evodesign.nlp.start_portfolio import (
     Landscape,
     Training,
-    random_start,
     spread_designs,
     start_portfolio,
     widened,
@@ -121,7 +120,7 @@ def test_a_landscape_without_optima_has_no_seeds() -> None:
 
 def test_random_starts_keep_to_the_joints_ranges() -> None:
     ground, rng = landscape(limit=2.0), np.random.default_rng(1)
-    drawn = np.array([random_start(ground, rng)["robot.joints"][0] for _ in range(200)])
+    drawn = np.array([ground.random_start(rng)["robot.joints"][0] for _ in range(200)])
     assert drawn.min() < -1.8
     assert drawn.max() > 1.8
     assert np.abs(drawn).max() <= 2.0
