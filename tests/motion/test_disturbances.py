@@ -10,6 +10,8 @@ import pinocchio as pin
 import pytest
 from numpy.typing import NDArray
 
+from evodesign.cli.output import console, rounded
+from evodesign.cli.tables.lift import lift_tables
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import SIDES
@@ -23,6 +25,7 @@ from evodesign.posture.check import AgentMotion, Checker
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import symmetric_forms
+from evodesign.problem.lift_json import lift_json
 from evodesign.problem.sensitivities import five_point
 from evodesign.tree.urdf_write import urdf_text
 from tests.motion.lifted import LIFT, Lifted
@@ -152,6 +155,20 @@ def test_a_check_sees_a_wrong_torque_under_a_disturbance(pushed: Lifted, found: 
     robot["torques"] = robot["torques"] + 0.01
     wrong = {**course.disturbed, HEAVIER.name: {**course.disturbed[HEAVIER.name], "robot": robot}}
     assert "heavier: robot.torque" in checker.check(replace(course, disturbed=wrong)).wrong
+
+
+def test_tables_and_json_have_the_torques_under_each_disturbance(
+    found: LiftSolution, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for table in lift_tables("a lift", {("", ""): found}):
+        console().print(table)
+    shown = " ".join(capsys.readouterr().out.split())
+    (lift,) = lift_json({("", ""): found})["lifts"]
+    for name in (each.name for each in EVERY):
+        assert all(word in shown for word in name.split())
+        for agent, effort in found.efforts.items():
+            assert rounded(effort.disturbed[name].max()) in shown
+            assert lift["agents"][agent]["disturbed_torque_norms"][name] == effort.disturbed[name].tolist()
 
 
 @pytest.mark.parametrize("effort", OverCases)
