@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.sensitivity import Limit, no_limits
-from evodesign.posture.results import Instant
+from evodesign.posture.results import AgentPosture, Instant
 
 __all__ = ["LiftDerivative"]
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class LiftDerivative:
-    """A motion, and how it moves with the design.
+    """A motion made exact, and how it moves with the design.
 
     Args:
         instants_of: the instants of results from the program's symbols.
@@ -41,6 +41,11 @@ class LiftDerivative:
         return self.cost
 
     @property
+    def instants(self) -> tuple[Instant, ...]:
+        """Of the motion itself."""
+        return self._around[0]
+
+    @property
     def limits(self) -> Sequence[Limit]:
         """None: which limits a motion reaches is not reported."""
         return no_limits(len(self.cost_slope))
@@ -51,7 +56,7 @@ class LiftDerivative:
 
     @cached_property
     def _around(self) -> tuple[tuple[Instant, ...], ...]:
-        """Without a step, then after a unit step along each parameter: torques are linear in the step."""
+        """Without a step, then after a unit one along each parameter: torques and speeds are linear in it."""
         steps = np.vstack([np.zeros(len(self.cost_slope)), np.eye(len(self.cost_slope))])
         return tuple(self.moved(step) for step in steps)
 
@@ -65,9 +70,21 @@ class LiftDerivative:
             load_case: zero, as there are no disturbances.
             weights: by agent and joint.
         """
+        return self._along(instant, weights, lambda posture: posture.torques)
+
+    def along_speeds(self, instant: int, weights: Mapping[str, Mapping[str, float]]) -> Array:
+        """The same of the speeds of joints."""
+        return self._along(instant, weights, lambda posture: posture.speeds)
+
+    def _along(
+        self,
+        instant: int,
+        weights: Mapping[str, Mapping[str, float]],
+        values: Callable[[AgentPosture], Mapping[str, float]],
+    ) -> Array:
         sums = [
             sum(
-                weight * instants[instant].postures[agent].torques[joint]
+                weight * values(instants[instant].postures[agent])[joint]
                 for agent, joints in weights.items()
                 for joint, weight in joints.items()
             )

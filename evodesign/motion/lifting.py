@@ -130,8 +130,11 @@ class LiftProblem:
         found, task = solution.motion, solution.case.task
         if found is None or found.start is None or found.ending is None or not isinstance(task, Lift):
             return NotDifferentiable("there is no motion")
-        lift, program, ending = found.lift, self._program(found.lift.knots), found.ending
-        slopes = program.slopes(lift, found.start, ending, design, self._scene.payload.mass)
+        lift, program, mass = found.lift, self._program(found.lift.knots), self._scene.payload.mass
+        ending = program.exact(lift, found.start, found.ending, design, mass)
+        if isinstance(ending, NotDifferentiable):
+            return ending
+        slopes = program.slopes(lift, found.start, ending, design, mass)
         if isinstance(slopes, NotDifferentiable):
             return slopes
         return LiftDerivative(

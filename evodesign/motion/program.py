@@ -128,6 +128,13 @@ class LiftProgram:
         low, high = self._bounds(lift)
         return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, self._own)
 
+    def exact(
+        self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
+    ) -> Ending | NotDifferentiable:
+        """A solve's end made so exact that it can be differentiated; arguments as in `slopes`."""
+        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        return self._program.exact(ending, self._bounds(lift), shared, self._own)
+
     def slopes(
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
     ) -> Array | NotDifferentiable:
@@ -136,7 +143,7 @@ class LiftProgram:
         Args:
             lift: with as many knots.
             start: where the solve began.
-            ending: of the solve.
+            ending: of the solve, made exact.
             design: one number per parameter.
             mass: of the load [kg].
         """

@@ -7,8 +7,10 @@ from its limit, the conditions of the interior-point method, differentiated, are
     | A                                 -D  |  | dlambda/ds |  =  - | dg_A/ds                              |
 
 A holds the equalities (D = 0) and the inequalities with |lambda| > t (D = t / |lambda|); all others have the
-weight w = |lambda| / t, bounds likewise on the diagonal. So no active set is guessed: what is held firmly
-does not move, what is not has next to no weight. Derivatives by s are central differences of first
+weight w = |lambda| / t, bounds likewise on the diagonal. At a solve's end lambda t is its barrier parameter;
+D and w are those of a barrier `SHARPER` times smaller, with the multipliers that are and the distances that
+are. What is held does not move then, and what is not has next to no weight. Where neither lambda nor t is
+large enough to tell which it is, there is no derivative. Derivatives by s are central differences of first
 derivatives, which are exact.
 
 Source: Waechter and Biegler 2006, Eq. 9 to 13; Fiacco 1983, ch. 2 (sensitivity).
@@ -22,13 +24,20 @@ import numpy as np
 import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
-from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.optimality import COMPLEMENTARY, NotDifferentiable
 from evodesign.nlp.program import Array
 
 __all__ = ["central_differences", "solution_slopes"]
 
 LEAST_DISTANCE = 1e-12
 """Of an inequality from its limit, in the program's own units; bounds are relaxed by 1e-8."""
+
+SHARPER = 1e-4
+"""Of the solve's barrier parameter. A limit that is missed by 3e-6 would else still be felt after a solve to
+1e-12: its weight is 1e-2."""
+
+FIRM = 1e10
+"""Weight of a variable that has one value, whatever its multiplier."""
 
 DUAL_SHIFT = 1e-11
 """Keeps the system regular where equalities depend on each other."""
@@ -57,14 +66,17 @@ def solution_slopes(
         slopes: d2L/dx ds and dg/ds, shapes (x, s) and (rows, s).
     """
     _, low, high, forces = rows
-    equal = low == high
-    weights, distances = _weights(*rows)
+    equal, distances = low == high, _distances(*rows)
+    if _undecided(*rows) or _undecided(*bounds):
+        return NotDifferentiable(
+            "a limit of the motion is only just reached, on one side of the design alone"
+        )
     firm = equal | (np.abs(forces) > distances)
-    loose = sparse.diags(np.where(firm, 0.0, weights)) @ jacobian
-    on_bounds, _ = _weights(*bounds)
+    loose = sparse.diags(np.where(firm, 0.0, SHARPER * np.abs(forces) / distances)) @ jacobian
+    on_bounds = _on_bounds(*bounds)
     primal = sparse.csc_matrix(hessian) + jacobian.T @ loose + sparse.diags(on_bounds)
     held = sparse.csr_matrix(jacobian)[np.flatnonzero(firm)]
-    softness = np.where(equal, 0.0, distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
+    softness = np.where(equal, 0.0, SHARPER * distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
     corner = -sparse.diags(softness)
     right = -np.vstack([slopes[0] + loose.T @ slopes[1], slopes[1][firm]])
     system = sparse.bmat([[primal, held.T], [held, corner]], format="csc")
@@ -81,11 +93,22 @@ def solution_slopes(
     return np.asarray(found[: len(bounds[0])])
 
 
-def _weights(values: Array, low: Array, high: Array, forces: Array) -> tuple[Array, Array]:
-    """|multiplier| over distance of each inequality, and that distance, from the limit that pushes."""
-    distances = np.maximum(np.where(forces > 0.0, high - values, values - low), LEAST_DISTANCE)
-    distances = np.where(np.isfinite(distances), distances, np.inf)
-    return np.abs(forces) / distances, distances
+def _distances(values: Array, low: Array, high: Array, forces: Array) -> Array:
+    """Of each inequality from the limit that pushes."""
+    return np.maximum(np.where(forces > 0.0, high - values, values - low), LEAST_DISTANCE)
+
+
+def _on_bounds(values: Array, low: Array, high: Array, forces: Array) -> Array:
+    """The weight of each variable."""
+    distances, pushes = _distances(values, low, high, forces), np.abs(forces)
+    sharper = np.where(pushes > distances, 1.0 / SHARPER, SHARPER)
+    return np.where(low == high, FIRM, sharper * pushes / distances)
+
+
+def _undecided(values: Array, low: Array, high: Array, forces: Array) -> bool:
+    """Whether any inequality has neither a multiplier nor a distance that counts."""
+    least = np.minimum(high - values, values - low)
+    return bool(((low < high) & (np.maximum(least, np.abs(forces)) < COMPLEMENTARY)).any())
 
 
 def central_differences(

@@ -22,7 +22,7 @@ from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.hardware_objectives import holding_power
+from evodesign.problem.hardware_objectives import holding_power, power_by_torque
 from evodesign.records import ProblemSource
 
 __all__ = [
@@ -32,6 +32,9 @@ __all__ = [
     "SPINE",
     "l5s1_moment",
     "mean_over_time",
+    "moment_by_torque",
+    "motion_power_by_speed",
+    "motion_power_by_torque",
     "refuse_still",
     "robot_power",
 ]
@@ -57,10 +60,35 @@ def robot_power(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return float(sum(mechanical)) + holding_power(scene, postures)
 
 
+def motion_power_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """D P / d tau = 2 tau / K^2, and the speed of each joint that drives."""
+    posture, copper = postures[ROBOT], power_by_torque(scene, postures)[ROBOT]
+    speeds = {joint: posture.speeds[joint] for joint in _driving(posture)}
+    return {ROBOT: {joint: copper.get(joint, 0.0) + speeds.get(joint, 0.0) for joint in posture.torques}}
+
+
+def motion_power_by_speed(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """The torque of each joint that drives."""
+    posture = postures[ROBOT]
+    return {ROBOT: {joint: posture.torques[joint] for joint in _driving(posture)}}
+
+
+def _driving(posture: AgentPosture) -> list[str]:
+    """Joints whose torque turns them on."""
+    return [joint for joint, speed in posture.speeds.items() if posture.torques[joint] * speed > 0.0]
+
+
 def l5s1_moment(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """Norm of the person's torques between L5 and S1 [N m]."""
     torques = postures[HUMAN].torques
     return float(np.linalg.norm([torque for joint, torque in torques.items() if joint.startswith(LUMBAR)]))
+
+
+def moment_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """D |tau| / d tau of the joints between L5 and S1."""
+    norm = l5s1_moment(scene, postures) or 1.0
+    torques = postures[HUMAN].torques
+    return {HUMAN: {joint: tau / norm for joint, tau in torques.items() if joint.startswith(LUMBAR)}}
 
 
 def mean_over_time(times: Sequence[float], values: Sequence[Value]) -> Value:

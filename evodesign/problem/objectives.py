@@ -56,6 +56,9 @@ from evodesign.problem.motion_objectives import (
     SPINE,
     l5s1_moment,
     mean_over_time,
+    moment_by_torque,
+    motion_power_by_speed,
+    motion_power_by_torque,
     robot_power,
 )
 from evodesign.records import Constraint, Lift, Objective
@@ -225,8 +228,8 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
     "holding_power": CaseQuantity("W", holding_power, power_by_torque),
     "hand_deflection": CaseQuantity("mm", hand_deflection),
-    POWER: CaseQuantity("W", robot_power),
-    SPINE: CaseQuantity("N m", l5s1_moment),
+    POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
+    SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 

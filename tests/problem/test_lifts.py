@@ -13,12 +13,15 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import LiftProblem
+from evodesign.motion.program import LiftProgram
 from evodesign.nlp.method import MethodName
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
@@ -258,3 +261,60 @@ def test_gradients_of_every_objective_are_those_of_differences_along_the_tangent
         expected = [gradient[parameter] * spans[parameter] for parameter in spans]
         found = [quick[name][parameter] for parameter in spans]
         assert found == pytest.approx(expected, abs=1e-4 * max(map(abs, expected)))
+
+
+EVERY = ("robot_torque", "human_torque", "robot_power", "l5s1_moment")
+
+
+def neighbours(
+    moving: Moving, result: DesignResult, direction: np.ndarray, shares: list[float]
+) -> list[float]:
+    """Every objective of designs along a direction, whose motions are solved to 1e-12 from a design's own."""
+    case, problem = result.cases[0], moving.problem
+    motion = case.motion
+    options = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE)
+    setting = Setting(problem.scene, problem.space, problem.weights, options)
+    exact = replace(options, tolerance=1e-12, near=True)
+    program = LiftProgram(KnotBlocks(symmetric_forms(problem.scene), setting), motion.lift.knots, exact)
+    start, found = replace(motion.start, symbols=motion.ending.symbols), []
+    for share in shares:
+        values = np.array(result.values) + share * direction
+        ending, _ = program.solve(motion.lift, start, values, problem.scene.payload.mass)
+        assert ending.word == "Solve_Succeeded"
+        instants = program.course(motion.lift, ending.symbols).instants(case.case.task.result_times)
+        moved = replace(result, cases=(replace(case, instants=instants),))
+        found.append([objective_value(objective.name, moved) for objective in problem.objectives])
+    return found
+
+
+def test_gradients_of_every_objective_are_those_of_solves_of_neighbours(repository: Path) -> None:
+    """Central differences at two steps, extrapolated to none (Richardson), of three designs.
+
+    Relative to the gradient along the direction, or to a thousandth of the objective or of its unit where it
+    hardly moves: the person's torques often do not at all.
+    """
+    names = [*EVERY, *(f"worst_{name}" for name in EVERY), "energy"]
+    asked = '"robot_torque", "human_torque"', ", ".join(f'"{name}"' for name in names)
+    table = "from_m = 0.9\nto_m = 1.1\nseconds = 1.5\nknots = 8"
+    moving = Moving.of(changed(repository, (TABLE, table), asked))
+    derivatives = Sensitivities(moving.problem, inner=moving.solver.inner)
+    records, rng, step = moving.problem.space.records, np.random.default_rng(4), 5e-5
+    moves = 0
+    for _ in range(3):
+        values = moving.problem.space.values(tuple(rng.uniform(0.2, 0.8, len(records)).tolist()))
+        result = moving.solver.solve(values)
+        assert result.cases[0].solved, result.cases[0].reason
+        gradients = assessed_gradients(moving.problem, derivatives, values, result)
+        assert gradients.absent == {}
+        ranges = np.array([p.slope_at(x) for p, x in zip(records, values, strict=True)])
+        along = rng.standard_normal(len(records))
+        ends = np.array(neighbours(moving, result, along * ranges, [-step, -step / 2, step / 2, step]))
+        far, near = (ends[3] - ends[0]) / (2.0 * step), (ends[2] - ends[1]) / step
+        for place, objective in enumerate(moving.problem.objectives):
+            row = np.array(list(gradients.values[objective.name].values()))
+            if objective.name == "reach_height":
+                continue
+            size = max(abs(float(row @ along)), 1e-3 * abs(ends[0][place]), 1e-3)
+            assert (4.0 * near - far)[place] / 3.0 == pytest.approx(row @ along, abs=1e-4 * size), objective
+            moves += abs(float(row @ along)) == size
+    assert moves >= 15
