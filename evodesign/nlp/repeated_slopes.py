@@ -36,9 +36,6 @@ SHARPER = 1e-4
 """Of the solve's barrier parameter. A limit that is missed by 3e-6 would else still be felt after a solve to
 1e-12: its weight is 1e-2."""
 
-FIRM = 1e10
-"""Weight of a variable that has one value, whatever its multiplier."""
-
 DUAL_SHIFT = 1e-11
 """Keeps the system regular where equalities depend on each other."""
 
@@ -71,16 +68,27 @@ def solution_slopes(
         return NotDifferentiable(
             "a limit of the motion is only just reached, on one side of the design alone"
         )
+    free = np.flatnonzero(bounds[1] < bounds[2])
     firm = equal | (np.abs(forces) > distances)
-    loose = sparse.diags(np.where(firm, 0.0, SHARPER * np.abs(forces) / distances)) @ jacobian
-    on_bounds = _on_bounds(*bounds)
-    primal = sparse.csc_matrix(hessian) + jacobian.T @ loose + sparse.diags(on_bounds)
-    held = sparse.csr_matrix(jacobian)[np.flatnonzero(firm)]
+    own = sparse.csc_matrix(jacobian)[:, free].tocsr()
+    loose = sparse.diags(np.where(firm, 0.0, SHARPER * np.abs(forces) / distances)) @ own
+    on_bounds = sparse.diags(_on_bounds(*(each[free] for each in bounds)))
+    primal = sparse.csc_matrix(hessian)[free][:, free] + own.T @ loose + on_bounds
+    held = own[np.flatnonzero(firm)]
     softness = np.where(equal, 0.0, SHARPER * distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
-    corner = -sparse.diags(softness)
-    right = -np.vstack([slopes[0] + loose.T @ slopes[1], slopes[1][firm]])
-    system = sparse.bmat([[primal, held.T], [held, corner]], format="csc")
-    shift = sparse.diags(np.concatenate([np.zeros(len(bounds[0])), np.full(int(firm.sum()), -DUAL_SHIFT)]))
+    right = -np.vstack([slopes[0][free] + loose.T @ slopes[1], slopes[1][firm]])
+    system = sparse.bmat([[primal, held.T], [held, -sparse.diags(softness)]], format="csc")
+    moved = _solved(system, right, len(free))
+    if isinstance(moved, NotDifferentiable):
+        return moved
+    found = np.zeros((len(bounds[0]), right.shape[1]))
+    found[free] = moved[: len(free)]
+    return found
+
+
+def _solved(system: sparse.csc_matrix, right: Array, count: int) -> Array | NotDifferentiable:
+    """The system's solution, refined; so many of its rows are variables, the others held rows."""
+    shift = sparse.diags(np.repeat([0.0, -DUAL_SHIFT], [count, len(right) - count]))
     try:
         factors = splu(sparse.csc_matrix(system + shift))
     except RuntimeError:
@@ -88,9 +96,7 @@ def solution_slopes(
     found = factors.solve(right)
     for _ in range(REFINEMENTS):
         found += factors.solve(right - system @ found)
-    if not np.isfinite(found).all():
-        return NotDifferentiable("the motion can move at no cost")
-    return np.asarray(found[: len(bounds[0])])
+    return found if np.isfinite(found).all() else NotDifferentiable("the motion can move at no cost")
 
 
 def _distances(values: Array, low: Array, high: Array, forces: Array) -> Array:
@@ -102,7 +108,7 @@ def _on_bounds(values: Array, low: Array, high: Array, forces: Array) -> Array:
     """The weight of each variable."""
     distances, pushes = _distances(values, low, high, forces), np.abs(forces)
     sharper = np.where(pushes > distances, 1.0 / SHARPER, SHARPER)
-    return np.where(low == high, FIRM, sharper * pushes / distances)
+    return sharper * pushes / distances
 
 
 def _undecided(values: Array, low: Array, high: Array, forces: Array) -> bool:
