@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, make_interp_spline
 
 from evodesign.motion.spline import RestingSpline
 from evodesign.posture.check import AgentMotion, SceneMotion
@@ -30,6 +31,8 @@ class LiftCourse:
         coefficients: of the splines of postures, by agent and part, shape (knots, rows).
         carried: torques and wrenches at the knots, by agent and part, shape (knots, rows).
         load: coefficients of the load's height [m], shape (knots,).
+        abrupt: whether torques and wrenches are linear between knots, as accelerations are: those of the
+            quickest motion jump from one limit to another, which a spline overshoots.
     """
 
     lift: Lift
@@ -37,9 +40,10 @@ class LiftCourse:
     coefficients: Mapping[str, Mapping[str, Array]]
     carried: Mapping[str, Mapping[str, Array]]
     load: Array
+    abrupt: bool = False
 
     def instants(self, times: Sequence[float] | Array) -> tuple[Instant, ...]:
-        """Whole postures and what is carried, between knots by cubic splines through those at the knots."""
+        """Whole postures and what is carried, between knots by splines through those at the knots."""
         postures, carriage = self.postures(times), self.carriage(times)
         image, heights = self._image(times, 1) / self.lift.step, self.heights(times)
         found: list[dict[str, AgentPosture]] = [{} for _ in times]
@@ -64,8 +68,9 @@ class LiftCourse:
     def carriage(self, times: Sequence[float] | Array) -> dict[str, dict[str, Array]]:
         """Torques and wrenches of the forms, likewise."""
         knots = self.lift.knot_times
+        through = partial(make_interp_spline, k=1) if self.abrupt else CubicSpline
         return {
-            name: {part: CubicSpline(knots, at)(times) for part, at in parts.items()}
+            name: {part: through(knots, at)(times) for part, at in parts.items()}
             for name, parts in self.carried.items()
         }
 

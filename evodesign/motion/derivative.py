@@ -27,6 +27,7 @@ class LiftDerivative:
         slopes: their derivatives with respect to the design's parameters, shape (symbols, parameters).
         cost: the least cost.
         cost_slope: its derivative, one per parameter.
+        least_slope: that of the least time [s], likewise; None where nothing asks for it.
     """
 
     instants_of: Callable[[Array], tuple[Instant, ...]]
@@ -34,6 +35,7 @@ class LiftDerivative:
     slopes: Array
     cost: float
     cost_slope: Array
+    least_slope: Array | None = None
 
     @property
     def compared(self) -> float:

@@ -10,6 +10,9 @@ A block's symbols are, in the program's units, step the time between knots:
 
     posture, step * its rate, step^2 * its change, load height, step^2 * its change, torques and wrenches,
     places of the feet, turns of rigid hands
+
+and, where the least time is looked for, the time of the lift, as a share of what was asked for: it is what is
+minimised then, and all that else costs counts little.
 """
 
 from __future__ import annotations
@@ -57,6 +60,9 @@ HAND_CLOSURE, SOLE_CLOSURE, SLANT_CLOSURE = 2e-3, 1e-3, 5e-3
 CLOSURE_UNIT = 0.1
 """Of the rows between knots, in which their bounds are of the size of other rows."""
 
+LITTLE = 1e-6
+"""What torques and all that a lift else costs count beside the share of the asked-for time."""
+
 FastestJoint = Mapping[str, Expression]
 
 
@@ -100,12 +106,15 @@ class KnotBlocks:
     Args:
         forms: of robot and person, whole or halves.
         setting: of the problem.
+        timed: whether the least time is looked for.
     Attributes:
         forms: likewise.
+        timed: likewise.
     """
 
-    def __init__(self, forms: tuple[Form, Form], setting: Setting) -> None:
-        self.forms, self._setting = forms, setting
+    def __init__(self, forms: tuple[Form, Form], setting: Setting, *, timed: bool = False) -> None:
+        self.forms, self.timed, self._setting = forms, timed, setting
+        self._time = ca.SX.sym("time", int(timed))
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
         scene, self._mass = any_load(setting.scene.undisturbed)
@@ -178,23 +187,32 @@ class KnotBlocks:
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
         cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
+        if self.timed:
+            cost = self._time + LITTLE * cost
         column, own = self._column(), ca.vertcat(weight)
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
         return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))
 
     @cached_property
     def between(self) -> Block:
-        """What is said half-way between knots, of posture, load height and places."""
+        """What is said half-way between knots, of posture, load height and places.
+
+        Where the least time is looked for joints are within their speed everywhere: speeds are a quadratic
+        spline, whose coefficients are the differences of the motion's, and a weighted mean of these.
+        """
         rows = []
         for body in self._assembly.undisturbed.bodies.values():
             rows += [row.expression / HAND_CLOSURE for row in GRASP.rows(body)]
             for offset in self._soles(body):
                 rows += [offset[:3] / SOLE_CLOSURE, offset[3:] / SLANT_CLOSURE]
             rows += [turned / SLANT_CLOSURE for turned in self._grips(body)]
-        closed = CLOSURE_UNIT * ca.vertcat(*rows)
-        column = ca.vertcat(self._posture, self._height, self._places)
-        (closed,) = self._in_units([closed], column)
-        limit, none = np.full(closed.numel(), CLOSURE_UNIT), ca.SX.sym("none", 0)
+        bodies = self._assembly.undisturbed.bodies.values() if self.timed else ()
+        speeds = ca.vertcat(ca.SX(0, 1), *map(self._speeds, bodies))
+        moved = [self._stepped[0]] * self.timed
+        column = ca.vertcat(self._posture, *moved, self._height, self._places, self._time)
+        closed = ca.vertcat(CLOSURE_UNIT * ca.vertcat(*rows), speeds)
+        limit = np.repeat([CLOSURE_UNIT, 1.0], [closed.numel() - speeds.numel(), speeds.numel()])
+        (closed,), none = self._in_units([closed], column), ca.SX.sym("none", 0)
         return Block("between", column, none, self.shared, ca.SX(0.0), closed, -limit, limit)
 
     @cached_property
@@ -239,7 +257,8 @@ class KnotBlocks:
     def _column(self) -> Expression:
         moved, bent, load_bent = self._stepped
         others = [v.symbol for v in self.symbols.others]
-        return ca.vertcat(self._posture, moved, bent, self._height, load_bent, *others, self._places)
+        posture = [self._posture, moved, bent, self._height, load_bent]
+        return ca.vertcat(*posture, *others, self._places, self._time)
 
     def _in_units(self, expressions: Sequence[Expression], column: Expression) -> list[Expression]:
         """Expressions of the block's symbols: derivatives in steps, and zero for what does not move."""
@@ -249,7 +268,7 @@ class KnotBlocks:
         symbols = ca.vertcat(*[v.symbol for v in seen.moving])
         rates, changes = ca.vertcat(*seen.rates.values()), ca.vertcat(*seen.changes.values())
         still = ca.DM(np.concatenate([v.lower / v.scale for v in seen.moving])[fixed])
-        pace = self._inertia / self._step
+        pace = self._inertia / (self._step * self._time if self.timed else self._step)
         replaced = [
             (symbols[fixed], still),
             (rates[fixed], ca.DM.zeros(len(fixed))),

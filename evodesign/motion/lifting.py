@@ -19,6 +19,7 @@ from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.least_time import LeastTimes
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
@@ -27,7 +28,7 @@ from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import Attempt, CaseSolution
-from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.records import Lift, Status, worst_status
 
 __all__ = ["LiftProblem"]
@@ -64,18 +65,29 @@ class LiftProblem:
     Args:
         setting: of the scene.
         symmetric: whether halves of robot and person are looked for.
+        timed: whether the least time of every lift is looked for, too.
+    Attributes:
+        timed: likewise.
     """
 
-    def __init__(self, setting: Setting, *, symmetric: bool) -> None:
-        self._setting, self._symmetric = setting, symmetric
+    def __init__(self, setting: Setting, *, symmetric: bool, timed: bool = False) -> None:
+        self._setting, self._symmetric, self.timed = setting, symmetric, timed
         self._scene = setting.scene.undisturbed
         self._programs: dict[int, LiftProgram] = {}
 
     @cached_property
     def _blocks(self) -> KnotBlocks:
+        return KnotBlocks(self._forms, self._setting)
+
+    @property
+    def _forms(self) -> tuple[Form, Form]:
         scene = self._scene
-        halves = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
-        return KnotBlocks(halves, self._setting)
+        return symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
+
+    @cached_property
+    def _least(self) -> LeastTimes:
+        blocks = KnotBlocks(self._forms, self._setting, timed=True)
+        return LeastTimes(blocks, self._options, self._scene.payload.mass)
 
     def solve(
         self,
@@ -143,6 +155,7 @@ class LiftProblem:
             slopes=slopes,
             cost=ending.cost,
             cost_slope=ending.cost_slope[: len(design)],
+            least_slope=None if found.least is None else found.least.slope,
         )
 
     def _checked(
@@ -166,6 +179,9 @@ class LiftProblem:
             motion = _Motion(finer, replace(start, symbols=ending.symbols), ending, attempts)
         if checked.wrong:
             return LiftSolution(lift, Status.NUMERICAL_FAILURE, checked.wrong, motion.attempts)
+        least = self._least.solve(design, lift, motion.start, checker) if self.timed else None
+        if least is not None and least.status is not Status.SOLVED:
+            return LiftSolution(lift, least.status, least.reason, (*motion.attempts, *least.attempts))
         slow = program.solve(lift, motion.start, design, mass, 0.0)[0] if slowly else None
         return LiftSolution(
             lift=lift,
@@ -177,6 +193,7 @@ class LiftProblem:
             efforts=_efforts(course, checked, slow, program),
             start=motion.start,
             ending=motion.ending,
+            least=least,
         )
 
     def _none(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import msgspec
 import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
@@ -28,6 +29,9 @@ Array = NDArray[np.float64]
 
 FARTHEST, LOWEST, HIGHEST = 3.0, 0.05, 3.0
 """How far from the load a foot may stand, and between which heights a load may be [m]."""
+
+SHARES = (0.01, 10.0)
+"""Of the asked-for time, between which the least one is looked for."""
 
 TURN = 0.8
 """Sine of the angle by which rigid hands may be turned otherwise than in the start."""
@@ -55,7 +59,8 @@ class LiftProgram:
     """Lifts of so many knots in a setting.
 
     The variables are, one after the other: posture coefficients, knot after knot; coefficients of the load's
-    height; torques and wrenches, knot after knot; the places of the soles.
+    height; torques and wrenches, knot after knot; the places of the soles; where the least time is looked for
+    (`KnotBlocks.timed`), that as a share of the lift's.
 
     Args:
         blocks: what is said at a knot and between.
@@ -69,8 +74,10 @@ class LiftProgram:
         self._others = sum(len(v.lower) for v in blocks.symbols.others)
         self._soles, self._grips = len(blocks.symbols.places), len(blocks.symbols.grips)
         self._places = 3 * (self._soles + self._grips)
-        ends = np.cumsum([0, knots * self._postures, knots, knots * self._others, self._places])
-        self._first = dict(zip(("postures", "load", "others", "places"), ends.tolist(), strict=False))
+        self._times = int(blocks.timed)
+        sizes = [knots * self._postures, knots, knots * self._others, self._places, self._times]
+        ends = np.cumsum([0, *sizes])
+        self._first = dict(zip(("postures", "load", "others", "places", "time"), ends.tolist(), strict=False))
         self._size = int(ends[-1])
 
     @cached_property
@@ -82,7 +89,8 @@ class LiftProgram:
             carried=True,
         )
         half_way = spline.image(at[:-1] + 0.5)
-        between = self._stacked([(half_way, "postures"), (half_way, "load")], carried=False)
+        quick = [(np.diff(np.eye(self._knots), axis=0), "postures")] * self._times
+        between = self._stacked([(half_way, "postures"), *quick, (half_way, "load")], carried=False)
         parts = [
             Repeated(self._blocks.knot, knots, self._knots),
             Repeated(self._blocks.between, between, self._knots - 1),
@@ -99,6 +107,7 @@ class LiftProgram:
             if carried:
                 rows.append(self._at("others", sparse.eye(self._others), number * self._others))
             rows.append(self._at("places", sparse.eye(self._places)))
+            rows.append(self._at("time", sparse.eye(self._times)))
         return sparse.vstack(rows).tocsc()
 
     def _at(self, kind: str, image: sparse.spmatrix, further: int = 0) -> sparse.spmatrix:
@@ -171,9 +180,9 @@ class LiftProgram:
             soles = [sign * FARTHEST, sign * FARTHEST, sign] * self._soles
             places = np.array(soles + [sign * TURN] * 3 * self._grips)
             postures = np.tile(np.concatenate(moving)[free], self._knots)
-            sides.append(
-                np.concatenate([postures, height, np.tile(np.concatenate(others), self._knots), places])
-            )
+            carried = np.tile(np.concatenate(others), self._knots)
+            time = [SHARES[int(sign > 0.0)]] * self._times
+            sides.append(np.concatenate([postures, height, carried, places, time]))
         return sides[0], sides[1]
 
     def _free_heights(self, lift: Lift, sign: float) -> Array:
@@ -208,7 +217,7 @@ class LiftProgram:
             path[knot], worst = moving, max(worst, open_by)
         coefficients = RestingSpline(self._knots).through(path)
         load = RestingSpline(self._knots).through(np.array(lift.knot_heights))
-        symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
+        symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places, np.ones(self._times)]
         return LiftStart(np.concatenate(symbols), hands, worst)
 
     def refined(self, lift: Lift, course: LiftCourse, start: LiftStart) -> LiftStart:
@@ -217,9 +226,10 @@ class LiftProgram:
         Args:
             lift: with as many knots.
             course: the motion.
-            start: where its solve began.
+            start: where its solve began; with the time that it takes, where that is looked for.
         """
-        seen, free, times = self._blocks.symbols, self._blocks.free, lift.knot_times
+        seen, free = self._blocks.symbols, self._blocks.free
+        times = msgspec.structs.replace(course.lift, knots=self._knots).knot_times
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
         others = self._sampled(course.carriage(times), seen.others)
         spline = RestingSpline(self._knots)
@@ -227,9 +237,13 @@ class LiftProgram:
             spline.through(moving).ravel(),
             spline.through(course.heights(times)),
             others.ravel(),
-            start.symbols[-self._places :],
+            start.symbols[len(start.symbols) - self._places - self._times :],
         ]
         return LiftStart(np.concatenate(symbols), start.hands, start.open_by)
+
+    def timed(self, start: LiftStart) -> LiftStart:
+        """A start: one of as many knots that knows its time."""
+        return replace(start, symbols=np.append(start.symbols, np.ones(self._times)))
 
     @staticmethod
     def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:
@@ -282,16 +296,19 @@ class LiftProgram:
     def course(self, lift: Lift, symbols: Array) -> LiftCourse:
         """The motion that symbols stand for, SI units."""
         seen, free, knots = self._blocks.symbols, self._blocks.free, self._knots
-        pieces = np.split(symbols, [self._first[name] for name in ("load", "others", "places")])
+        names = ("load", "others", "places", "time")
+        pieces = np.split(symbols, [self._first[name] for name in names])
         still = np.concatenate([v.lower / v.scale for v in seen.moving])
         postures = np.tile(still, (knots, 1))
         postures[:, free] = pieces[0].reshape(knots, -1)
+        seconds = lift.seconds * float(pieces[4][0]) if self._times else lift.seconds
         return LiftCourse(
-            lift=lift,
+            lift=msgspec.structs.replace(lift, seconds=seconds),
             forms=self._blocks.forms,
             coefficients=self._by_agent(seen.moving, postures),
             carried=self._by_agent(seen.others, pieces[2].reshape(knots, -1)),
             load=pieces[1],
+            abrupt=self._blocks.timed,
         )
 
     def _by_agent(self, variables: Sequence[object], columns: Array) -> dict[str, dict[str, Array]]:

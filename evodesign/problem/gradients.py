@@ -21,13 +21,20 @@ from functools import cached_property
 import numpy as np
 
 from evodesign.motion.derivative import LiftDerivative
+from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.design_result import WORST, ByTorque, DesignResult
-from evodesign.problem.motion_objectives import ENERGY, POWER, mean_over_time, motion_power_by_torque
+from evodesign.problem.motion_objectives import (
+    ENERGY,
+    LEAST_TIME,
+    POWER,
+    mean_over_time,
+    motion_power_by_torque,
+)
 from evodesign.problem.objectives import (
     QUANTITIES,
     REACH,
@@ -160,6 +167,8 @@ class _Design:
             return absent[0] if absent else np.asarray(_weights(values, way) @ np.array(gradients))
         if name == ENERGY:
             return self._of_energy()
+        if quantity == LEAST_TIME:
+            return self._of_least_time(way)
         if name == REACH:
             return _slope(self._highest)
         if name == SHARED_REACH:
@@ -262,6 +271,17 @@ class _Design:
         absent = [each for _, each in lifts if isinstance(each, NotDifferentiable)]
         slopes = [seconds * each for seconds, each in lifts if isinstance(each, np.ndarray)]
         return absent[0] if absent else np.asarray(np.mean(slopes, axis=0))
+
+    def _of_least_time(self, way: str) -> Found:
+        """From the multipliers of each lift's own program."""
+        motions = [each.motion for each in self._result.cases if isinstance(each, MotionCase)]
+        found = [each.least for each in motions if each is not None and each.least is not None]
+        weights = _weights([each.seconds for each in found], way)
+        slope = np.asarray(weights @ np.array([each.slope for each in found]))
+        if not self._result.rated or self._given is None:
+            return slope
+        given = self._given
+        return given if isinstance(given, NotDifferentiable) else np.asarray(slope @ given)
 
     def _of_robot(self, name: str) -> Found:
         space, tree = self._problem.space, self._result.robot.tree

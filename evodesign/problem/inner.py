@@ -13,6 +13,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.motion_objectives import LEAST_TIME
 
 __all__ = ["InnerProblems", "inner_problems"]
 
@@ -35,6 +36,8 @@ class InnerProblems:
 def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> InnerProblems:
     """The inner problems of a problem, with what is known beforehand."""
     symmetric, solvers = problem.symmetry is not Symmetry.OFF, SolverCache()
+    names = [*(each.name for each in problem.objectives), *(each.name for each in problem.constraints)]
+    timed = any(name.endswith(LEAST_TIME) for name in names)
     scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
     settings = [Setting(scene, problem.space, problem.weights, problem.options) for scene in scenes]
     return InnerProblems(
@@ -50,7 +53,9 @@ def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPU
         },
         lifts={
             scene.pair: LiftProblem(
-                Setting(scene, problem.space, problem.weights, problem.options), symmetric=symmetric
+                Setting(scene, problem.space, problem.weights, problem.options),
+                symmetric=symmetric,
+                timed=timed,
             )
             for scene in problem.scenes
         },

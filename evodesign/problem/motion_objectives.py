@@ -2,6 +2,7 @@
 
     robot_power   sum over the robot's joints of max(torque x speed, 0), and copper losses of actuators [W]
     energy        robot_power over the time of a lift, the mean over all lifts [J]
+    lift_seconds  least time in which a lift can be done, the mean over all lifts; worst_ the largest [s]
     l5s1_moment   |torque| at the person's joints between the fifth lumbar vertebra and the sacrum [N m]
 
 No power is regained from a joint that brakes. Copper losses count where a design has actuators, whose motor
@@ -27,6 +28,7 @@ from evodesign.records import ProblemSource
 
 __all__ = [
     "ENERGY",
+    "LEAST_TIME",
     "NEED_LIFTS",
     "POWER",
     "SPINE",
@@ -41,9 +43,9 @@ __all__ = [
 
 Value = TypeVar("Value", float, NDArray[np.float64])
 
-POWER, ENERGY, SPINE = "robot_power", "energy", "l5s1_moment"
+POWER, ENERGY, SPINE, LEAST_TIME = "robot_power", "energy", "l5s1_moment", "lift_seconds"
 
-NEED_LIFTS = (POWER, ENERGY)
+NEED_LIFTS = (POWER, ENERGY, LEAST_TIME)
 """How the names of quantities end that tell nothing where no load moves."""
 
 PUBLISHED = ("paper_cost", "paper2023_cost")

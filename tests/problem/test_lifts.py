@@ -65,11 +65,17 @@ class Moving:
     def of(cls, problem: DesignProblem) -> Moving:
         native = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE)
         scene = problem.scene
-        motions = LiftProblem(Setting(scene, problem.space, problem.weights, native), symmetric=True)
-        inner = replace(inner_problems(problem), lifts={scene.pair: motions})
+        setting, own = Setting(scene, problem.space, problem.weights, native), inner_problems(problem)
+        motions = LiftProblem(setting, symmetric=True, timed=own.lifts[scene.pair].timed)
+        inner = replace(own, lifts={scene.pair: motions})
         solver = DesignSolver(problem, NOTHING_PRECOMPUTED, inner)
         values = tuple(problem.space.unscaled(scene.robot.tree))
         return cls(problem, solver, values, solver.solve(values))
+
+    @property
+    def timed(self) -> bool:
+        """Whether least times of lifts are looked for."""
+        return next(iter(inner_problems(self.problem).lifts.values())).timed
 
     @property
     def assessed(self) -> Assessed:
@@ -230,6 +236,61 @@ def test_a_height_out_of_reach_is_missed_by_a_lift_as_by_a_hold(repository: Path
 def test_lifts_that_there_are_not(repository: Path, old: str, new: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         changed(repository, (old, new))
+
+
+@pytest.fixture(scope="module")
+def quick(repository: Path) -> Moving:
+    """Two lifts of a robot with torque limits, whose least times count and are constrained."""
+    lifts = "from_m = 0.9\nto_m = 1.1\nknots = 6\n\n[[task.lift]]\nfrom_m = 1.1\nto_m = 1.0\nknots = 6"
+    human = '[robot.torque_limits_n_m]\n"*" = 40.0\n\n[human]'
+    bound = "[constraints]\nworst_lift_seconds = { upper = 0.1 }\n\n[search]"
+    asked = ('"robot_torque", "human_torque"', '"lift_seconds", "worst_lift_seconds"')
+    hard = ("joints = [", 'torque_limits = "hard"\njoints = [')
+    text = changed(repository, (TABLE, lifts), ("[human]", human), ("[search]", bound), asked, hard)
+    return Moving.of(text)
+
+
+def test_least_times_are_objectives_and_constraints_and_have_gradients(quick: Moving) -> None:
+    """The mean and the largest of those of both lifts; both ways to a gradient agree."""
+    assert quick.timed
+    least = [case.motion.least for case in quick.result.cases]
+    found = quick.assessed.assessment
+    seconds = [each.seconds for each in least]
+    assert found.objectives["lift_seconds"] == pytest.approx(np.mean(seconds))
+    assert found.objectives["worst_lift_seconds"] == max(seconds)
+    assert found.constraints == {"worst_lift_seconds": max(seconds)}
+    assert found.violation > 0.0
+    derivatives = Sensitivities(quick.problem, inner=quick.solver.inner)
+    slow = derivatives.at(quick.values, quick.result).sensitivities()
+    fast = assessed_gradients(quick.problem, derivatives, quick.values, quick.result).values
+    records = quick.problem.space.records
+    spans = {p.name: p.slope_at(x) for p, x in zip(records, quick.values, strict=True)}
+    slopes = {"lift_seconds": np.mean([each.slope for each in least], axis=0)}
+    slopes["worst_lift_seconds"] = least[int(np.argmax(seconds))].slope
+    for name, slope in slopes.items():
+        expected = slope * np.array(list(spans.values()))
+        assert list(fast[name].values()) == pytest.approx(expected)
+        along = slow[name].gradient
+        assert along is not None, slow[name].notes
+        assert [along[each] * spans[each] for each in spans] == pytest.approx(expected, abs=1e-8)
+
+
+def test_least_times_are_looked_for_only_where_something_asks(moving: Moving) -> None:
+    assert not moving.timed
+    assert all(case.least_seconds is None for case in moving.result.cases[1:])
+    assert objective_value("lift_seconds", moving.result) is None
+
+
+@pytest.mark.parametrize("name", ["energy", "worst_lift_seconds"])
+def test_energy_and_least_time_need_a_lift(name: str, problem: DesignProblem) -> None:
+    text = problem.source.text.replace('"human_torque"', f'"{name}"')
+    with pytest.raises(InputError, match=rf"a \[\[task\.lift\]\] for '{name}', found none"):
+        build_problem(msgspec.structs.replace(problem.source, text=text))
+
+
+def test_a_name_that_is_no_objective_is_refused_with_the_nearest(repository: Path) -> None:
+    with pytest.raises(InputError, match=r"found 'peak_power'; did you mean 'worst_robot_power'\?"):
+        changed(repository, (TORQUE, '"peak_power"'))
 
 
 def test_energy_needs_a_lift(problem: DesignProblem) -> None:
