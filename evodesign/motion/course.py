@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, make_interp_spline
 
 from evodesign.motion.spline import RestingSpline
 from evodesign.posture.check import AgentMotion, SceneMotion
@@ -31,6 +32,8 @@ class LiftCourse:
         carried: torques and wrenches at the knots, by agent and part, shape (knots, rows).
         load: coefficients of the load's height [m], shape (knots,).
         disturbed: what is carried under each disturbance, by its name, likewise.
+        abrupt: whether torques and wrenches are linear between knots, as accelerations are: those of the
+            quickest motion jump from one limit to another, which a spline overshoots.
     """
 
     lift: Lift
@@ -39,9 +42,10 @@ class LiftCourse:
     carried: Mapping[str, Mapping[str, Array]]
     load: Array
     disturbed: Mapping[str, Mapping[str, Mapping[str, Array]]] = field(default_factory=dict)
+    abrupt: bool = False
 
     def instants(self, times: Sequence[float] | Array) -> tuple[Instant, ...]:
-        """Whole postures and what is carried, between knots by cubic splines through those at the knots."""
+        """Whole postures and what is carried, between knots by splines through those at the knots."""
         undisturbed = self._whole(times, self.carried)
         disturbed = {name: self._whole(times, carried) for name, carried in self.disturbed.items()}
         return tuple(
@@ -81,8 +85,9 @@ class LiftCourse:
     ) -> dict[str, dict[str, Array]]:
         """Torques and wrenches of the forms, likewise, from those of a load case at the knots."""
         knots = self.lift.knot_times
+        through = partial(make_interp_spline, k=1) if self.abrupt else CubicSpline
         return {
-            name: {part: CubicSpline(knots, at)(times) for part, at in parts.items()}
+            name: {part: through(knots, at)(times) for part, at in parts.items()}
             for name, parts in carried.items()
         }
 

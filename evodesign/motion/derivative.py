@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.sensitivity import Limit, no_limits
-from evodesign.posture.results import Instant
+from evodesign.posture.results import AgentPosture, Instant
 
 __all__ = ["LiftDerivative"]
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class LiftDerivative:
-    """A motion, and how it moves with the design.
+    """A motion made exact, and how it moves with the design.
 
     Args:
         instants_of: the instants of results from the program's symbols.
@@ -27,6 +27,7 @@ class LiftDerivative:
         slopes: their derivatives with respect to the design's parameters, shape (symbols, parameters).
         cost: the least cost.
         cost_slope: its derivative, one per parameter.
+        least_slope: that of the least time [s], likewise; None where nothing asks for it.
     """
 
     instants_of: Callable[[Array], tuple[Instant, ...]]
@@ -34,11 +35,17 @@ class LiftDerivative:
     slopes: Array
     cost: float
     cost_slope: Array
+    least_slope: Array | None = None
 
     @property
     def compared(self) -> float:
         """The cost by which starts are compared."""
         return self.cost
+
+    @property
+    def instants(self) -> tuple[Instant, ...]:
+        """Of the motion itself."""
+        return self._around[0]
 
     @property
     def limits(self) -> Sequence[Limit]:
@@ -51,7 +58,7 @@ class LiftDerivative:
 
     @cached_property
     def _around(self) -> tuple[tuple[Instant, ...], ...]:
-        """Without a step, then after a unit step along each parameter: torques are linear in the step."""
+        """Without a step, then after a unit one along each parameter: torques and speeds are linear in it."""
         steps = np.vstack([np.zeros(len(self.cost_slope)), np.eye(len(self.cost_slope))])
         return tuple(self.moved(step) for step in steps)
 
@@ -65,10 +72,23 @@ class LiftDerivative:
             load_case: zero for the undisturbed one, else one more than the disturbance's number.
             weights: by agent and joint.
         """
+        return self._along(instant, load_case, weights, lambda posture: posture.torques)
+
+    def along_speeds(self, instant: int, weights: Mapping[str, Mapping[str, float]]) -> Array:
+        """The same of the speeds of joints."""
+        return self._along(instant, 0, weights, lambda posture: posture.speeds)
+
+    def _along(
+        self,
+        instant: int,
+        load_case: int,
+        weights: Mapping[str, Mapping[str, float]],
+        values: Callable[[AgentPosture], Mapping[str, float]],
+    ) -> Array:
         every = [instants[instant] for instants in self._around]
         sums = [
             sum(
-                weight * load_cases[load_case][agent].torques[joint]
+                weight * values(load_cases[load_case][agent])[joint]
                 for agent, joints in weights.items()
                 for joint, weight in joints.items()
             )

@@ -16,6 +16,9 @@ A block's symbols are, in the program's units, step the time between knots:
 
     posture, step * its rate, step^2 * its change, load height, step^2 * its change, torques and wrenches,
     places of the feet, turns of rigid hands
+
+and, where the least time is looked for, the time of the lift, as a share of what was asked for: it is what is
+minimised then, and all that else costs counts little.
 """
 
 from __future__ import annotations
@@ -66,6 +69,9 @@ HAND_CLOSURE, SOLE_CLOSURE, SLANT_CLOSURE = 2e-3, 1e-3, 5e-3
 CLOSURE_UNIT = 0.1
 """Of the rows between knots, in which their bounds are of the size of other rows."""
 
+LITTLE = 1e-6
+"""What torques and all that a lift else costs count beside the share of the asked-for time."""
+
 FastestJoint = Mapping[str, Expression]
 
 
@@ -110,12 +116,17 @@ class KnotBlocks:
         forms: of robot and person, whole or halves.
         setting: of the problem.
         switched: whether rows are there that part bodies.
+        timed: whether the least time is looked for.
     Attributes:
         forms: likewise.
+        timed: likewise.
     """
 
-    def __init__(self, forms: tuple[Form, Form], setting: Setting, *, switched: bool = False) -> None:
-        self.forms, self._setting, self._switched = forms, setting, switched
+    def __init__(
+        self, forms: tuple[Form, Form], setting: Setting, *, switched: bool = False, timed: bool = False
+    ) -> None:
+        self.forms, self.timed, self._setting, self._switched = forms, timed, setting, switched
+        self._time = ca.SX.sym("time", int(timed))
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
         scene, self._mass = any_load(setting.scene)
@@ -143,7 +154,7 @@ class KnotBlocks:
     def parted(self) -> KnotBlocks | None:
         """The same with rows that part bodies; None where no bodies are parted."""
         parting = any(meetings(form) for form in self.forms)
-        return KnotBlocks(self.forms, self._setting, switched=True) if parting else None
+        return KnotBlocks(self.forms, self._setting, switched=True, timed=self.timed) if parting else None
 
     @cached_property
     def directions(self) -> int:
@@ -261,6 +272,8 @@ class KnotBlocks:
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
         cost = total([carrying, *map(self._smoothness, self.forms)])
+        if self.timed:
+            cost = self._time + LITTLE * cost
         column, own = self._column(), ca.vertcat(weight, self._directions)
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
         return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))
@@ -268,7 +281,9 @@ class KnotBlocks:
     @cached_property
     def between(self) -> Block:
         """What is said half-way between knots, of posture, load height and places."""
-        column, rows = ca.vertcat(self._posture, self._height, self._places), self._half_way
+        moved = [self._stepped[0]] * self.timed
+        column = ca.vertcat(self._posture, *moved, self._height, self._places, self._time)
+        rows = self._half_way
         (stacked,) = self._in_units([ca.vertcat(*[row.expression for row in rows])], column)
         counts = [row.expression.numel() for row in rows]
         low, high = (
@@ -278,7 +293,11 @@ class KnotBlocks:
 
     @cached_property
     def _half_way(self) -> list[ConstraintBlock]:
-        """Hands and feet nearly in place, and bodies apart where they are parted along directions."""
+        """Hands and feet nearly in place, and bodies apart where they are parted along directions.
+
+        Where the least time is looked for joints are within their speed everywhere: speeds are a quadratic
+        spline, whose coefficients are the differences of the motion's, and a weighted mean of these.
+        """
         rows, bodies = [], self._assembly.undisturbed.bodies
         for body in bodies.values():
             rows += [row.expression / HAND_CLOSURE for row in GRASP.rows(body)]
@@ -292,7 +311,12 @@ class KnotBlocks:
             for row in COLLISIONS.rows(body)
             if self._switched
         ]
-        return [closed, *apart]
+        speeds = [
+            ConstraintBlock(f"{name}.speeds", self._speeds(body), -1.0, 1.0)
+            for name, body in bodies.items()
+            if self.timed
+        ]
+        return [closed, *apart, *speeds]
 
     @cached_property
     def closure(self) -> ca.Function:
@@ -336,7 +360,8 @@ class KnotBlocks:
     def _column(self) -> Expression:
         moved, bent, load_bent = self._stepped
         others = [v.symbol for v in self.symbols.others]
-        return ca.vertcat(self._posture, moved, bent, self._height, load_bent, *others, self._places)
+        posture = [self._posture, moved, bent, self._height, load_bent]
+        return ca.vertcat(*posture, *others, self._places, self._time)
 
     def _in_units(self, expressions: Sequence[Expression], column: Expression) -> list[Expression]:
         """Expressions of the block's symbols: derivatives in steps, and zero for what does not move."""
@@ -346,7 +371,7 @@ class KnotBlocks:
         symbols = ca.vertcat(*[v.symbol for v in seen.moving])
         rates, changes = ca.vertcat(*seen.rates.values()), ca.vertcat(*seen.changes.values())
         still = ca.DM(np.concatenate([v.lower / v.scale for v in seen.moving])[fixed])
-        pace = self._inertia / self._step
+        pace = self._inertia / (self._step * self._time if self.timed else self._step)
         replaced = [
             (symbols[fixed], still),
             (rates[fixed], ca.DM.zeros(len(fixed))),

@@ -21,6 +21,7 @@ from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.least_time import LeastTimes
 from evodesign.motion.parting import LiftSolve, PartedLift
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
@@ -74,16 +75,24 @@ class LiftProblem:
     Args:
         setting: of the scene.
         symmetric: whether halves of robot and person are looked for.
+        timed: whether the least time of every lift is looked for, too.
+    Attributes:
+        timed: likewise.
     """
 
-    def __init__(self, setting: Setting, *, symmetric: bool) -> None:
-        self._setting, self._symmetric = setting, symmetric
+    def __init__(self, setting: Setting, *, symmetric: bool, timed: bool = False) -> None:
+        self._setting, self._symmetric, self.timed = setting, symmetric, timed
         self._scene = setting.scene
         self._programs: dict[int, LiftProgram] = {}
 
     @cached_property
     def _blocks(self) -> KnotBlocks:
         return _blocks(self._setting, symmetric=self._symmetric)
+
+    @cached_property
+    def _least(self) -> LeastTimes:
+        blocks = _blocks(self._setting, symmetric=self._symmetric, timed=True)
+        return LeastTimes(blocks, _options(self._setting), self._scene.payload.mass)
 
     def solve(
         self,
@@ -144,8 +153,11 @@ class LiftProblem:
         found, task = solution.motion, solution.case.task
         if found is None or found.start is None or found.ending is None or not isinstance(task, Lift):
             return NotDifferentiable("there is no motion")
-        lift, program, ending = found.lift, self._program(found.lift.knots), found.ending
-        slopes = program.slopes(lift, found.start, ending, design, self._scene.payload.mass)
+        lift, program, mass = found.lift, self._program(found.lift.knots), self._scene.payload.mass
+        ending = program.exact(lift, found.start, found.ending, design, mass)
+        if isinstance(ending, NotDifferentiable):
+            return ending
+        slopes = program.slopes(lift, found.start, ending, design, mass)
         if isinstance(slopes, NotDifferentiable):
             return slopes
         return LiftDerivative(
@@ -154,6 +166,7 @@ class LiftProblem:
             slopes=slopes,
             cost=ending.cost,
             cost_slope=ending.cost_slope[: len(design)],
+            least_slope=None if found.least is None else found.least.slope,
         )
 
     def _checked(
@@ -183,6 +196,9 @@ class LiftProblem:
             motion = _Motion(finer, replace(found.start, symbols=ending.symbols), ending, attempts)
         if checked.wrong:
             return _refused(lift, checked.wrong, motion.attempts)
+        least = self._least.solve(design, lift, motion.start, checker) if self.timed else None
+        if least is not None and least.status is not Status.SOLVED:
+            return LiftSolution(lift, least.status, least.reason, (*motion.attempts, *least.attempts))
         slow = program.solve(lift, motion.start, design, mass, 0.0)[0] if slowly else None
         return LiftSolution(
             lift=lift,
@@ -194,6 +210,7 @@ class LiftProblem:
             efforts=_efforts(course, checked, slow, program),
             start=motion.start,
             ending=motion.ending,
+            least=least,
         )
 
     def _none(
@@ -285,10 +302,10 @@ def lift_program(setting: Setting, knots: int, *, symmetric: bool) -> LiftProgra
     return LiftProgram(_blocks(setting, symmetric=symmetric), knots, _options(setting))
 
 
-def _blocks(setting: Setting, *, symmetric: bool) -> KnotBlocks:
+def _blocks(setting: Setting, *, symmetric: bool, timed: bool = False) -> KnotBlocks:
     scene = setting.scene
     halves = symmetric_forms(scene) if symmetric else (whole(scene.robot), whole(scene.human))
-    return KnotBlocks(halves, setting)
+    return KnotBlocks(halves, setting, timed=timed)
 
 
 def _options(setting: Setting) -> SolverOptions:

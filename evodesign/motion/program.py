@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import msgspec
 import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
@@ -32,6 +33,9 @@ Array = NDArray[np.float64]
 
 FARTHEST, LOWEST, HIGHEST = 3.0, 0.05, 3.0
 """How far from the load a foot may stand, and between which heights a load may be [m]."""
+
+SHARES = (0.01, 10.0)
+"""Of the asked-for time, between which the least one is looked for."""
 
 TURN = 0.8
 """Sine of the angle by which rigid hands may be turned otherwise than in the start."""
@@ -67,7 +71,8 @@ class LiftProgram:
     """Lifts of so many knots in a setting.
 
     The variables are, one after the other: posture coefficients, knot after knot; coefficients of the load's
-    height; torques and wrenches, knot after knot; the places of the soles.
+    height; torques and wrenches, knot after knot; the places of the soles; where the least time is looked for
+    (`KnotBlocks.timed`), that as a share of the lift's.
 
     Args:
         blocks: what is said at a knot and between.
@@ -81,8 +86,10 @@ class LiftProgram:
         self._others = sum(len(v.lower) for v in blocks.symbols.others)
         self._soles, self._grips = len(blocks.symbols.places), len(blocks.symbols.grips)
         self._places = 3 * (self._soles + self._grips)
-        ends = np.cumsum([0, knots * self._postures, knots, knots * self._others, self._places])
-        self._first = dict(zip(("postures", "load", "others", "places"), ends.tolist(), strict=False))
+        self._times = int(blocks.timed)
+        sizes = [knots * self._postures, knots, knots * self._others, self._places, self._times]
+        ends = np.cumsum([0, *sizes])
+        self._first = dict(zip(("postures", "load", "others", "places", "time"), ends.tolist(), strict=False))
         self._size = int(ends[-1])
 
     @cached_property
@@ -94,7 +101,8 @@ class LiftProgram:
             carried=True,
         )
         half_way = spline.image(at[:-1] + 0.5)
-        between = self._stacked([(half_way, "postures"), (half_way, "load")], carried=False)
+        quick = [(np.diff(np.eye(self._knots), axis=0), "postures")] * self._times
+        between = self._stacked([(half_way, "postures"), *quick, (half_way, "load")], carried=False)
         return [
             Repeated(self._blocks.knot, knots, self._knots),
             Repeated(self._blocks.between, between, self._knots - 1),
@@ -114,6 +122,7 @@ class LiftProgram:
             if carried:
                 rows.append(self._at("others", sparse.eye(self._others), number * self._others))
             rows.append(self._at("places", sparse.eye(self._places)))
+            rows.append(self._at("time", sparse.eye(self._times)))
         return sparse.vstack(rows).tocsc()
 
     def _at(self, kind: str, image: sparse.spmatrix, further: int = 0) -> sparse.spmatrix:
@@ -154,6 +163,14 @@ class LiftProgram:
         own = program._own(start)
         return program._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
 
+    def exact(
+        self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
+    ) -> Ending | NotDifferentiable:
+        """A solve's end made so exact that it can be differentiated; arguments as in `slopes`."""
+        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        program, bounds = self._with_rows_of(start), self._bounds(lift)
+        return program._program.exact(ending, bounds, shared, program._own(start))
+
     def slopes(
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
     ) -> Array | NotDifferentiable:
@@ -162,7 +179,7 @@ class LiftProgram:
         Args:
             lift: with as many knots.
             start: where the solve began.
-            ending: of the solve.
+            ending: of the solve, made exact.
             design: one number per parameter.
             mass: of the load [kg].
         """
@@ -240,9 +257,9 @@ class LiftProgram:
             soles = [sign * FARTHEST, sign * FARTHEST, sign] * self._soles
             places = np.array(soles + [sign * TURN] * 3 * self._grips)
             postures = np.tile(np.concatenate(moving)[free], self._knots)
-            sides.append(
-                np.concatenate([postures, height, np.tile(np.concatenate(others), self._knots), places])
-            )
+            carried = np.tile(np.concatenate(others), self._knots)
+            time = [SHARES[int(sign > 0.0)]] * self._times
+            sides.append(np.concatenate([postures, height, carried, places, time]))
         return sides[0], sides[1]
 
     def _free_heights(self, lift: Lift, sign: float) -> Array:
@@ -284,7 +301,7 @@ class LiftProgram:
             path[knot], worst = moving, max(worst, open_by)
         coefficients = RestingSpline(self._knots).through(path)
         load = RestingSpline(self._knots).through(np.array(lift.knot_heights))
-        symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places]
+        symbols = [coefficients.ravel(), load, np.tile(others, self._knots), places, np.ones(self._times)]
         return LiftStart(np.concatenate(symbols), hands, worst)
 
     def refined(self, lift: Lift, course: LiftCourse, start: LiftStart) -> LiftStart:
@@ -293,9 +310,10 @@ class LiftProgram:
         Args:
             lift: with as many knots.
             course: the motion.
-            start: where its solve ended, with its knots.
+            start: where its solve ended, with its knots, and with its time where that is looked for.
         """
-        seen, free, times = self._blocks.symbols, self._blocks.free, lift.knot_times
+        seen, free = self._blocks.symbols, self._blocks.free
+        times = msgspec.structs.replace(course.lift, knots=self._knots).knot_times
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
         begin, knots = course.lift.knots * (self._postures + 1), course.lift.knots
         carried = start.symbols[begin : begin + knots * self._others].reshape(knots, -1)
@@ -305,7 +323,7 @@ class LiftProgram:
             spline.through(moving).ravel(),
             spline.through(course.heights(times)),
             others.ravel(),
-            start.symbols[-self._places :],
+            start.symbols[len(start.symbols) - self._places - self._times :],
         ]
         directions = start.directions
         if start.parts_bodies:
@@ -381,6 +399,10 @@ class LiftProgram:
             for number, (who, side) in enumerate(keys)
             if who == party
         }
+
+    def timed(self, start: LiftStart) -> LiftStart:
+        """A start: one of as many knots that knows its time."""
+        return replace(start, symbols=np.append(start.symbols, np.ones(self._times)))
 
     @staticmethod
     def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:
@@ -458,8 +480,9 @@ class LiftProgram:
         seen, knots = self._blocks.symbols, self._knots
         others = symbols[self._first["others"] : self._first["places"]]
         postures, load = self._splines(symbols)
+        share = float(symbols[self._first["time"]]) if self._times else 1.0
         return LiftCourse(
-            lift=lift,
+            lift=msgspec.structs.replace(lift, seconds=share * lift.seconds),
             forms=self._blocks.forms,
             coefficients=self._by_agent(seen.moving, postures),
             carried=self._by_agent(seen.others, others.reshape(knots, -1)),
@@ -468,6 +491,7 @@ class LiftProgram:
                 name: self._by_agent(seen.others, others.reshape(knots, -1), load_case)
                 for load_case, name in enumerate(self._blocks.disturbances, 1)
             },
+            abrupt=self._blocks.timed,
         )
 
     def _splines(self, symbols: Array) -> tuple[Array, Array]:

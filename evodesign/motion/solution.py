@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from evodesign.motion.check import CheckedLift, fine_times
 from evodesign.motion.course import LiftCourse
+from evodesign.motion.least_time import LeastTime
 from evodesign.motion.program import LiftStart
 from evodesign.nlp.method import Ending
 from evodesign.posture.results import Attempt, CaseSolution
@@ -68,6 +69,7 @@ class LiftSolution:
         efforts: by agent name; empty unless solved.
         start: where the solve of the motion began; None unless solved.
         ending: of that solve.
+        least: the least time of the same lift; None where nothing asks for it.
     """
 
     lift: Lift
@@ -79,6 +81,7 @@ class LiftSolution:
     efforts: Mapping[str, AgentEffort] = field(default_factory=dict)
     start: LiftStart | None = None
     ending: Ending | None = None
+    least: LeastTime | None = None
 
     @property
     def solved(self) -> bool:
@@ -118,3 +121,20 @@ class MotionCase(CaseSolution):
     """
 
     motion: LiftSolution | None = None
+
+    @property
+    def least_seconds(self) -> float | None:
+        """The least time of the lift [s]; None where it is not known."""
+        return None if self.motion is None or self.motion.least is None else self.motion.least.seconds
+
+    def with_least_time_moved(self, slope: Array | None, step: Array) -> MotionCase:
+        """The same with the least time of a design that differs by a step, to first order.
+
+        Args:
+            slope: derivative of the least time, one per parameter; None where nothing asks for it.
+            step: one number per parameter.
+        """
+        if slope is None or self.motion is None or self.motion.least is None:
+            return self
+        least = replace(self.motion.least, seconds=self.motion.least.seconds + float(slope @ step))
+        return replace(self, motion=replace(self.motion, least=least))

@@ -23,6 +23,15 @@ from evodesign.nlp.repeated_slopes import central_differences, solution_slopes
 
 __all__ = ["RepeatedProgram"]
 
+EXACTLY = (1e-12, 1e-10)
+"""Tolerances with which a solution is found again to be differentiated; the second where the first is beyond
+what rounding leaves."""
+
+SAME = 1e-2
+"""Change of a symbol, in the program's own units, below which a solution that is found again is the same."""
+
+SUCCEEDED = "Solve_Succeeded"
+
 
 class RepeatedProgram:
     """A program of repeated blocks, ready to be solved.
@@ -36,6 +45,7 @@ class RepeatedProgram:
     def __init__(self, name: str, parts: Sequence[Repeated], options: SolverOptions) -> None:
         self._name, self._parts, self._options = name, tuple(parts), options
         self._limits = stacked_limits(self._parts)
+        self._solvers: dict[SolverOptions, Any] = {}
         self.rows = len(self._limits[0])
         self.variables = int(parts[0].image.shape[1])
 
@@ -45,7 +55,12 @@ class RepeatedProgram:
         return MethodName.IPOPT if self._native is None else MethodName.NATIVE
 
     def solve(
-        self, start: Array, bounds: tuple[Array, Array], shared: Array, own: Sequence[Array]
+        self,
+        start: Array,
+        bounds: tuple[Array, Array],
+        shared: Array,
+        own: Sequence[Array],
+        options: SolverOptions | None = None,
     ) -> tuple[Ending, float]:
         """Solve from a start.
 
@@ -54,22 +69,37 @@ class RepeatedProgram:
             bounds: lower and upper bounds of x.
             shared: s.
             own: p of each block, shape (times, p).
+            options: others than the program's.
         Returns:
             The end of the solve, whose `cost_slope` is the derivative of the optimal cost with respect to s,
             and its wall time [s].
         """
-        began = time.perf_counter()
+        began, options = time.perf_counter(), options or self._options
         parameters = np.concatenate([shared, *[np.ravel(each) for each in own]])
         if self._native is not None:
-            symbols, found = self._native.for_bounds(bounds).solve(self._options, start, bounds, parameters)
+            symbols, found = self._native.for_bounds(bounds).solve(options, start, bounds, parameters)
             cost, word, iterations, rows = found.cost, found.word, found.iterations, found.rows
         else:
-            result, stats = self._by_ipopt(start, bounds, parameters)
+            result, stats = self._by_ipopt(options, start, bounds, parameters)
             symbols, rows = (np.asarray(result[name]).ravel() for name in ("x", "lam_g"))
             cost, word = float(result["f"]), str(stats["return_status"])
             iterations = int(stats["iter_count"])
         by_x, by_shared = self._slopes(symbols, shared, own, rows)
         return Ending(symbols, cost, word, iterations, -by_x, rows, by_shared), time.perf_counter() - began
+
+    def exact(
+        self, ending: Ending, bounds: tuple[Array, Array], shared: Array, own: Sequence[Array]
+    ) -> Ending | NotDifferentiable:
+        """A solution found again so exactly that it can be differentiated; arguments as in `slopes`."""
+        for tolerance in EXACTLY:
+            options = replace(self._options, tolerance=tolerance, near=True)
+            found, _ = self.solve(ending.symbols, bounds, shared, own, options)
+            if found.word != SUCCEEDED:
+                continue
+            if np.abs(found.symbols - ending.symbols).max() > SAME:
+                return NotDifferentiable("the motion was not found again")
+            return found
+        return NotDifferentiable(f"the motion could not be made exact ({found.word})")
 
     def slopes(
         self,
@@ -82,7 +112,7 @@ class RepeatedProgram:
         """Derivatives of a solution by the first shared numbers, shape (x, count).
 
         Args:
-            ending: of a solve that succeeded.
+            ending: of a solve that succeeded, made exact.
             bounds: lower and upper bounds of x.
             shared: s.
             own: p of each block, shape (times, p).
@@ -134,11 +164,12 @@ class RepeatedProgram:
         return None if isinstance(maker, NotCompiled) else maker
 
     def _by_ipopt(
-        self, start: Array, bounds: tuple[Array, Array], parameters: Array
+        self, options: SolverOptions, start: Array, bounds: tuple[Array, Array], parameters: Array
     ) -> tuple[Any, Mapping[str, Any]]:
         (low, high), (least, most) = bounds, self._limits
-        result = self._ipopt(x0=start, p=parameters, lbx=low, ubx=high, lbg=least, ubg=most)
-        return result, self._ipopt.stats()
+        solver = self._ipopt(options)
+        result = solver(x0=start, p=parameters, lbx=low, ubx=high, lbg=least, ubg=most)
+        return result, solver.stats()
 
     @cached_property
     def functions(self) -> Mapping[str, Any]:
@@ -186,11 +217,16 @@ class RepeatedProgram:
             ),
         }
 
-    @cached_property
-    def _ipopt(self) -> Any:
+    def _ipopt(self, asked: SolverOptions) -> Any:
+        """IPOPT with some options."""
+        if asked not in self._solvers:
+            self._solvers[asked] = self._made(asked)
+        return self._solvers[asked]
+
+    def _made(self, asked: SolverOptions) -> Any:
         functions = self.functions
         options = {
-            **casadi_options(self._options),
+            **casadi_options(asked),
             "no_nlp_grad": True,
             "calc_lam_p": False,
             **{name: functions[name] for name in ("grad_f", "jac_g", "hess_lag")},

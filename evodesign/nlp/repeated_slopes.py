@@ -7,8 +7,10 @@ from its limit, the conditions of the interior-point method, differentiated, are
     | A                                 -D  |  | dlambda/ds |  =  - | dg_A/ds                              |
 
 A holds the equalities (D = 0) and the inequalities with |lambda| > t (D = t / |lambda|); all others have the
-weight w = |lambda| / t, bounds likewise on the diagonal. So no active set is guessed: what is held firmly
-does not move, what is not has next to no weight. Derivatives by s are central differences of first
+weight w = |lambda| / t, bounds likewise on the diagonal. At a solve's end lambda t is its barrier parameter;
+D and w are those of a barrier `SHARPER` times smaller, with the multipliers that are and the distances that
+are. What is held does not move then, and what is not has next to no weight. Where neither lambda nor t is
+large enough to tell which it is, there is no derivative. Derivatives by s are central differences of first
 derivatives, which are exact.
 
 Source: Waechter and Biegler 2006, Eq. 9 to 13; Fiacco 1983, ch. 2 (sensitivity).
@@ -22,13 +24,17 @@ import numpy as np
 import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
-from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.optimality import COMPLEMENTARY, NotDifferentiable
 from evodesign.nlp.program import Array
 
 __all__ = ["central_differences", "solution_slopes"]
 
 LEAST_DISTANCE = 1e-12
 """Of an inequality from its limit, in the program's own units; bounds are relaxed by 1e-8."""
+
+SHARPER = 1e-4
+"""Of the solve's barrier parameter. A limit that is missed by 3e-6 would else still be felt after a solve to
+1e-12: its weight is 1e-2."""
 
 DUAL_SHIFT = 1e-11
 """Keeps the system regular where equalities depend on each other."""
@@ -57,18 +63,32 @@ def solution_slopes(
         slopes: d2L/dx ds and dg/ds, shapes (x, s) and (rows, s).
     """
     _, low, high, forces = rows
-    equal = low == high
-    weights, distances = _weights(*rows)
+    equal, distances = low == high, _distances(*rows)
+    if _undecided(*rows) or _undecided(*bounds):
+        return NotDifferentiable(
+            "a limit of the motion is only just reached, on one side of the design alone"
+        )
+    free = np.flatnonzero(bounds[1] < bounds[2])
     firm = equal | (np.abs(forces) > distances)
-    loose = sparse.diags(np.where(firm, 0.0, weights)) @ jacobian
-    on_bounds, _ = _weights(*bounds)
-    primal = sparse.csc_matrix(hessian) + jacobian.T @ loose + sparse.diags(on_bounds)
-    held = sparse.csr_matrix(jacobian)[np.flatnonzero(firm)]
-    softness = np.where(equal, 0.0, distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
-    corner = -sparse.diags(softness)
-    right = -np.vstack([slopes[0] + loose.T @ slopes[1], slopes[1][firm]])
-    system = sparse.bmat([[primal, held.T], [held, corner]], format="csc")
-    shift = sparse.diags(np.concatenate([np.zeros(len(bounds[0])), np.full(int(firm.sum()), -DUAL_SHIFT)]))
+    own = sparse.csc_matrix(jacobian)[:, free].tocsr()
+    loose = sparse.diags(np.where(firm, 0.0, SHARPER * np.abs(forces) / distances)) @ own
+    on_bounds = sparse.diags(_on_bounds(*(each[free] for each in bounds)))
+    primal = sparse.csc_matrix(hessian)[free][:, free] + own.T @ loose + on_bounds
+    held = own[np.flatnonzero(firm)]
+    softness = np.where(equal, 0.0, SHARPER * distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
+    right = -np.vstack([slopes[0][free] + loose.T @ slopes[1], slopes[1][firm]])
+    system = sparse.bmat([[primal, held.T], [held, -sparse.diags(softness)]], format="csc")
+    moved = _solved(system, right, len(free))
+    if isinstance(moved, NotDifferentiable):
+        return moved
+    found = np.zeros((len(bounds[0]), right.shape[1]))
+    found[free] = moved[: len(free)]
+    return found
+
+
+def _solved(system: sparse.csc_matrix, right: Array, count: int) -> Array | NotDifferentiable:
+    """The system's solution, refined; so many of its rows are variables, the others held rows."""
+    shift = sparse.diags(np.repeat([0.0, -DUAL_SHIFT], [count, len(right) - count]))
     try:
         factors = splu(sparse.csc_matrix(system + shift))
     except RuntimeError:
@@ -76,16 +96,25 @@ def solution_slopes(
     found = factors.solve(right)
     for _ in range(REFINEMENTS):
         found += factors.solve(right - system @ found)
-    if not np.isfinite(found).all():
-        return NotDifferentiable("the motion can move at no cost")
-    return np.asarray(found[: len(bounds[0])])
+    return found if np.isfinite(found).all() else NotDifferentiable("the motion can move at no cost")
 
 
-def _weights(values: Array, low: Array, high: Array, forces: Array) -> tuple[Array, Array]:
-    """|multiplier| over distance of each inequality, and that distance, from the limit that pushes."""
-    distances = np.maximum(np.where(forces > 0.0, high - values, values - low), LEAST_DISTANCE)
-    distances = np.where(np.isfinite(distances), distances, np.inf)
-    return np.abs(forces) / distances, distances
+def _distances(values: Array, low: Array, high: Array, forces: Array) -> Array:
+    """Of each inequality from the limit that pushes."""
+    return np.maximum(np.where(forces > 0.0, high - values, values - low), LEAST_DISTANCE)
+
+
+def _on_bounds(values: Array, low: Array, high: Array, forces: Array) -> Array:
+    """The weight of each variable."""
+    distances, pushes = _distances(values, low, high, forces), np.abs(forces)
+    sharper = np.where(pushes > distances, 1.0 / SHARPER, SHARPER)
+    return sharper * pushes / distances
+
+
+def _undecided(values: Array, low: Array, high: Array, forces: Array) -> bool:
+    """Whether any inequality has neither a multiplier nor a distance that counts."""
+    least = np.minimum(high - values, values - low)
+    return bool(((low < high) & (np.maximum(least, np.abs(forces)) < COMPLEMENTARY)).any())
 
 
 def central_differences(

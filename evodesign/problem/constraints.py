@@ -18,6 +18,7 @@ from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.motion_objectives import refuse_still
 from evodesign.problem.objectives import (
     HUMAN_EFFORT,
+    OTHERWISE_CALLED,
     QUANTITIES,
     ObjectiveKind,
     objective_kind,
@@ -87,8 +88,9 @@ def _quantity(key: str, source: ProblemSource) -> tuple[str, ObjectiveKind]:
     quantile = re.match(r"q[1-9]\d?_", key)
     quantiles = [constraint_key(f"{quantile[0]}{name}") for name in QUANTITIES] if quantile else []
     wanted = f"one of the keys {', '.join(keys)}"
+    meant = OTHERWISE_CALLED.get(key.removesuffix("_w"), key)
     raise InputError(
-        source.path, f"constraints.{key}", wanted, f"'{key}'{nearest_name(key, [*keys, *quantiles])}"
+        source.path, f"constraints.{key}", wanted, f"'{key}'{nearest_name(meant, [*keys, *quantiles])}"
     )
 
 

@@ -110,13 +110,15 @@ ByTorque = Callable[[Scene, Mapping[str, AgentPosture]], Mapping[str, Mapping[st
 class CaseQuantity:
     """A value of every case: its unit and formula.
 
-    `by_torque` is its derivative, for a quantity that depends on torques alone; without it, gradients are
+    `by_torque` is its derivative, for a quantity that depends on torques alone, and `by_speed` that by the
+    speeds of joints, for one that depends on them as well; without the former, gradients are
     taken by differences along the exact tangent, which costs many times as much.
     """
 
     unit: str
     value: CaseValue
     by_torque: ByTorque | None = None
+    by_speed: ByTorque | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ from evodesign.problem.design_space import (
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.motion_objectives import refuse_still
-from evodesign.problem.objectives import HUMAN_EFFORT, objective_kind, objective_kinds
+from evodesign.problem.objectives import HUMAN_EFFORT, OTHERWISE_CALLED, objective_kind, objective_kinds
 from evodesign.records import (
     Hold,
     Lift,
@@ -175,7 +175,8 @@ def objectives_of(
         if kind is None:
             known = objective_kinds()
             wanted = f"one of {', '.join(known)}"
-            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, known)}")
+            meant = OTHERWISE_CALLED.get(name, name)
+            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(meant, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
         refuse_without_hardware(key, name, tables, source)

@@ -5,10 +5,11 @@ torques follows by the chain rule, since torques are variables of the posture pr
 
     d |tau| / d pi = tau . (d tau / d pi) / |tau|
 
-and the mean, the largest value or a quantile over cases is that of the same cases. What an actuator changes
-of the formula itself (its motor constant, its limit) is differenced at the same torques. Reach has its own
-tangent. What depends on the robot's bodies alone is differenced along the resized robot. Everything else
-goes along the whole tangent, as in `sensitivities`, which takes many times as long.
+and in a lift along the speeds of joints likewise. The mean, the largest value or a quantile over cases is
+that of the same cases. What an actuator changes of the formula itself (its motor constant, its limit) is
+differenced at the same torques. Reach has its own tangent. What depends on the robot's bodies alone is
+differenced along the resized robot. Everything else goes along the whole tangent, as in `sensitivities`,
+which takes many times as long.
 """
 
 from __future__ import annotations
@@ -19,13 +20,21 @@ from functools import cached_property
 
 import numpy as np
 
+from evodesign.motion.derivative import LiftDerivative
+from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.design_result import WORST, ByTorque, DesignResult
-from evodesign.problem.motion_objectives import mean_over_time
+from evodesign.problem.motion_objectives import (
+    ENERGY,
+    LEAST_TIME,
+    POWER,
+    mean_over_time,
+    motion_power_by_torque,
+)
 from evodesign.problem.objectives import (
     QUANTITIES,
     REACH,
@@ -36,7 +45,7 @@ from evodesign.problem.objectives import (
 )
 from evodesign.problem.sensitivities import STEP, ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
-from evodesign.records import Case, CaseGradient, Gradients
+from evodesign.records import Case, CaseGradient, Gradients, Lift
 from evodesign.violations import HEIGHT
 
 __all__ = ["assessed_gradients"]
@@ -156,6 +165,10 @@ class _Design:
             absent = [each for _, _, each in cases if isinstance(each, NotDifferentiable)]
             values = [value for _, value, _ in cases]
             return absent[0] if absent else np.asarray(_weights(values, way) @ np.array(gradients))
+        if name == ENERGY:
+            return self._of_energy()
+        if quantity == LEAST_TIME:
+            return self._of_least_time(way)
         if name == REACH:
             return _slope(self._highest)
         if name == SHARED_REACH:
@@ -196,6 +209,7 @@ class _Design:
         found = self._known[name] = []
         for solution, derivative in zip(self._result.cases, self._cases, strict=True):
             scene = self._result.scene_of(solution.case)
+            exact = derivative.instants if isinstance(derivative, LiftDerivative) else solution.instants
             for load_case, disturbance in enumerate(("", *solution.instants[0].disturbed)):
                 over_time: OverTime = []
                 for number, instant in enumerate(solution.instants):
@@ -204,9 +218,12 @@ class _Design:
                     if isinstance(derivative, NotDifferentiable):
                         over_time.append((instant.time, value, derivative))
                         continue
+                    postures = exact[number].disturbed.get(disturbance, exact[number].postures)
                     weights = by_torque(scene, postures)
                     own = self._by_actuators(quantity, solution.case, postures)
                     slope = derivative.along_torques(number, load_case, weights) + own
+                    if quantity.by_speed is not None and isinstance(derivative, LiftDerivative):
+                        slope += derivative.along_speeds(number, quantity.by_speed(scene, postures))
                     over_time.append((instant.time, value, slope))
                 found.append(over_time)
         return found
@@ -242,6 +259,29 @@ class _Design:
         if people is not None and robot is not None and people < robot:
             return np.zeros(len(self._values))
         return _slope(self._highest)
+
+    def _of_energy(self) -> Found:
+        """The power's over the time of each lift, the mean over all of them."""
+        found = self._by_case(POWER, QUANTITIES[POWER], motion_power_by_torque)
+        lifts = [
+            (solution.case.task.seconds, _mean(over_time)[2])
+            for (solution, _), over_time in zip(self._result.every_case(), found, strict=True)
+            if isinstance(solution.case.task, Lift)
+        ]
+        absent = [each for _, each in lifts if isinstance(each, NotDifferentiable)]
+        slopes = [seconds * each for seconds, each in lifts if isinstance(each, np.ndarray)]
+        return absent[0] if absent else np.asarray(np.mean(slopes, axis=0))
+
+    def _of_least_time(self, way: str) -> Found:
+        """From the multipliers of each lift's own program."""
+        motions = [each.motion for each in self._result.cases if isinstance(each, MotionCase)]
+        found = [each.least for each in motions if each is not None and each.least is not None]
+        weights = _weights([each.seconds for each in found], way)
+        slope = np.asarray(weights @ np.array([each.slope for each in found]))
+        if not self._result.rated or self._given is None:
+            return slope
+        given = self._given
+        return given if isinstance(given, NotDifferentiable) else np.asarray(slope @ given)
 
     def _of_robot(self, name: str) -> Found:
         space, tree = self._problem.space, self._result.robot.tree

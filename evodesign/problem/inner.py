@@ -13,6 +13,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.motion_objectives import LEAST_TIME
 
 __all__ = ["InnerProblems", "inner_problems"]
 
@@ -35,6 +36,8 @@ class InnerProblems:
 def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> InnerProblems:
     """The inner problems of a problem, with what is known beforehand."""
     symmetric, solvers = problem.symmetry is not Symmetry.OFF, SolverCache()
+    names = [*(each.name for each in problem.objectives), *(each.name for each in problem.constraints)]
+    timed = any(name.endswith(LEAST_TIME) for name in names)
     scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
     settings = [Setting(scene, problem.space, problem.weights, problem.options) for scene in scenes]
     return InnerProblems(
@@ -48,5 +51,7 @@ def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPU
             )
             for setting in settings
         },
-        lifts={setting.scene.pair: LiftProblem(setting, symmetric=symmetric) for setting in settings},
+        lifts={
+            setting.scene.pair: LiftProblem(setting, symmetric=symmetric, timed=timed) for setting in settings
+        },
     )

@@ -46,6 +46,7 @@ def _one(pair: tuple[str, str], solution: LiftSolution) -> dict[str, Any]:
     return found | {
         "residuals": {"knots": checked.knots, "between": checked.between, "energy": checked.energy_error},
         "energy_gained_j": checked.energy,
+        **({} if solution.least is None else {"least_seconds": solution.least.seconds}),
         "times_s": times.tolist(),
         "heights_m": solution.course.heights(times).tolist(),
         "agents": {

@@ -2,6 +2,7 @@
 
     robot_power   sum over the robot's joints of max(torque x speed, 0), and copper losses of actuators [W]
     energy        robot_power over the time of a lift, the mean over all lifts [J]
+    lift_seconds  least time in which a lift can be done, the mean over all lifts; worst_ the largest [s]
     l5s1_moment   |torque| at the person's joints between the fifth lumbar vertebra and the sacrum [N m]
 
 No power is regained from a joint that brakes. Copper losses count where a design has actuators, whose motor
@@ -22,25 +23,29 @@ from evodesign.errors import InputError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.hardware_objectives import holding_power
+from evodesign.problem.hardware_objectives import holding_power, power_by_torque
 from evodesign.records import ProblemSource
 
 __all__ = [
     "ENERGY",
+    "LEAST_TIME",
     "NEED_LIFTS",
     "POWER",
     "SPINE",
     "l5s1_moment",
     "mean_over_time",
+    "moment_by_torque",
+    "motion_power_by_speed",
+    "motion_power_by_torque",
     "refuse_still",
     "robot_power",
 ]
 
 Value = TypeVar("Value", float, NDArray[np.float64])
 
-POWER, ENERGY, SPINE = "robot_power", "energy", "l5s1_moment"
+POWER, ENERGY, SPINE, LEAST_TIME = "robot_power", "energy", "l5s1_moment", "lift_seconds"
 
-NEED_LIFTS = (POWER, ENERGY)
+NEED_LIFTS = (POWER, ENERGY, LEAST_TIME)
 """How the names of quantities end that tell nothing where no load moves."""
 
 PUBLISHED = ("paper_cost", "paper2023_cost")
@@ -57,10 +62,35 @@ def robot_power(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     return float(sum(mechanical)) + holding_power(scene, postures)
 
 
+def motion_power_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """D P / d tau = 2 tau / K^2, and the speed of each joint that drives."""
+    posture, copper = postures[ROBOT], power_by_torque(scene, postures)[ROBOT]
+    speeds = {joint: posture.speeds[joint] for joint in _driving(posture)}
+    return {ROBOT: {joint: copper.get(joint, 0.0) + speeds.get(joint, 0.0) for joint in posture.torques}}
+
+
+def motion_power_by_speed(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """The torque of each joint that drives."""
+    posture = postures[ROBOT]
+    return {ROBOT: {joint: posture.torques[joint] for joint in _driving(posture)}}
+
+
+def _driving(posture: AgentPosture) -> list[str]:
+    """Joints whose torque turns them on."""
+    return [joint for joint, speed in posture.speeds.items() if posture.torques[joint] * speed > 0.0]
+
+
 def l5s1_moment(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """Norm of the person's torques between L5 and S1 [N m]."""
     torques = postures[HUMAN].torques
     return float(np.linalg.norm([torque for joint, torque in torques.items() if joint.startswith(LUMBAR)]))
+
+
+def moment_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """D |tau| / d tau of the joints between L5 and S1."""
+    norm = l5s1_moment(scene, postures) or 1.0
+    torques = postures[HUMAN].torques
+    return {HUMAN: {joint: tau / norm for joint, tau in torques.items() if joint.startswith(LUMBAR)}}
 
 
 def mean_over_time(times: Sequence[float], values: Sequence[Value]) -> Value:

@@ -26,6 +26,7 @@ from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.balance import standing_height_of_mass
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.motion.solution import MotionCase
 from evodesign.outside import imported, is_outside
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.terms.base import TORQUE_UNIT
@@ -52,16 +53,21 @@ from evodesign.problem.hardware_objectives import (
 )
 from evodesign.problem.motion_objectives import (
     ENERGY,
+    LEAST_TIME,
     POWER,
     SPINE,
     l5s1_moment,
     mean_over_time,
+    moment_by_torque,
+    motion_power_by_speed,
+    motion_power_by_torque,
     robot_power,
 )
 from evodesign.records import Constraint, Lift, Objective
 
 __all__ = [
     "HUMAN_EFFORT",
+    "OTHERWISE_CALLED",
     "QUANTITIES",
     "REACH",
     "SHARED_REACH",
@@ -174,6 +180,26 @@ def energy(result: DesignResult) -> float | None:
     return float(np.mean(lifts)) if lifts else None
 
 
+def least_times(result: DesignResult) -> list[float] | None:
+    """The least time of every lift [s]; None without any, and where one is not known."""
+    lifts = [solution for solution in result.cases if isinstance(solution.case.task, Lift)]
+    found = [each.least_seconds for each in lifts if isinstance(each, MotionCase) and each.solved]
+    known = [seconds for seconds in found if seconds is not None]
+    return known if known and len(known) == len(lifts) else None
+
+
+def mean_least_time(result: DesignResult) -> float | None:
+    """The mean over all lifts of the least time in which they can be done [s]."""
+    found = least_times(result)
+    return None if found is None else float(np.mean(found))
+
+
+def worst_least_time(result: DesignResult) -> float | None:
+    """The largest of them [s]."""
+    found = least_times(result)
+    return None if found is None else max(found)
+
+
 def com_height(result: DesignResult) -> float:
     """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
     return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
@@ -225,8 +251,8 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
     "holding_power": CaseQuantity("W", holding_power, power_by_torque),
     "hand_deflection": CaseQuantity("mm", hand_deflection),
-    POWER: CaseQuantity("W", robot_power),
-    SPINE: CaseQuantity("N m", l5s1_moment),
+    POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
+    SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
@@ -242,10 +268,16 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),
     ENERGY: ObjectiveKind("J", energy),
+    LEAST_TIME: ObjectiveKind("s", mean_least_time),
+    f"{WORST}{LEAST_TIME}": ObjectiveKind("s", worst_least_time),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
     "paper2023_cost": ObjectiveKind("N m", paper2023_cost),
 }
 """Values of a design as a whole."""
+
+
+OTHERWISE_CALLED: Mapping[str, str] = {"peak_power": f"{WORST}{POWER}"}
+"""What somebody means who asks for a quantity by a name that it might have."""
 
 
 def objective_kinds() -> Mapping[str, ObjectiveKind]:

@@ -23,6 +23,7 @@ from functools import partial
 import numpy as np
 
 from evodesign.design.space import DesignParameter
+from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit
@@ -210,6 +211,8 @@ def _moved(
 ) -> CaseSolution:
     if isinstance(derivative, NotDifferentiable):
         return _without(solution)
+    if isinstance(solution, MotionCase) and isinstance(derivative, LiftDerivative):
+        solution = solution.with_least_time_moved(derivative.least_slope, step)
     return replace(solution, instants=derivative.moved(step))
 
 

@@ -125,7 +125,8 @@ def along_design(
         return slopes
     if isinstance(derivative, LiftDerivative):
         along, cost_slope = derivative.slopes @ slopes, derivative.cost_slope @ slopes
-        return replace(derivative, slopes=along, cost_slope=cost_slope)
+        least = None if derivative.least_slope is None else derivative.least_slope @ slopes
+        return replace(derivative, slopes=along, cost_slope=cost_slope, least_slope=least)
     return replace(
         derivative,
         slopes={name: each @ slopes for name, each in derivative.slopes.items()},

@@ -8,6 +8,7 @@ import pytest
 
 from evodesign.nlp.blocks import Block, Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.repeated import RepeatedProgram
 
 TIMES = 4
@@ -106,3 +107,46 @@ def test_blocks_of_several_kinds_are_solved_alike_by_both_methods() -> None:
     assert native.symbols == pytest.approx(ipopt.symbols, abs=1e-6)
     assert native.rows == pytest.approx(ipopt.rows, abs=1e-5)
     assert native.cost_slope == pytest.approx(ipopt.cost_slope, rel=1e-5)
+
+
+def pushed(method: MethodName = MethodName.IPOPT) -> RepeatedProgram:
+    """Min (x - s)^2 + (y + x)^2 with x at most 1 in each of two repetitions: x is s or 1, and y is -x."""
+    seen, own, shared = ca.SX.sym("y", 2), ca.SX.sym("p", 0), ca.SX.sym("s")
+    cost = (seen[0] - shared) ** 2 + (seen[1] + seen[0]) ** 2
+    block = Block("pushed", seen, own, shared, cost, 2.0 * seen[0], np.array([-np.inf]), np.array([2.0]))
+    options = SolverOptions(tolerance=1e-7, compiled=method is MethodName.NATIVE, method=method)
+    return RepeatedProgram("pushed", [Repeated(block, np.eye(4), 2)], options)
+
+
+def slopes_at(shared: float, method: MethodName, held: float | None = None) -> object:
+    """How x and y move with s; the last y is held where a number is given."""
+    solver, own, given = pushed(method), [np.empty((2, 0))], np.array([shared])
+    low, high = np.full(4, -3.0), np.full(4, 3.0)
+    low[3], high[3] = (-3.0, 3.0) if held is None else (held, held)
+    ending, _ = solver.solve(np.clip(np.full(4, 0.2), low, high), (low, high), given, own)
+    exact = solver.exact(ending, (low, high), given, own)
+    assert isinstance(exact, Ending)
+    found = solver.slopes(exact, (low, high), given, own, 1)
+    return found if isinstance(found, NotDifferentiable) else found.ravel()
+
+
+@METHODS
+@pytest.mark.parametrize("beyond", [1e-2, 1e-4, 1e-5])
+def test_a_limit_that_is_nearly_reached_does_not_hold_and_one_that_hardly_pushes_does(
+    method: MethodName, beyond: float
+) -> None:
+    assert slopes_at(1.0 - beyond, method) == pytest.approx([1.0, -1.0, 1.0, -1.0], abs=1e-5)
+    assert slopes_at(1.0 + beyond, method) == pytest.approx([0.0, 0.0, 0.0, 0.0], abs=1e-5)
+
+
+@METHODS
+def test_a_limit_that_is_just_reached_leaves_no_derivative(method: MethodName) -> None:
+    found = slopes_at(1.0, method)
+    assert isinstance(found, NotDifferentiable)
+    assert found.reason.startswith("a limit of the motion is only just reached")
+
+
+@METHODS
+def test_a_variable_of_one_value_stays_though_nothing_pushes_it(method: MethodName) -> None:
+    """Without its value y would be -x = -0.5, which it is."""
+    assert slopes_at(0.5, method, held=-0.5) == pytest.approx([1.0, -1.0, 0.5, 0.0], abs=1e-6)

@@ -25,7 +25,14 @@ from evodesign.violations import bound_margin, height_margin, total_violation
 
 TORQUES = ("robot_torque", "human_torque")
 
-NEED_MORE = ("shared_reach_height", "least_safety_factor", "cost", "energy")
+NEED_MORE = (
+    "shared_reach_height",
+    "least_safety_factor",
+    "cost",
+    "energy",
+    "lift_seconds",
+    "worst_lift_seconds",
+)
 """Quantities that ask for people's reach, for walls, for prices, or for lifts."""
 
 STEP = 1e-4

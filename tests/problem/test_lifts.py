@@ -13,12 +13,15 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import LiftProblem
+from evodesign.motion.program import LiftProgram
 from evodesign.nlp.method import MethodName
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
@@ -62,11 +65,17 @@ class Moving:
     def of(cls, problem: DesignProblem) -> Moving:
         native = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE)
         scene = problem.scene
-        motions = LiftProblem(Setting(scene, problem.space, problem.weights, native), symmetric=True)
-        inner = replace(inner_problems(problem), lifts={scene.pair: motions})
+        setting, own = Setting(scene, problem.space, problem.weights, native), inner_problems(problem)
+        motions = LiftProblem(setting, symmetric=True, timed=own.lifts[scene.pair].timed)
+        inner = replace(own, lifts={scene.pair: motions})
         solver = DesignSolver(problem, NOTHING_PRECOMPUTED, inner)
         values = tuple(problem.space.unscaled(scene.robot.tree))
         return cls(problem, solver, values, solver.solve(values))
+
+    @property
+    def timed(self) -> bool:
+        """Whether least times of lifts are looked for."""
+        return next(iter(inner_problems(self.problem).lifts.values())).timed
 
     @property
     def assessed(self) -> Assessed:
@@ -272,6 +281,61 @@ def test_lifts_that_there_are_not(repository: Path, old: str, new: str, words: s
         changed(repository, (old, new))
 
 
+@pytest.fixture(scope="module")
+def quick(repository: Path) -> Moving:
+    """Two lifts of a robot with torque limits, whose least times count and are constrained."""
+    lifts = "from_m = 0.9\nto_m = 1.1\nknots = 6\n\n[[task.lift]]\nfrom_m = 1.1\nto_m = 1.0\nknots = 6"
+    human = '[robot.torque_limits_n_m]\n"*" = 40.0\n\n[human]'
+    bound = "[constraints]\nworst_lift_seconds = { upper = 0.1 }\n\n[search]"
+    asked = ('"robot_torque", "human_torque"', '"lift_seconds", "worst_lift_seconds"')
+    hard = ("joints = [", 'torque_limits = "hard"\njoints = [')
+    text = changed(repository, (TABLE, lifts), ("[human]", human), ("[search]", bound), asked, hard)
+    return Moving.of(text)
+
+
+def test_least_times_are_objectives_and_constraints_and_have_gradients(quick: Moving) -> None:
+    """The mean and the largest of those of both lifts; both ways to a gradient agree."""
+    assert quick.timed
+    least = [case.motion.least for case in quick.result.cases]
+    found = quick.assessed.assessment
+    seconds = [each.seconds for each in least]
+    assert found.objectives["lift_seconds"] == pytest.approx(np.mean(seconds))
+    assert found.objectives["worst_lift_seconds"] == max(seconds)
+    assert found.constraints == {"worst_lift_seconds": max(seconds)}
+    assert found.violation > 0.0
+    derivatives = Sensitivities(quick.problem, inner=quick.solver.inner)
+    slow = derivatives.at(quick.values, quick.result).sensitivities()
+    fast = assessed_gradients(quick.problem, derivatives, quick.values, quick.result).values
+    records = quick.problem.space.records
+    spans = {p.name: p.slope_at(x) for p, x in zip(records, quick.values, strict=True)}
+    slopes = {"lift_seconds": np.mean([each.slope for each in least], axis=0)}
+    slopes["worst_lift_seconds"] = least[int(np.argmax(seconds))].slope
+    for name, slope in slopes.items():
+        expected = slope * np.array(list(spans.values()))
+        assert list(fast[name].values()) == pytest.approx(expected)
+        along = slow[name].gradient
+        assert along is not None, slow[name].notes
+        assert [along[each] * spans[each] for each in spans] == pytest.approx(expected, abs=1e-8)
+
+
+def test_least_times_are_looked_for_only_where_something_asks(moving: Moving) -> None:
+    assert not moving.timed
+    assert all(case.least_seconds is None for case in moving.result.cases[1:])
+    assert objective_value("lift_seconds", moving.result) is None
+
+
+@pytest.mark.parametrize("name", ["energy", "worst_lift_seconds"])
+def test_energy_and_least_time_need_a_lift(name: str, problem: DesignProblem) -> None:
+    text = problem.source.text.replace('"human_torque"', f'"{name}"')
+    with pytest.raises(InputError, match=rf"a \[\[task\.lift\]\] for '{name}', found none"):
+        build_problem(msgspec.structs.replace(problem.source, text=text))
+
+
+def test_a_name_that_is_no_objective_is_refused_with_the_nearest(repository: Path) -> None:
+    with pytest.raises(InputError, match=r"found 'peak_power'; did you mean 'worst_robot_power'\?"):
+        changed(repository, (TORQUE, '"peak_power"'))
+
+
 def test_energy_needs_a_lift(problem: DesignProblem) -> None:
     text = problem.source.text.replace('"human_torque"', '"energy"')
     with pytest.raises(InputError, match=r"a \[\[task\.lift\]\] for 'energy', found none"):
@@ -305,3 +369,60 @@ def assert_gradients_agree(moving: Moving) -> None:
         expected = [gradient[parameter] * spans[parameter] for parameter in spans]
         found = [quick[name][parameter] for parameter in spans]
         assert found == pytest.approx(expected, abs=1e-4 * max(map(abs, expected)))
+
+
+EVERY = ("robot_torque", "human_torque", "robot_power", "l5s1_moment")
+
+
+def neighbours(
+    moving: Moving, result: DesignResult, direction: np.ndarray, shares: list[float]
+) -> list[float]:
+    """Every objective of designs along a direction, whose motions are solved to 1e-12 from a design's own."""
+    case, problem = result.cases[0], moving.problem
+    motion = case.motion
+    options = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE)
+    setting = Setting(problem.scene, problem.space, problem.weights, options)
+    exact = replace(options, tolerance=1e-12, near=True)
+    program = LiftProgram(KnotBlocks(symmetric_forms(problem.scene), setting), motion.lift.knots, exact)
+    start, found = replace(motion.start, symbols=motion.ending.symbols), []
+    for share in shares:
+        values = np.array(result.values) + share * direction
+        ending, _ = program.solve(motion.lift, start, values, problem.scene.payload.mass)
+        assert ending.word == "Solve_Succeeded"
+        instants = program.course(motion.lift, ending.symbols).instants(case.case.task.result_times)
+        moved = replace(result, cases=(replace(case, instants=instants),))
+        found.append([objective_value(objective.name, moved) for objective in problem.objectives])
+    return found
+
+
+def test_gradients_of_every_objective_are_those_of_solves_of_neighbours(repository: Path) -> None:
+    """Central differences at two steps, extrapolated to none (Richardson), of three designs.
+
+    Relative to the gradient along the direction, or to a thousandth of the objective or of its unit where it
+    hardly moves: the person's torques often do not at all.
+    """
+    names = [*EVERY, *(f"worst_{name}" for name in EVERY), "energy"]
+    asked = '"robot_torque", "human_torque"', ", ".join(f'"{name}"' for name in names)
+    table = "from_m = 0.9\nto_m = 1.1\nseconds = 1.5\nknots = 8"
+    moving = Moving.of(changed(repository, (TABLE, table), asked))
+    derivatives = Sensitivities(moving.problem, inner=moving.solver.inner)
+    records, rng, step = moving.problem.space.records, np.random.default_rng(4), 5e-5
+    moves = 0
+    for _ in range(3):
+        values = moving.problem.space.values(tuple(rng.uniform(0.2, 0.8, len(records)).tolist()))
+        result = moving.solver.solve(values)
+        assert result.cases[0].solved, result.cases[0].reason
+        gradients = assessed_gradients(moving.problem, derivatives, values, result)
+        assert gradients.absent == {}
+        ranges = np.array([p.slope_at(x) for p, x in zip(records, values, strict=True)])
+        along = rng.standard_normal(len(records))
+        ends = np.array(neighbours(moving, result, along * ranges, [-step, -step / 2, step / 2, step]))
+        far, near = (ends[3] - ends[0]) / (2.0 * step), (ends[2] - ends[1]) / step
+        for place, objective in enumerate(moving.problem.objectives):
+            row = np.array(list(gradients.values[objective.name].values()))
+            if objective.name == "reach_height":
+                continue
+            size = max(abs(float(row @ along)), 1e-3 * abs(ends[0][place]), 1e-3)
+            assert (4.0 * near - far)[place] / 3.0 == pytest.approx(row @ along, abs=1e-4 * size), objective
+            moves += abs(float(row @ along)) == size
+    assert moves >= 15

@@ -46,7 +46,8 @@ def _caption(solution: LiftSolution) -> str:
     residuals += f", {checked.between[largest]:.1e} between them ({largest})"
     energy = f"energy gained {checked.energy:.4g} J, work off by {100.0 * checked.energy_error:.2g} %"
     why = "" if solution.solved else f": {solution.reason}"
-    return f"{solution.status}{why}; {residuals}; {energy}"
+    least = "" if solution.least is None else f"; least time {solution.least.seconds:.4g} s"
+    return f"{solution.status}{why}; {residuals}; {energy}{least}"
 
 
 def _over_time(solution: LiftSolution) -> FittedTable:

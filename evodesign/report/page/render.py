@@ -46,6 +46,7 @@ SCRIPTS = (
     "cases.js",
     "stage.js",
     "torques.js",
+    "motion.js",
     "ingredients.js",
     "hardware.js",
     "reach.js",

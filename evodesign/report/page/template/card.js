@@ -110,6 +110,7 @@ const drawWithoutPostures = (row) => {
 const drawWithPostures = (row, design) => {
   const height = heightControl(design);
   const torques = torqueSection(state.selected, design);
+  const motion = motionSection(design);
   const cases = caseSection(design);
   const wrenches = element("div");
   const mass = massOf(treeOf("robot", design));
@@ -121,14 +122,22 @@ const drawWithPostures = (row, design) => {
     cases?.section,
     fold("Parameters", `${parameters.length}`, parameterTable(row)),
     torques.section,
+    motion?.section,
     ...hardwareSections(design),
     fold("Masses", `robot ${figure(mass)} kg`, massTable(design)),
     fold("Contact wrenches", "", wrenches),
     sensitivities(design),
   ]);
-  torques.draw();
+  const redraw = () => {
+    torques.draw();
+    motion?.draw();
+  };
+  redraw();
+  let task = taskTexts[state.height];
   const showHeight = (moving) => {
     height.show();
+    if (task !== taskTexts[state.height]) motion?.draw();
+    task = taskTexts[state.height];
     cases?.draw();
     const posture = postureAt(design, shownCase());
     const missing = () =>
@@ -136,7 +145,7 @@ const drawWithPostures = (row, design) => {
     wrenches.replaceChildren(posture ? wrenchTable(posture) : missing());
     if (hasWebgl) showPosture(state.selected, design, moving);
   };
-  Object.assign(shown, { redraw: torques.draw, height: showHeight });
+  Object.assign(shown, { redraw, height: showHeight });
   showHeight(false);
 };
 

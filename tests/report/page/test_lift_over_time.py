@@ -1,0 +1,121 @@
+"""The lift of a page over its time, in a real browser, against what the log holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.source import read_source
+from evodesign.records import (
+    AgentDetail,
+    Assessment,
+    CaseDetail,
+    CaseOutcome,
+    Detail,
+    Evaluation,
+    InstantDetail,
+    Lift,
+    ReachOutcome,
+    Status,
+)
+from evodesign.report.page import page_content, page_html
+from evodesign.runlog.header import header_of
+from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.writer import RunWriter
+from tests.report.page.chromium import Tab
+from tests.report.page.reading import open_page
+from tests.report.scenes import random_instant, random_values
+
+pytestmark = pytest.mark.needs_chromium
+
+LIFT = Lift(0.8, 1.2, 1.5, knots=4)
+
+
+def moved(problem: DesignProblem) -> CaseDetail:
+    """A lift through random postures with random speeds."""
+    scene, rng, instants = problem.scene, np.random.default_rng(3), list[InstantDetail]()
+    for time in LIFT.result_times:
+        instant = random_instant(scene, rng)
+        agents = {
+            name: msgspec.structs.replace(
+                agent, speeds_rad_s={joint: float(rng.normal()) for joint in agent.joints_rad}
+            )
+            for name, agent in instant.agents.items()
+        }
+        instants.append(msgspec.structs.replace(instant, time_s=time, agents=agents, load_height_m=1.0))
+    return CaseDetail(case=scene.case(LIFT), instants=tuple(instants))
+
+
+@pytest.fixture(scope="module")
+def run(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
+    source = read_source(repository / "problems" / "icub_lift.toml")
+    problem = build_problem(
+        msgspec.structs.replace(source, text=source.text.replace("seconds = 1.5", "seconds = 1.5\nknots = 4"))
+    )
+    detail, values = moved(problem), random_values(problem, 1)
+    place = tmp_path_factory.mktemp("lift") / "run"
+    with RunWriter(place, header_of(problem, problem.settings("random", 4, 1), budget=4)) as log:
+        assessment = Assessment(
+            design=dict(problem.space.named(values)),
+            objectives={"robot_torque": 1.0, "human_torque": 9.0, "reach_height": 1.25},
+            violation=0.0,
+            status=Status.SOLVED,
+            reason="solved",
+            reach=ReachOutcome(lowest_m=0.1, highest_m=1.25, status=Status.SOLVED, reason=""),
+            cases=(
+                CaseOutcome(detail.case, Status.SOLVED, "solved", 30.0, 9.0, iterations=7, residual=1e-9),
+            ),
+        )
+        genome = problem.space.genome(values)
+        log.detail(Detail(evaluation=0, cases=(detail,)))
+        log.evaluation(Evaluation(0, 0, genome, assessment, seconds=0.1, worker="here"))
+    return read_run(place)
+
+
+@pytest.fixture(scope="module")
+def page(chromium: Tab, run: RunLog) -> Iterator[Tab]:
+    path = run.directory / "report.html"
+    path.write_text(page_html(page_content(run)), encoding="utf-8")
+    open_page(chromium, path)
+    yield chromium
+    assert chromium.complaints() == []
+
+
+def drawn(page: Tab, plot: int) -> dict[str, tuple[list[float], list[float]]]:
+    """Times and values of the lines of a plot, by name."""
+    script = f"document.querySelectorAll('#over-time .joint-plot')[{plot}].data.map(d => [d.name, d.x, d.y])"
+    return {name: (x, y) for name, x, y in page.value(script)}
+
+
+@pytest.mark.parametrize(("option", "who"), [(0, "robot"), (1, "human")])
+def test_torques_power_and_forces_on_hands_are_those_of_the_log(
+    page: Tab, run: RunLog, option: int, who: str
+) -> None:
+    page.value(f"document.querySelectorAll('input[name=over-time]')[{option}].click()")
+    instants = [instant.agents[who] for instant in run.details[0].cases[0].instants]
+
+    def over(value: Callable[[AgentDetail], float]) -> list[float]:
+        return pytest.approx([value(each) for each in instants], rel=1e-5, abs=1e-5)
+
+    torques = drawn(page, 0)
+    most = {joint: max(abs(each.torques_n_m[joint]) for each in instants) for joint in instants[0].joints_rad}
+    assert [*torques] == sorted(most, key=most.__getitem__, reverse=True)[:8]
+    for joint, (times, values) in torques.items():
+        assert times == pytest.approx(LIFT.result_times, rel=1e-6)
+        assert values == over(lambda each, joint=joint: each.torques_n_m[joint])
+
+    def powers(each: AgentDetail) -> list[float]:
+        return [each.torques_n_m[joint] * speed for joint, speed in each.speeds_rad_s.items()]
+
+    power = drawn(page, 1)
+    assert power["all joints"][1] == over(lambda each: sum(powers(each)))
+    assert power["joints that drive"][1] == over(lambda each: sum(max(one, 0.0) for one in powers(each)))
+    for side in ("left", "right"):
+        force = drawn(page, 2)[f"{side} hand"][1]
+        assert force == over(lambda each, side=side: math.hypot(*each.hand_wrenches[side][:3]))
