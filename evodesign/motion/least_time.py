@@ -9,7 +9,7 @@ what its torques add, some thousandths of it where torques are limited. Its deri
 of an optimal cost, from the multipliers.
 
 The result is checked as any lift is, with torques and wrenches that are linear between knots
-(`motion.course`), and found with twice the knots where the check asks for it.
+(`motion.course`), and found with twice the knots where the check asks for it or a solve fails.
 
 Source: Bobrow, Dubowsky and Gibson 1985, Time-optimal control of robotic manipulators along specified paths
 (the problem, along a fixed path); Fiacco 1983, ch. 2 (derivative of an optimal cost).
@@ -45,8 +45,8 @@ MOST_KNOTS = 96
 """With which the least time is looked for; a lift that was found with half of them or less has twice its own,
 or four times."""
 
-ITERATIONS = 500
-"""Of a solve, which goes far from where it begins."""
+ITERATIONS, SECONDS = 500, 60.0
+"""Of a solve, which goes far from where it begins: limits of iterations and of wall time [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +85,9 @@ class LeastTimes:
 
     def __init__(self, blocks: KnotBlocks, options: SolverOptions, mass: float) -> None:
         self._blocks, self._mass = blocks, mass
-        self._options = replace(options, tolerance=TOLERANCE, iterations=ITERATIONS)
+        self._options = replace(
+            options, tolerance=TOLERANCE, iterations=ITERATIONS, seconds=max(SECONDS, options.seconds)
+        )
         self._programs: dict[int, LiftProgram] = {}
 
     def solve(self, design: Sequence[float], lift: Lift, start: LiftStart, checker: LiftChecker) -> LeastTime:
@@ -104,17 +106,18 @@ class LeastTimes:
             solve = PartedLift(program, lift, design, self._mass).settled(begun)
             ending, start = solve.ending, solve.start
             attempts.append(_attempt(lift, ending, solve.seconds, program))
-            if attempts[-1].status is not Status.SOLVED:
-                return _none(lift, attempts[-1].status, ending.word, attempts)
-            course = program.course(lift, ending.symbols)
+            solved = attempts[-1].status is Status.SOLVED
+            reached = replace(start, symbols=ending.symbols) if solved else start
+            course = program.course(lift, reached.symbols)
             checked = checker.check(course)
-            if not checked.wrong:
+            if solved and not checked.wrong:
                 break
             finer = msgspec.structs.replace(lift, knots=2 * lift.knots)
             if finer.knots > MOST_KNOTS:
-                return _none(lift, Status.NUMERICAL_FAILURE, checked.wrong, attempts)
+                status = Status.NUMERICAL_FAILURE if solved else attempts[-1].status
+                return _none(lift, status, checked.wrong if solved else ending.word, attempts)
             lift, program = finer, self._program(finer.knots)
-            start = program.refined(finer, course, replace(start, symbols=ending.symbols))
+            start = program.refined(finer, course, reached)
         return LeastTime(
             lift=lift,
             status=Status.SOLVED,
