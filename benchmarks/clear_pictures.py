@@ -1,13 +1,16 @@
-"""The pictures of docs/model.md of bodies that keep clear of each other.
+"""Pictures of bodies that keep clear of each other.
 
-    python -m benchmarks.clear_pictures
+    python -m benchmarks.clear_pictures [--front RUN]
 
-The unscaled robot of point-grasp with a `[collisions]` table, and the person, at the lowest and the
-highest load height of the task: from the front, where each is drawn without the other, and from the side.
+Of docs/model.md: the unscaled robot of point-grasp with a `[collisions]` table, and the person, at the lowest
+and the highest load height of the task: from the front, where each is drawn without the other, and from the
+side. Of docs/default.md, with a run of a problem with such a table: the designs of least robot torque and of
+least human torque with every person, likewise.
 """
 
 from __future__ import annotations
 
+import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -18,8 +21,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from benchmarks.clearance import with_table
+from evodesign.analysis.front import front
 from evodesign.body.placement import Placement, rotate
-from evodesign.problem.build import build_problem
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
@@ -27,6 +33,7 @@ from evodesign.records import CaseDetail
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.scene_models import ContactWrench, PlacedScene, SceneModels, placed_scene
+from evodesign.runlog.run import read_run
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 FRONT, SIDE = Camera(0.0, math.radians(6.0)), Camera(-math.pi / 2.0, math.radians(6.0))
@@ -62,17 +69,50 @@ def write(figure: Figure, stem: str) -> None:
     assert path.stat().st_size < LARGEST, f"{path} is too large"
 
 
+def draw(problem: DesignProblem, result: DesignResult, words: str, stem: str) -> None:
+    """A design at the lowest and the highest height, with every person, from the side and from the front."""
+    sides: list[PlacedScene] = []
+    fronts: dict[str, list[PlacedScene]] = {ROBOT: [], HUMAN: []}
+    for scene in problem.scenes:
+        own = [detail_of(case) for case in result.cases if case.case.pair == scene.pair]
+        ends = sorted((own[0], own[-1]), key=lambda detail: detail.case.task.height_m)
+        models = SceneModels.of(scene, result.tree)
+        sides += [placed_scene(models, detail) for detail in ends]
+        for detail in ends:
+            for name, placed in zip(fronts, alone(models, detail), strict=True):
+                fronts[name].append(placed)
+    write(posture_figure(sides, f"{words}, from the robot's right", SIDE), f"{stem}_side")
+    for name, scenes in fronts.items():
+        write(posture_figure(scenes, f"{words}: the {name} from the front", FRONT), f"{stem}_front_{name}")
+
+
+def draw_ends(run: Path) -> None:
+    """The designs at both ends of a front."""
+    log = read_run(run)
+    problem = build_problem(log.header.problem)
+    evaluator = evaluator_of(problem, 1)
+    for agent in (ROBOT, HUMAN):
+        name = f"{agent}_torque"
+        best = min(
+            front(log.header.objectives, log.evaluations), key=lambda each: each.assessment.objectives[name]
+        )
+        result = evaluator.solve(problem.space.values(best.genome))
+        draw(problem, result, f"least {agent} torque", f"default_{agent}")
+
+
 def main() -> None:
     """Solve and draw."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--front", type=Path)
+    run = parser.parse_args().front
+    if run is not None:
+        draw_ends(run)
+        return
     problem = build_problem(with_table(read_source(Path("problems") / "point_grasp.toml")))
     result = evaluator_of(problem, 1).solve(problem.space.unscaled(problem.scene.robot.tree))
-    details = [detail_of(case) for case in result.cases]
-    ends = sorted((details[0], details[-1]), key=lambda detail: detail.case.task.height_m)
-    models = SceneModels.of(problem.scene, result.tree)
-    scenes = [placed_scene(models, detail) for detail in ends]
-    write(posture_figure(scenes, "bodies apart, from the robot's right", SIDE), "apart_side")
-    scenes = [scene for detail in ends for scene in alone(models, detail)]
-    write(posture_figure(scenes, "bodies apart, from the front: robot, person", FRONT), "apart_front")
+    draw(problem, result, "bodies apart", "apart")
 
 
 if __name__ == "__main__":

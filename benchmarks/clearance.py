@@ -1,13 +1,14 @@
 """In how many postures bodies pass through each other, and which.
 
-    python -m benchmarks.clearance [--problem NAME] [--designs N]
+    python -m benchmarks.clearance [--problem NAME] [--designs N] [--gap]
     python -m benchmarks.clearance --front RUN [--designs N]
 
-Random designs of a problem, with a `[collisions]` table, with a gap of 5 mm between the feet, and without
-either: solved postures in which two bodies overlap by more than 5 mm, the pairs, how deep they are at worst,
-and processor time per design. Or designs of a run's front, evenly from the least robot torque to the largest,
-without the table and with it: the lowest and the highest load, the deepest overlap at the task's heights, and
-how far the robot's arms are raised sideways there at most (the angle of an upper arm and the plane y = 0).
+Random designs of a problem, with a `[collisions]` table, without, and with `--gap` also with a gap of 5 mm
+between the feet instead: solved postures in which two bodies overlap by more than 5 mm, the pairs, how deep
+they are at worst, processor time per design, and each case that was lost with its reason. Or designs of a
+run's front, evenly from the least robot torque to the largest, without the table and with it: the lowest and
+the highest load, the deepest overlap at the task's heights, and how far the robot's arms are raised sideways
+there at most (the angle of an upper arm and the plane y = 0).
 Written to benchmarks/results/clearance.json, printed as a table.
 """
 
@@ -18,13 +19,15 @@ import json
 import re
 import time
 from collections import Counter
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
+from benchmarks.inner_problem import Design, processors
 from evodesign.analysis.front import front
 from evodesign.body.placement import Placement
 from evodesign.mechanics.scene import ROBOT
@@ -32,7 +35,7 @@ from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import solved_distances
 from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import detail_of
+from evodesign.problem.evaluate import Evaluator, detail_of
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 from evodesign.records import CaseDetail, ProblemSource
@@ -49,33 +52,62 @@ TABLE = re.compile(r"^\[collisions\].*?(?=^\[|\Z)", re.MULTILINE | re.DOTALL)
 COLUMNS = (("lowest_m", 3), ("highest_m", 3), ("deepest_mm", 0), ("arms_deg", 0))
 
 
-def measured(problem: DesignProblem, designs: int) -> dict[str, object]:
-    """Overlaps in the postures of random designs."""
-    evaluator, rng = evaluator_of(problem, 1), np.random.default_rng(0)
-    evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))  # compiles
-    seconds = 0.0
-    solved, missed, pairs, depths = 0, 0, Counter[str](), dict[str, float]()
-    for _ in range(designs):
-        values = problem.space.values(tuple(rng.random(len(problem.space.parameters)).tolist()))
+@dataclass
+class Found:
+    """What random designs of a problem led to."""
+
+    evaluator: Evaluator
+    seconds: float = 0.0
+    solved: int = 0
+    deepest: float = 0.0
+    lost: list[str] = field(default_factory=list)
+    pairs: Counter[str] = field(default_factory=Counter)
+    depths: dict[str, float] = field(default_factory=dict)
+
+    def add(self, number: int, values: Design) -> None:
+        """Solve another design."""
         began = time.process_time()
-        result = evaluator.solve(values)
-        seconds += time.process_time() - began
-        gaps = solved_distances(result)
-        solved, missed = solved + len(gaps), missed + len(result.cases) - len(gaps)
-        for gap in gaps.values():
+        result = self.evaluator.solve(values)
+        self.seconds += time.process_time() - began
+        self.lost += [
+            f"design {number}, {case.case.name}: {case.status}: {case.reason}"
+            for case in result.cases
+            if not case.solved
+        ]
+        for gap in solved_distances(result).values():
+            self.solved += 1
+            self.deepest = max(self.deepest, -gap.distance)
             if gap.distance < -DEEP:
                 name = f"{gap.first}, {gap.second}"
-                pairs[name] += 1
-                depths[name] = min(depths.get(name, 0.0), gap.distance)
-    deepest = {name: round(-1e3 * depths[name], 1) for name, _ in pairs.most_common(SHOWN)}
-    return {
-        "solved": solved,
-        "not_solved": missed,
-        "overlapping": pairs.total(),
-        "pairs": dict(pairs.most_common(SHOWN)),
-        "deepest_mm": deepest,
-        "milliseconds_per_design": round(1e3 * seconds / designs, 2),
-    }
+                self.pairs[name] += 1
+                self.depths[name] = min(self.depths.get(name, 0.0), gap.distance)
+
+    def told(self, designs: int) -> dict[str, object]:
+        """For the table."""
+        most = [name for name, _ in self.pairs.most_common(SHOWN)]
+        return {
+            "solved": self.solved,
+            "not_solved": len(self.lost),
+            "overlapping": self.pairs.total(),
+            "deepest_of_all_mm": round(1e3 * self.deepest, 2),
+            "pairs": {name: self.pairs[name] for name in most},
+            "deepest_mm": {name: round(-1e3 * self.depths[name], 1) for name in most},
+            "milliseconds_per_design": round(1e3 * self.seconds / designs, 2),
+            "lost": self.lost,
+        }
+
+
+def measured(problems: Mapping[str, DesignProblem], designs: int) -> dict[str, dict[str, object]]:
+    """Overlaps in the postures of random designs of some problems with the same parameters, in turn."""
+    found = {name: Found(evaluator_of(problem, processors())) for name, problem in problems.items()}
+    space, rng = next(iter(problems.values())).space, np.random.default_rng(0)
+    for each in found.values():  # compiles
+        each.evaluator.solve(space.unscaled(each.evaluator.problem.scene.robot.tree))
+    for number in range(designs):
+        values = space.values(tuple(rng.random(len(space.parameters)).tolist()))
+        for each in found.values():
+            each.add(number, values)
+    return {name: each.told(designs) for name, each in found.items()}
 
 
 def of_front(run: Path, designs: int) -> list[dict[str, Any]]:
@@ -150,6 +182,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=formatter)
     parser.add_argument("--problem", default="point_grasp")
     parser.add_argument("--designs", type=int, default=100)
+    parser.add_argument("--gap", action="store_true")
     parser.add_argument("--front", type=Path)
     arguments = parser.parse_args()
     if arguments.front:
@@ -164,10 +197,11 @@ def main() -> None:
     source = read_source(Path("problems") / f"{arguments.problem}.toml")
     own = build_problem(without_table(source))
     apart = build_problem(with_table(source))
-    found = {"[collisions]": measured(apart, arguments.designs), "neither": measured(own, arguments.designs)}
-    scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=GAP)) for each in own.scenes)
-    gap = replace(own, scenes=scenes, start_portfolio=False)
-    found[f"feet_gap_m = {GAP}"] = measured(gap, arguments.designs)
+    problems = {"[collisions]": apart, "neither": own}
+    if arguments.gap:
+        scenes = tuple(replace(each, stance=replace(each.stance, feet_gap=GAP)) for each in own.scenes)
+        problems[f"feet_gap_m = {GAP}"] = replace(own, scenes=scenes, start_portfolio=False)
+    found = measured(problems, arguments.designs)
     for name, each in found.items():
         print(name, json.dumps(each, indent=2))
     write(arguments.problem, found)

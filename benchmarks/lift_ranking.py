@@ -17,12 +17,10 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.stats import kendalltau
 
-from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
-from evodesign.motion.lifting import LiftProblem
-from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.formulations.base import Setting
-from evodesign.posture.postures import PostureProblem, Symmetry
-from evodesign.records import Hold
+from benchmarks.inner_problem import HERE, Design, problem_at, processors, random_designs
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.factory import evaluator_of
+from evodesign.problem.lifts import Lifts
 from evodesign.tasks import Lift
 
 HEIGHTS = (0.8, 0.9, 1.0, 1.1, 1.2)
@@ -40,8 +38,7 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=50)
     designs = parser.parse_args().designs
     problem = problem_at(HEIGHTS)
-    setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
-    ranked = _Ranked(setting)
+    ranked = _Ranked(problem)
     found = [ranked.torques(design) for design in random_designs(problem, designs)]
     rows = [each for each in found if each is not None]
     result: dict[str, object] = {"designs": designs, "with_all": len(rows)}
@@ -59,31 +56,26 @@ def main() -> None:
 
 
 class _Ranked:
-    """Holds and lifts of designs in a setting."""
+    """Holds and lifts of a problem's designs."""
 
-    def __init__(self, setting: Setting) -> None:
-        self._setting = setting
-        self._holds = PostureProblem(setting, Symmetry.ON)
-        self._lifts = LiftProblem(setting, symmetric=True)
+    def __init__(self, problem: DesignProblem) -> None:
+        self._asked = [Lift(HEIGHTS[0], HEIGHTS[-1], seconds) for seconds in SECONDS]
+        self._evaluator = evaluator_of(problem, processors(), lifts=self._asked)
+        self._lifts = Lifts(self._evaluator, self._evaluator.known)
 
     def torques(self, design: Design) -> Torques | None:
         """Mean and largest torque norm of the robot [N m]; None where a hold or a lift is missing."""
-        scene = self._setting.scene
-        robot = AgentModel.of(scene.robot, self._setting.space.resized(scene.robot.tree, design))
-        human = AgentModel.of(scene.human, scene.human.tree)
-        checker = Checker(scene, robot, human)
-        held = [self._holds.solve(design, Hold(height_m=height), checker) for height in HEIGHTS]
+        held = self._evaluator.solve(design).cases
         if not all(each.solved for each in held):
             return None
         norms = [each.postures["robot"].torque_norm for each in held]
         found = {HOLDS: (float(np.mean(norms)), max(norms))}
-        for seconds in SECONDS:
-            lift = Lift(HEIGHTS[0], HEIGHTS[-1], seconds)
-            solution = self._lifts.solve(design, lift, [held[0], held[-1]], robot, human)
+        for lift in self._asked:
+            (solution,) = self._lifts.solve(design, lift).values()
             if not solution.solved:
                 return None
             effort = solution.efforts["robot"]
-            found[f"{seconds:g} s"] = effort.mean_torque, effort.peak_torque
+            found[f"{lift.seconds:g} s"] = effort.mean_torque, effort.peak_torque
         return found
 
 

@@ -40,9 +40,12 @@ def simulations(run: Path, designs: int, knots: int) -> Iterator[dict[str, Any]]
         opened = open_design(log, evaluation.number, 1, SILENT)
         problem, robot = opened.rebuilt.problem, opened.scene_set().robot
         holds = tuple(simulated_holds(problem.scenes, robot, opened.cases, HOLD_SECONDS, FEEDBACK))
-        lifts = lifts or Lifts(evaluator_of(problem, 1, SILENT))
+        lift = Lift(0.8, 1.2, 1.5, knots=knots)
+        if lifts is None:
+            evaluator = evaluator_of(problem, 1, SILENT, [lift])
+            lifts = Lifts(evaluator, evaluator.known)
         values = [evaluation.assessment.design[each.name] for each in problem.space.parameters]
-        found = lifts.solve(values, Lift(0.8, 1.2, 1.5, knots=knots))
+        found = lifts.solve(values, lift)
         for solution in found.values():
             if not solution.solved:
                 print(f"design {evaluation.number}: no lift: {solution.reason}")

@@ -44,4 +44,4 @@ def lift(
     """
     asked = Lift(from_m, to_m, seconds, profile_named(profile), knots)
     given: Any = design if len(design) else {}
-    return problem._lifts.solve(problem.values(given), asked)
+    return problem._lifted(problem.values(given), asked)

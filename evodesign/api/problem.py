@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 from evodesign.api.design import Design
 from evodesign.design.space import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name
+from evodesign.motion.solution import LiftSolution
 from evodesign.pool.registry import make_pool
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.evaluate import Evaluator
@@ -26,6 +28,7 @@ from evodesign.records import (
     Constraint,
     Detail,
     Evaluation,
+    Lift,
     Objective,
     Parameter,
     ProblemSource,
@@ -137,13 +140,15 @@ class Problem:
 
     @cached_property
     def _evaluator(self) -> Evaluator:
-        with make_pool("joblib" if self._jobs > 1 else "serial", self._jobs) as pool:
-            return Evaluator(self.built, cached_precomputed(self.built, pool))
+        return Evaluator(self.built, self._known())
 
-    @cached_property
-    def _lifts(self) -> Lifts:
-        """Lifts of designs, for `evodesign.lift`."""
-        return Lifts(self._evaluator)
+    def _known(self, *lifts: Lift) -> Precomputed:
+        with make_pool("joblib" if self._jobs > 1 else "serial", self._jobs) as pool:
+            return cached_precomputed(self.built, pool, lifts=lifts)
+
+    def _lifted(self, values: Sequence[float], lift: Lift) -> dict[tuple[str, str], LiftSolution]:
+        """The lift of a design with every person and load, for `evodesign.lift`."""
+        return Lifts(self._evaluator, self._known(lift)).solve(values, lift)
 
     def __reduce__(self) -> tuple[type[Problem], tuple[ProblemSource]]:
         return Problem, (self.source,)

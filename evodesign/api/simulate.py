@@ -78,5 +78,5 @@ def simulate(
         done = []
         lifts = [Lift(from_m, to_m, 1.5 if seconds is None else seconds, profile_named(profile), knots)]
     for lift in lifts:
-        done += simulated_lifts(built.scenes, robot, problem._lifts.solve(values, lift), feedback)
+        done += simulated_lifts(built.scenes, robot, problem._lifted(values, lift), feedback)
     return tuple(done)

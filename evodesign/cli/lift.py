@@ -52,8 +52,8 @@ def lift(
     show_notes(notes(built))
     chosen, values = chosen_design(built, design, name)
     with precompute_progress() as progress:
-        evaluator = evaluator_of(built, jobs, progress)
-    solutions = Lifts(evaluator).solve(values, asked)
+        evaluator = evaluator_of(built, jobs, progress, [asked])
+    solutions = Lifts(evaluator, evaluator.known).solve(values, asked)
     if csv is not None:
         write_text(csv, lift_csv(solutions), "--csv")
     if json:

@@ -129,8 +129,10 @@ def _lifts(
     from evodesign.problem.lifts import Lifts
 
     problem, values = opened.rebuilt.problem, opened.evaluation.assessment.design
-    evaluator = evaluator_of(problem, jobs, progress)
-    return Lifts(evaluator).solve([values[each.name] for each in problem.space.parameters], asked)
+    evaluator = evaluator_of(problem, jobs, progress, [asked])
+    return Lifts(evaluator, evaluator.known).solve(
+        [values[each.name] for each in problem.space.parameters], asked
+    )
 
 
 def _write_recording(path: Path, opened: OpenedDesign, simulations: Sequence[SimulatedCase]) -> None:

@@ -83,7 +83,7 @@ class LiftChecker:
     """Checks lifts of one design in a scene.
 
     Args:
-        scene: undisturbed.
+        scene: with its disturbances.
         robot: the design's.
         human: the person.
         terms: the check of holds, of the same models.
@@ -203,7 +203,12 @@ def _wrong(
     if not worst.size <= TOLERANCE:
         found = f"the check found {worst.name} {worst.size:.1e} above {TOLERANCE:g}"
         return f"{found} at a knot ({worst.words})"
-    postures = [posture for instant in instants for posture in instant.postures.values()]
+    postures = [
+        posture
+        for instant in instants
+        for load_case in (instant.postures, *instant.disturbed.values())
+        for posture in load_case.values()
+    ]
     torque = max(posture.torque_norm for posture in postures)
     force = max(float(np.abs(wrench[:3]).max()) for p in postures for wrench in p.foot_wrenches.values())
     allowed = {**PLACES, "N m": SHARE * torque, "N": SHARE * force}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ class LiftCourse:
         coefficients: of the splines of postures, by agent and part, shape (knots, rows).
         carried: torques and wrenches at the knots, by agent and part, shape (knots, rows).
         load: coefficients of the load's height [m], shape (knots,).
+        disturbed: what is carried under each disturbance, by its name, likewise.
     """
 
     lift: Lift
@@ -37,11 +38,28 @@ class LiftCourse:
     coefficients: Mapping[str, Mapping[str, Array]]
     carried: Mapping[str, Mapping[str, Array]]
     load: Array
+    disturbed: Mapping[str, Mapping[str, Mapping[str, Array]]] = field(default_factory=dict)
 
     def instants(self, times: Sequence[float] | Array) -> tuple[Instant, ...]:
         """Whole postures and what is carried, between knots by cubic splines through those at the knots."""
-        postures, carriage = self.postures(times), self.carriage(times)
-        image, heights = self._image(times, 1) / self.lift.step, self.heights(times)
+        undisturbed = self._whole(times, self.carried)
+        disturbed = {name: self._whole(times, carried) for name, carried in self.disturbed.items()}
+        return tuple(
+            Instant(
+                float(time),
+                undisturbed[number],
+                {name: each[number] for name, each in disturbed.items()},
+                height=float(height),
+            )
+            for number, (time, height) in enumerate(zip(times, self.heights(times), strict=True))
+        )
+
+    def _whole(
+        self, times: Sequence[float] | Array, carried: Mapping[str, Mapping[str, Array]]
+    ) -> list[dict[str, AgentPosture]]:
+        """Whole postures by agent, at each time, with what is carried in one load case."""
+        postures, carriage = self.postures(times), self.carriage(times, carried)
+        image = self._image(times, 1) / self.lift.step
         found: list[dict[str, AgentPosture]] = [{} for _ in times]
         for form in self.forms:
             name = form.agent.name
@@ -49,10 +67,7 @@ class LiftCourse:
             for number, each in enumerate(found):
                 posture = form.expand({part: values[number] for part, values in parts.items()})
                 each[name] = replace(posture, speeds=form.whole_joints(rates[number]))
-        return tuple(
-            Instant(float(time), each, height=float(height))
-            for time, each, height in zip(times, found, heights, strict=True)
-        )
+        return found
 
     def postures(self, times: Sequence[float] | Array) -> dict[str, dict[str, Array]]:
         """Of the forms, by agent and part, shape (times, rows)."""
@@ -61,12 +76,14 @@ class LiftCourse:
             name: {part: image @ c for part, c in parts.items()} for name, parts in self.coefficients.items()
         }
 
-    def carriage(self, times: Sequence[float] | Array) -> dict[str, dict[str, Array]]:
-        """Torques and wrenches of the forms, likewise."""
+    def carriage(
+        self, times: Sequence[float] | Array, carried: Mapping[str, Mapping[str, Array]]
+    ) -> dict[str, dict[str, Array]]:
+        """Torques and wrenches of the forms, likewise, from those of a load case at the knots."""
         knots = self.lift.knot_times
         return {
             name: {part: CubicSpline(knots, at)(times) for part, at in parts.items()}
-            for name, parts in self.carried.items()
+            for name, parts in carried.items()
         }
 
     def motions(self, times: Sequence[float] | Array) -> tuple[SceneMotion, ...]:

@@ -62,15 +62,16 @@ class LiftDerivative:
 
         Args:
             instant: its number.
-            load_case: zero, as there are no disturbances.
+            load_case: zero for the undisturbed one, else one more than the disturbance's number.
             weights: by agent and joint.
         """
+        every = [instants[instant] for instants in self._around]
         sums = [
             sum(
-                weight * instants[instant].postures[agent].torques[joint]
+                weight * load_cases[load_case][agent].torques[joint]
                 for agent, joints in weights.items()
                 for joint, weight in joints.items()
             )
-            for instants in self._around
+            for load_cases in ([each.postures, *each.disturbed.values()] for each in every)
         ]
         return np.array(sums[1:]) - sums[0]

@@ -6,6 +6,12 @@ place; hands that hold rigidly do not turn, for else their moments would do work
 are slightly disliked. Half-way between knots hands and feet are nearly in their places; without that the
 best motion bends an elbow the other way between two knots that are exact.
 
+Under each disturbance wrenches and torques are others, and the motion is the same. How load cases count
+together is said of every knot by itself (`posture.load_cases`).
+
+Rows that part bodies (`posture.terms.collisions`) are left out at first, those of floor, partner and middle
+plane too. Blocks that have them say them at knots and half-way between, along directions of each one's own.
+
 A block's symbols are, in the program's units, step the time between knots:
 
     posture, step * its rate, step^2 * its change, load height, step^2 * its change, torques and wrenches,
@@ -16,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -24,7 +30,7 @@ import numpy as np
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.nlp.blocks import Block
-from evodesign.nlp.program import Expression, Variable
+from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import (
     MOVING_PARTS,
@@ -36,8 +42,11 @@ from evodesign.posture.assemble import (
     total,
 )
 from evodesign.posture.formulations.base import Setting
+from evodesign.posture.load_cases import counted_together
+from evodesign.posture.parting import Meetings, meetings_of, rows_of
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import Body
+from evodesign.posture.terms.collisions import CLEAR, COLLISIONS, meetings
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -76,7 +85,7 @@ class Symbols:
 
     Args:
         moving: variables of postures.
-        others: torques and wrenches.
+        others: torques and wrenches of every load case, and the cost of the worst one where that counts.
         rates, changes: time derivatives of the posture variables, SI units, by variable name.
         height: of the load [m].
         lifted: its acceleration [m/s^2].
@@ -100,15 +109,16 @@ class KnotBlocks:
     Args:
         forms: of robot and person, whole or halves.
         setting: of the problem.
+        switched: whether rows are there that part bodies.
     Attributes:
         forms: likewise.
     """
 
-    def __init__(self, forms: tuple[Form, Form], setting: Setting) -> None:
-        self.forms, self._setting = forms, setting
+    def __init__(self, forms: tuple[Form, Form], setting: Setting, *, switched: bool = False) -> None:
+        self.forms, self._setting, self._switched = forms, setting, switched
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
-        scene, self._mass = any_load(setting.scene.undisturbed)
+        scene, self._mass = any_load(setting.scene)
         values = ca.vertsplit(self.design)
         self._scene = shared_scene(scene, setting.space, values)
         self._weights = shared_weights(setting.weights, setting.space, values)
@@ -126,7 +136,81 @@ class KnotBlocks:
         names = [form.agent.name for form in self.forms]
         motions = {name: PostureMotion(self._rates[name], self._changes[name]) for name in names}
         case = CaseSymbols(self._scene, (self._height,), motions, self._lifted)
-        return assemble(self._parties, TERMS.values(), case)
+        terms = [term for term in TERMS.values() if self._switched or term is not COLLISIONS]
+        return assemble(self._parties, terms, case, switched=self._switched)
+
+    @cached_property
+    def parted(self) -> KnotBlocks | None:
+        """The same with rows that part bodies; None where no bodies are parted."""
+        parting = any(meetings(form) for form in self.forms)
+        return KnotBlocks(self.forms, self._setting, switched=True) if parting else None
+
+    @cached_property
+    def directions(self) -> int:
+        """How many numbers say along which directions bodies are parted at a time."""
+        return int(self._directions.numel())
+
+    @property
+    def _directions(self) -> Expression:
+        return ca.vertcat(ca.SX(0, 1), *self._assembly.given.values())
+
+    @cached_property
+    def meetings(self) -> tuple[Meetings, Meetings]:
+        """Of bodies that are parted along directions, with their rows at a knot and half-way between two.
+
+        The arguments of their functions are all posture symbols, the load's height, the directions and the
+        shared numbers.
+        """
+        bodies = self._assembly.parted
+        at_knot = meetings_of(bodies, self._assembly.constraints, self._placing)
+        return at_knot, replace(at_knot, rows=rows_of(bodies, self._half_way))
+
+    @cached_property
+    def beyond_planes(self) -> ca.Function:
+        """By how much bodies are nearer to planes than the margin [m], negative where they are farther."""
+        short = [
+            row.lower - row.expression
+            for body in self._assembly.undisturbed.bodies.values()
+            for row in COLLISIONS.rows(body)
+            if row.name != CLEAR
+        ]
+        return ca.Function("beyond_planes", self._placing, [ca.vertcat(ca.SX(0, 1), *short)], {"cse": True})
+
+    @property
+    def _placing(self) -> list[Expression]:
+        """What bodies and their directions follow from."""
+        postures = ca.vertcat(*[v.symbol for v in self.symbols.moving])
+        return [postures, self._height, self._directions, self.shared]
+
+    @property
+    def disturbances(self) -> tuple[str, ...]:
+        """Names of those that have load cases, in the order of their numbers from one."""
+        return tuple(each.name for each in self._setting.scene.disturbances.cases)
+
+    @cached_property
+    def _carrying(self) -> tuple[Expression, tuple[Variable, ...], tuple[ConstraintBlock, ...]]:
+        """What torques, wrenches and the posture itself cost, with what the worst load case adds."""
+        by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
+        held = self._assembly.undisturbed
+        if not self.disturbances:
+            return total([held.effort(by_agent), *held.regularisation]), (), ()
+        (load_cases,) = self._assembly.instants
+        costs = [total([each.effort(by_agent), *each.costs]) for each in load_cases]
+        cost, variables, rows = counted_together(self._setting.scene.disturbances.effort, costs)
+        return total([cost, *held.posture_costs]), variables, rows
+
+    @cached_property
+    def worst(self) -> ca.Function | None:
+        """The least value that the worst load case's cost may have; None where the worst does not count.
+
+        Arguments are the symbols of torques, wrenches and that cost, and the design.
+        """
+        _, worst, below = self._carrying
+        if not worst:
+            return None
+        others = ca.vertcat(*[v.symbol for v in self.symbols.others])
+        least = ca.mmax(below[0].expression + worst[0].value)
+        return ca.Function("worst", [others, self.design], [least])
 
     @cached_property
     def symbols(self) -> Symbols:
@@ -136,7 +220,7 @@ class KnotBlocks:
         by_slot = {v.name: (v.key.party, v.key.part) for v in moving}  # type: ignore[attr-defined]
         return Symbols(
             moving=moving,
-            others=tuple(v for v in variables if v not in moving),
+            others=(*(v for v in variables if v not in moving), *self._carrying[1]),
             rates={name: self._rates[party][part] for name, (party, part) in by_slot.items()},
             changes={name: self._changes[party][part] for name, (party, part) in by_slot.items()},
             height=self._height,
@@ -164,38 +248,51 @@ class KnotBlocks:
     def knot(self) -> Block:
         """What is said at a knot; its own number is its weight in the cost."""
         _seen, assembly, weight = self.symbols, self._assembly, ca.SX.sym("weight")
-        by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
-        held = assembly.undisturbed
+        carrying, _, further = self._carrying
         rows, low, high = [], [], []
-        for each in assembly.constraints:
+        for each in (*assembly.constraints, *further):
             rows.append(each.expression)
             low += [each.lower] * each.expression.numel()
             high += [each.upper] * each.expression.numel()
-        for body in held.bodies.values():
+        for body in assembly.undisturbed.bodies.values():
             speeds = self._speeds(body)
             placed = ca.vertcat(*[offset[[0, 1, 5]] for offset in self._soles(body)], *self._grips(body))
             rows += [speeds, placed]
             low += [-1.0] * speeds.numel() + [0.0] * placed.numel()
             high += [1.0] * speeds.numel() + [0.0] * placed.numel()
-        cost = total([held.effort(by_agent), *held.regularisation, *map(self._smoothness, self.forms)])
-        column, own = self._column(), ca.vertcat(weight)
+        cost = total([carrying, *map(self._smoothness, self.forms)])
+        column, own = self._column(), ca.vertcat(weight, self._directions)
         cost, stacked = self._in_units([weight * cost, ca.vertcat(*rows)], column)
         return Block("knot", column, own, self.shared, cost, stacked, np.array(low), np.array(high))
 
     @cached_property
     def between(self) -> Block:
         """What is said half-way between knots, of posture, load height and places."""
-        rows = []
-        for body in self._assembly.undisturbed.bodies.values():
+        column, rows = ca.vertcat(self._posture, self._height, self._places), self._half_way
+        (stacked,) = self._in_units([ca.vertcat(*[row.expression for row in rows])], column)
+        counts = [row.expression.numel() for row in rows]
+        low, high = (
+            np.repeat(side, counts) for side in zip(*[(r.lower, r.upper) for r in rows], strict=True)
+        )
+        return Block("between", column, self._directions, self.shared, ca.SX(0.0), stacked, low, high)
+
+    @cached_property
+    def _half_way(self) -> list[ConstraintBlock]:
+        """Hands and feet nearly in place, and bodies apart where they are parted along directions."""
+        rows, bodies = [], self._assembly.undisturbed.bodies
+        for body in bodies.values():
             rows += [row.expression / HAND_CLOSURE for row in GRASP.rows(body)]
             for offset in self._soles(body):
                 rows += [offset[:3] / SOLE_CLOSURE, offset[3:] / SLANT_CLOSURE]
             rows += [turned / SLANT_CLOSURE for turned in self._grips(body)]
-        closed = CLOSURE_UNIT * ca.vertcat(*rows)
-        column = ca.vertcat(self._posture, self._height, self._places)
-        (closed,) = self._in_units([closed], column)
-        limit, none = np.full(closed.numel(), CLOSURE_UNIT), ca.SX.sym("none", 0)
-        return Block("between", column, none, self.shared, ca.SX(0.0), closed, -limit, limit)
+        closed = ConstraintBlock("closed", CLOSURE_UNIT * ca.vertcat(*rows), -CLOSURE_UNIT, CLOSURE_UNIT)
+        apart = [
+            ConstraintBlock(f"{name}.{row.name}", row.expression, row.lower, row.upper)
+            for name, body in bodies.items()
+            for row in COLLISIONS.rows(body)
+            if self._switched
+        ]
+        return [closed, *apart]
 
     @cached_property
     def closure(self) -> ca.Function:

@@ -1,13 +1,14 @@
 """Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
-Solves begin at the hold at either end, followed along the lift with the feet in place, so that a result
-depends on problem and design alone; the cheaper one counts. Holds of several heights joined together do not
-do for a start: their elbows bend in different ways.
+Solves begin at the robot's hold at either end, followed along the lift with the feet in place, beside persons
+whose motions were found once for the problem (`motion.starts`); so a result depends on problem and design
+alone. The cheapest one counts. Holds of several heights joined together do not do for a start: their elbows
+bend in different ways.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,27 +16,36 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.mechanics.scene import ROBOT
 from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.parting import LiftSolve, PartedLift
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Start
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.results import Attempt, CaseSolution
+from evodesign.posture.results import AgentPosture, Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Lift, Status, worst_status
 
-__all__ = ["LiftProblem"]
+__all__ = ["MOVED", "LiftProblem", "lift_program", "lift_starts", "moved_posture"]
 
 Array = NDArray[np.float64]
 
-REFINEMENTS = 2
+REFINEMENTS = 3
 """How often the knots are doubled until the check accepts a motion between them."""
+
+MOVED = "robot.moved"
+"""How a start moves the robot's hold: at the beginning (0) or the end (1), base [m], joints [rad]."""
+
+DISTINCT = 1e-5
+"""Share of its cost by which one motion must exceed another not to be the same."""
 
 OPEN = 1e-3
 """By how much [m] hands and feet of a start may be out of place."""
@@ -68,14 +78,12 @@ class LiftProblem:
 
     def __init__(self, setting: Setting, *, symmetric: bool) -> None:
         self._setting, self._symmetric = setting, symmetric
-        self._scene = setting.scene.undisturbed
+        self._scene = setting.scene
         self._programs: dict[int, LiftProgram] = {}
 
     @cached_property
     def _blocks(self) -> KnotBlocks:
-        scene = self._scene
-        halves = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
-        return KnotBlocks(halves, self._setting)
+        return _blocks(self._setting, symmetric=self._symmetric)
 
     def solve(
         self,
@@ -85,6 +93,7 @@ class LiftProblem:
         robot: AgentModel,
         human: AgentModel,
         *,
+        known: Sequence[Start] = (),
         slowly: bool = True,
     ) -> LiftSolution:
         """The best checked motion of a design; where the check finds it too coarse, with more knots.
@@ -95,30 +104,35 @@ class LiftProblem:
             holds: the design's posture at the beginning and at the end.
             robot: the design's, for the check.
             human: the person's.
+            known: starts of the lift; none: its holds.
             slowly: whether the same lift is found infinitely slowly, too.
         """
-        ends = dict(zip(("beginning", "end"), holds, strict=True))
-        for name, posture in ends.items():
+        for name, posture in zip(("beginning", "end"), holds, strict=True):
             if not posture.solved:
                 where = f"the load cannot be held at the {name} of the lift"
                 return LiftSolution(lift, posture.status, f"{where}: {posture.reason}")
         checker = LiftChecker(self._scene, robot, human, Checker(self._scene, robot, human))
         program, mass = self._program(lift.knots), self._scene.payload.mass
-        begins = {"beginning": 0, "end": lift.knots - 1}
-        starts = {
-            name: program.followed(lift, ends[name].postures, knot, design) for name, knot in begins.items()
+        ends, disturbed = [hold.postures for hold in holds], [hold.disturbed for hold in holds]
+        starts = lift_starts(program, lift, ends, design, known or ({},), disturbed)
+        solves = {
+            name: LiftSolve(start, *program.solve(lift, start, design, mass))
+            for name, start in starts.items()
         }
-        solves = [(name, *program.solve(lift, start, design, mass)) for name, start in starts.items()]
+        parted = _without_overlaps(PartedLift(program, lift, design, mass), solves)
         attempts = tuple(
-            _attempt(f"hold at the {name}", ending, seconds, program.method)
-            for name, ending, seconds in solves
+            _attempt(name, each.ending, each.seconds, program.method) for name, each in parted.items()
         )
-        solved = [end for end in solves if status_of(end[1].word) is Status.SOLVED]
+        solved = [each for each in parted.values() if each.solved]
         if not solved:
+            overlapping = [each for each in solves.values() if each.solved]
+            if overlapping:
+                course = program.course(lift, _cheapest(overlapping).ending.symbols)
+                return _refused(lift, _in_the_way(checker.check(course)), attempts)
             return self._none(design, lift, list(starts.values()), attempts)
-        name, best, _ = min(solved, key=lambda end: end[1].cost)
-        start = replace(starts[name], symbols=best.symbols)
-        return self._checked(design, _Motion(lift, start, best, attempts), checker, slowly=slowly)
+        best = _cheapest(solved)
+        start = replace(best.start, symbols=best.ending.symbols)
+        return self._checked(design, _Motion(lift, start, best.ending, attempts), checker, slowly=slowly)
 
     def derivative(self, design: Sequence[float], solution: MotionCase) -> LiftDerivative | NotDifferentiable:
         """How the motion of a case moves with the design, with as many knots as it has.
@@ -154,15 +168,21 @@ class LiftProblem:
             if not (checked.wrong and further):
                 break
             finer = msgspec.structs.replace(lift, knots=2 * lift.knots)
-            start = self._program(finer.knots).refined(finer, course, motion.start)
-            ending, seconds = self._program(finer.knots).solve(finer, start, design, mass)
-            attempt = _attempt(f"motion of {lift.knots} knots", ending, seconds, program.method)
+            program = self._program(finer.knots)
+            start = program.refined(finer, course, motion.start)
+            solve = LiftSolve(start, *program.solve(finer, start, design, mass))
+            found = PartedLift(program, finer, design, mass).settled(solve)
+            ending = found.ending
+            attempt = _attempt(f"motion of {lift.knots} knots", ending, found.seconds, program.method)
             attempts = (*motion.attempts, attempt)
             if attempt.status is not Status.SOLVED:
+                if solve.solved:
+                    course = program.course(finer, solve.ending.symbols)
+                    return _refused(finer, _in_the_way(checker.check(course)), attempts)
                 return self._none(design, finer, [start], attempts)
-            motion = _Motion(finer, replace(start, symbols=ending.symbols), ending, attempts)
+            motion = _Motion(finer, replace(found.start, symbols=ending.symbols), ending, attempts)
         if checked.wrong:
-            return LiftSolution(lift, Status.NUMERICAL_FAILURE, checked.wrong, motion.attempts)
+            return _refused(lift, checked.wrong, motion.attempts)
         slow = program.solve(lift, motion.start, design, mass, 0.0)[0] if slowly else None
         return LiftSolution(
             lift=lift,
@@ -200,12 +220,112 @@ class LiftProblem:
 
     def _program(self, knots: int) -> LiftProgram:
         if knots not in self._programs:
-            self._programs[knots] = LiftProgram(self._blocks, knots, self._options)
+            self._programs[knots] = LiftProgram(self._blocks, knots, _options(self._setting))
         return self._programs[knots]
 
-    @property
-    def _options(self) -> SolverOptions:
-        return replace(self._setting.options, tolerance=TOLERANCE_OF_LIFTS)
+
+def lift_starts(
+    program: LiftProgram,
+    lift: Lift,
+    ends: Sequence[Mapping[str, AgentPosture]],
+    design: Sequence[float],
+    known: Sequence[Start],
+    disturbed: Sequence[Mapping[str, Mapping[str, AgentPosture]]] = ({}, {}),
+) -> dict[str, LiftStart]:
+    """Where solves of a design's lift begin, by a name.
+
+    A start has a motion of the person, or it is that of the hold. The robot follows the lift from its hold at
+    either end; where the start moves it (`MOVED`), from that one, moved.
+
+    Args:
+        program: of the lift's knots.
+        lift: it.
+        ends: postures at the beginning and at the end, by agent name.
+        design: one number per parameter.
+        known: starts that serve any design.
+        disturbed: what is carried at both ends under each disturbance, likewise.
+    """
+    knots, names = (0, lift.knots - 1), ("hold at the beginning", "hold at the end")
+    followed = [
+        program.followed(lift, each, knot, design, carried)
+        for each, knot, carried in zip(ends, knots, disturbed, strict=True)
+    ]
+    starts: dict[str, LiftStart] = {}
+    for number, start in enumerate(known, 1):
+        which = f", start {number}" if start else ""
+        if MOVED in start:
+            last, *change = start[MOVED]
+            postures = {**ends[int(last)], ROBOT: moved_posture(ends[int(last)][ROBOT], np.array(change))}
+            begun = program.followed(lift, postures, knots[int(last)], design, disturbed[int(last)])
+            starts[f"{names[int(last)]}, moved{which}"] = program.beside(begun, start)
+        else:
+            for name, begun in zip(names, followed, strict=True):
+                starts[name + which] = program.beside(begun, start)
+    return starts
+
+
+def moved_posture(posture: AgentPosture, change: Array) -> AgentPosture:
+    """A posture whose base [m] and joints [rad] are moved, in this order."""
+    joints = zip(posture.joints.items(), change[3:].tolist(), strict=True)
+    return replace(
+        posture,
+        base_position=posture.base_position + change[:3],
+        joints={name: angle + more for (name, angle), more in joints},
+    )
+
+
+def lift_program(setting: Setting, knots: int, *, symmetric: bool) -> LiftProgram:
+    """Lifts of so many knots in a setting.
+
+    Args:
+        setting: of the scene.
+        knots: their number.
+        symmetric: whether halves of robot and person are looked for.
+    """
+    return LiftProgram(_blocks(setting, symmetric=symmetric), knots, _options(setting))
+
+
+def _blocks(setting: Setting, *, symmetric: bool) -> KnotBlocks:
+    scene = setting.scene
+    halves = symmetric_forms(scene) if symmetric else (whole(scene.robot), whole(scene.human))
+    return KnotBlocks(halves, setting)
+
+
+def _options(setting: Setting) -> SolverOptions:
+    return replace(setting.options, tolerance=TOLERANCE_OF_LIFTS)
+
+
+def _cheapest(solves: Sequence[LiftSolve]) -> LiftSolve:
+    return min(solves, key=lambda each: each.ending.cost)
+
+
+def _without_overlaps(parting: PartedLift, solves: Mapping[str, LiftSolve]) -> dict[str, LiftSolve]:
+    """Solves with bodies parted, but for those that even overlapping cost as much as another one parted.
+
+    Of several solves that led to the same motion one is parted for all.
+    """
+    found, least, last = dict(solves), np.inf, ""
+    for name, solve in sorted(solves.items(), key=lambda pair: pair[1].ending.cost):
+        if not solve.solved or solve.ending.cost >= least:
+            continue
+        if last and solve.ending.cost <= solves[last].ending.cost * (1.0 + DISTINCT):
+            ending = replace(found[last].ending, iterations=solve.ending.iterations)
+            found[name] = LiftSolve(found[last].start, ending, solve.seconds)
+            continue
+        found[name], last = parting.settled(solve), name
+        least = min(least, found[name].ending.cost if found[name].solved else np.inf)
+    return found
+
+
+def _in_the_way(checked: CheckedLift) -> str:
+    """Of a motion beside which there is none with bodies parted: what the check found."""
+    found = checked.wrong or "bodies are nearer to each other than the margin"
+    return f"no motion was found in which bodies keep clear of each other; where they need not, {found}"
+
+
+def _refused(lift: Lift, wrong: str, attempts: tuple[Attempt, ...]) -> LiftSolution:
+    """What the check refuses, with what it found."""
+    return LiftSolution(lift, Status.NUMERICAL_FAILURE, wrong, attempts)
 
 
 TOLERANCE_OF_LIFTS = 1e-7
@@ -236,6 +356,12 @@ def _efforts(
     return {
         name: AgentEffort(
             torques=np.array([instant.postures[name].torque_norm for instant in instants]),
+            disturbed={
+                disturbance: np.array(
+                    [instant.disturbed[disturbance][name].torque_norm for instant in instants]
+                )
+                for disturbance in course.disturbed
+            },
             slow_torques=None
             if slowly is None
             else float(np.trapezoid([i.postures[name].torque_norm for i in slowly])) / (len(times) - 1),

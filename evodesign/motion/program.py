@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
@@ -17,7 +18,10 @@ from evodesign.motion.spline import RestingSpline
 from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
+from evodesign.nlp.program import Start
 from evodesign.nlp.repeated import RepeatedProgram
+from evodesign.posture.assemble import Slot
+from evodesign.posture.parting import ALMOST, Meetings
 from evodesign.posture.results import AgentPosture
 from evodesign.records import Lift
 from evodesign.tasks.lift import LoadProfile
@@ -44,11 +48,19 @@ class LiftStart:
         symbols: of the program.
         hands: how rigid hands are turned in it, entries of rotations; none for other grasps.
         open_by: by how much hands or feet are out of place at the worst knot [m].
+        directions: that part bodies (`posture.terms.collisions`), at knots and half-way between in turn,
+            shape (2 knots - 1, numbers); of no rows where none are parted.
     """
 
     symbols: Array
     hands: Array
     open_by: float
+    directions: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+    @property
+    def parts_bodies(self) -> bool:
+        """Whether a solve from here needs the rows that part bodies."""
+        return len(self.directions) > 0
 
 
 class LiftProgram:
@@ -74,7 +86,7 @@ class LiftProgram:
         self._size = int(ends[-1])
 
     @cached_property
-    def _program(self) -> RepeatedProgram:
+    def _parts(self) -> list[Repeated]:
         spline, at = RestingSpline(self._knots), np.arange(float(self._knots))
         value, moved, bent = (spline.image(at, order) for order in range(3))
         knots = self._stacked(
@@ -83,11 +95,14 @@ class LiftProgram:
         )
         half_way = spline.image(at[:-1] + 0.5)
         between = self._stacked([(half_way, "postures"), (half_way, "load")], carried=False)
-        parts = [
+        return [
             Repeated(self._blocks.knot, knots, self._knots),
             Repeated(self._blocks.between, between, self._knots - 1),
         ]
-        return RepeatedProgram("lift", parts, self._options)
+
+    @cached_property
+    def _program(self) -> RepeatedProgram:
+        return RepeatedProgram("lift", self._parts, self._options)
 
     def _stacked(self, splines: Sequence[tuple[Array, str]], *, carried: bool) -> sparse.csc_matrix:
         """What blocks see: splines, torques and wrenches, places; one repetition after the other."""
@@ -112,6 +127,16 @@ class LiftProgram:
         """Who solves."""
         return self._program.method
 
+    @cached_property
+    def parted(self) -> LiftProgram | None:
+        """The same with rows that part bodies along directions; None where no bodies are parted."""
+        blocks = self._blocks.parted
+        return None if blocks is None else LiftProgram(blocks, self._knots, self._options)
+
+    def _with_rows_of(self, start: LiftStart) -> LiftProgram:
+        """The program that has the rows which a start needs: most need none."""
+        return self.parted if start.parts_bodies and self.parted is not None else self
+
     def solve(
         self, lift: Lift, start: LiftStart, design: Sequence[float], mass: float, inertia: float = 1.0
     ) -> tuple[Ending, float]:
@@ -125,8 +150,9 @@ class LiftProgram:
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
         """
         shared = np.array([*design, lift.step, mass, inertia, *start.hands])
-        low, high = self._bounds(lift)
-        return self._program.solve(np.clip(start.symbols, low, high), (low, high), shared, self._own)
+        (low, high), program = self._bounds(lift), self._with_rows_of(start)
+        own = program._own(start)
+        return program._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
 
     def slopes(
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
@@ -141,14 +167,64 @@ class LiftProgram:
             mass: of the load [kg].
         """
         shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
-        return self._program.slopes(ending, self._bounds(lift), shared, self._own, len(design))
+        program, bounds = self._with_rows_of(start), self._bounds(lift)
+        return program._program.slopes(ending, bounds, shared, program._own(start), len(design))
 
-    @property
-    def _own(self) -> list[Array]:
-        """What each knot has for itself: its weight in the cost, by the trapezoidal rule."""
+    def _own(self, start: LiftStart) -> list[Array]:
+        """What each knot has for itself: its weight in the cost, by the trapezoidal rule, and directions."""
         weights = np.full((self._knots, 1), 1.0 / (self._knots - 1))
         weights[[0, -1]] /= 2.0
-        return [weights, np.empty((self._knots - 1, 0))]
+        directions = np.empty((2 * self._knots - 1, 0))
+        if self._blocks.directions and start.parts_bodies:
+            directions = start.directions
+        return [np.hstack([weights, directions[::2]]), directions[1::2]]
+
+    @property
+    def meetings(self) -> tuple[Meetings, Meetings]:
+        """Of a program with rows that part bodies, at a knot and half-way between two."""
+        return self._blocks.meetings
+
+    @property
+    def no_directions(self) -> Array:
+        """Of such a program, with all rows along directions off."""
+        return np.zeros((2 * self._knots - 1, self._blocks.directions))
+
+    def crosses_planes(self, moments: Sequence[Sequence[Array]]) -> bool:
+        """Whether bodies are too near to floor, partner or middle plane.
+
+        Args:
+            moments: as `meetings_at` has them, of a program with rows that part bodies.
+        """
+        found = [np.asarray(self._blocks.beyond_planes(*at)) for at in moments]
+        return max((float(each.max(initial=-np.inf)) for each in found), default=-np.inf) > ALMOST
+
+    def meetings_at(
+        self, lift: Lift, start: LiftStart, symbols: Array, design: Sequence[float], mass: float
+    ) -> list[list[Array]]:
+        """What the meetings' functions take (`KnotBlocks.meetings`), at knots and half-way between in turn.
+
+        Args:
+            lift: with as many knots.
+            start: with directions.
+            symbols: of a solve.
+            design: one number per parameter.
+            mass: of the load [kg].
+        """
+        places = np.arange(2.0 * self._knots - 1.0) / 2.0
+        image = RestingSpline(self._knots).image(places)
+        postures, load = self._splines(symbols)
+        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        along = zip(image @ postures, image @ load, start.directions, strict=True)
+        return [[posture, np.array([height]), held, shared] for posture, height, held in along]
+
+    def rows_at(self, rows: Array) -> list[Array]:
+        """Numbers of all rows, such as multipliers, by knots and half-way between in turn."""
+        ends = [part.block.rows.numel() for part in self._parts]
+        at_knots, between = np.split(rows, [self._knots * ends[0]])
+        found: list[Array] = [*at_knots.reshape(self._knots, -1)]
+        for place, half_way in enumerate(between.reshape(self._knots - 1, -1)):
+            found.insert(2 * place + 1, half_way)
+        return found
 
     def _bounds(self, lift: Lift) -> tuple[Array, Array]:
         """Of the symbols: those of a hold, and the load's height."""
@@ -177,7 +253,12 @@ class LiftProgram:
         return heights
 
     def followed(
-        self, lift: Lift, postures: Mapping[str, AgentPosture], begin: int, design: Sequence[float]
+        self,
+        lift: Lift,
+        postures: Mapping[str, AgentPosture],
+        begin: int,
+        design: Sequence[float],
+        disturbed: Mapping[str, Mapping[str, AgentPosture]] | None = None,
     ) -> LiftStart:
         """A start: a hold's posture, followed along the lift with the feet in place, by least-norm steps.
 
@@ -186,11 +267,13 @@ class LiftProgram:
             postures: of the hold, by agent name.
             begin: the knot at whose height it is, the first or the last.
             design: one number per parameter.
+            disturbed: what is carried in the hold under each disturbance; where nothing is said, what is
+                carried without.
         """
         seen, free = self._blocks.symbols, self._blocks.free
-        parts = {form.agent.name: form.parts(postures[form.agent.name]) for form in self._blocks.forms}
+        parts = self._parts_of(postures)
         moving = np.concatenate([self._known(parts, v) for v in seen.moving])[free]
-        others = np.concatenate([self._known(parts, v) for v in seen.others])
+        others = self._carried_by(postures, disturbed or {}, design)
         closure, path = self._blocks.closure, np.empty((self._knots, self._postures))
         order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
         hands = np.asarray(self._blocks.hands(moving, design)).ravel()
@@ -210,11 +293,13 @@ class LiftProgram:
         Args:
             lift: with as many knots.
             course: the motion.
-            start: where its solve began.
+            start: where its solve ended, with its knots.
         """
         seen, free, times = self._blocks.symbols, self._blocks.free, lift.knot_times
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
-        others = self._sampled(course.carriage(times), seen.others)
+        begin, knots = course.lift.knots * (self._postures + 1), course.lift.knots
+        carried = start.symbols[begin : begin + knots * self._others].reshape(knots, -1)
+        others = CubicSpline(course.lift.knot_times, carried)(times)
         spline = RestingSpline(self._knots)
         symbols = [
             spline.through(moving).ravel(),
@@ -222,13 +307,109 @@ class LiftProgram:
             others.ravel(),
             start.symbols[-self._places :],
         ]
-        return LiftStart(np.concatenate(symbols), start.hands, start.open_by)
+        directions = start.directions
+        if start.parts_bodies:
+            shares = np.linspace(0.0, len(directions) - 1.0, 2 * self._knots - 1)
+            directions = directions[np.rint(shares).astype(int)]
+        return LiftStart(np.concatenate(symbols), start.hands, start.open_by, directions)
+
+    def motion_of(self, party: str, start: LiftStart) -> Start:
+        """An agent's own motion, for others to begin at: by name of variable, SI units, knot after knot."""
+        found = {name: scale * start.symbols[places] for name, (places, scale) in self._own_of(party).items()}
+        return {**found, **{name: start.hands[places] for name, places in self._hands_of(party).items()}}
+
+    def beside(self, start: LiftStart, motion: Start) -> LiftStart:
+        """A start in which an agent moves as in another one, of any number of knots; others as they did.
+
+        Args:
+            start: to be changed.
+            motion: as `motion_of` gives it; of no variable: nothing changes.
+        """
+        symbols, hands = start.symbols.copy(), start.hands.copy()
+        for party in (form.agent.name for form in self._blocks.forms):
+            for name, (places, scale) in self._own_of(party).items():
+                if name in motion:
+                    symbols[places] = self._at_knots(name, motion[name], len(places)) / scale
+            for name, places in self._hands_of(party).items():
+                if name in motion:
+                    hands[places] = motion[name]
+        return LiftStart(symbols, hands, start.open_by)
+
+    def _at_knots(self, name: str, values: Sequence[float], count: int) -> Array:
+        """A motion's numbers at this program's knots; coefficients of splines by way of their values."""
+        found = np.asarray(values, float)
+        if len(found) == count:
+            return found
+        rows = count // self._knots
+        own = found.reshape(-1, rows)
+        given, wanted = np.linspace(0.0, 1.0, len(own)), np.linspace(0.0, 1.0, self._knots)
+        if name in {v.name for v in self._blocks.symbols.moving}:
+            at_knots = RestingSpline(len(own)).image(wanted * (len(own) - 1)) @ own
+            return RestingSpline(self._knots).through(at_knots).ravel()
+        return np.column_stack([np.interp(wanted, given, column) for column in own.T]).ravel()
+
+    def _own_of(self, party: str) -> dict[str, tuple[NDArray[np.intp], float]]:
+        """Which symbols are an agent's, and their unit, by name of variable, sole or grip."""
+        seen, found = self._blocks.symbols, dict[str, tuple[NDArray[np.intp], float]]()
+        free = np.cumsum(self._blocks.free) - 1
+        knots, first = np.arange(self._knots)[:, None], 0
+        for variable in seen.moving:
+            rows = np.arange(first, first + len(variable.lower))
+            first += len(variable.lower)
+            own = free[rows[self._blocks.free[rows]]]
+            if variable.key.party == party:  # type: ignore[attr-defined]
+                found[variable.name] = (knots * self._postures + own).ravel(), variable.scale
+        first = 0
+        for variable in seen.others:
+            rows = np.arange(first, first + len(variable.lower))
+            first += len(variable.lower)
+            if isinstance(variable.key, Slot) and variable.key.party == party:
+                places = self._first["others"] + knots * self._others + rows
+                found[variable.name] = places.ravel(), variable.scale
+        names = [(who, f"{who}.{side}_place") for who, side in seen.places]
+        names += [(who, f"{who}.{side}_grip") for who, side in seen.grips]
+        for number, (who, name) in enumerate(names):
+            if who == party:
+                found[name] = self._first["places"] + 3 * number + np.arange(3), 1.0
+        return found
+
+    def _hands_of(self, party: str) -> dict[str, NDArray[np.intp]]:
+        """Where the turns of an agent's rigid hands stand among those of a start, by name."""
+        keys = [*self._blocks.symbols.grips]
+        return {
+            f"{who}.{side}_turn": 9 * number + np.arange(9)
+            for number, (who, side) in enumerate(keys)
+            if who == party
+        }
 
     @staticmethod
     def _sampled(values: Mapping[str, Mapping[str, Array]], variables: Sequence[Any]) -> Array:
         """Symbols of variables over time, shape (times, symbols)."""
         columns = [values[v.key.party][v.key.part][:, : len(v.lower)] / v.scale for v in variables]
         return np.hstack(columns)
+
+    def _parts_of(self, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, Array]]:
+        """What the forms' variables are, by agent and part."""
+        return {form.agent.name: form.parts(postures[form.agent.name]) for form in self._blocks.forms}
+
+    def _carried_by(
+        self,
+        postures: Mapping[str, AgentPosture],
+        disturbed: Mapping[str, Mapping[str, AgentPosture]],
+        design: Sequence[float],
+    ) -> Array:
+        """Symbols of torques and wrenches of a hold in every load case, and of the worst one's cost."""
+        load_cases = [postures, *(disturbed.get(name, postures) for name in self._blocks.disturbances)]
+        parts, worst = [self._parts_of(each) for each in load_cases], self._blocks.worst
+        others = np.concatenate(
+            [
+                self._known(parts[v.key.load_case], v) if isinstance(v.key, Slot) else v.start / v.scale
+                for v in self._blocks.symbols.others
+            ]
+        )
+        if worst is not None:
+            others[-1] = float(worst(others, design))
+        return others
 
     @staticmethod
     def _known(parts: Mapping[str, Mapping[str, Array]], variable: object) -> Array:
@@ -274,26 +455,39 @@ class LiftProgram:
 
     def course(self, lift: Lift, symbols: Array) -> LiftCourse:
         """The motion that symbols stand for, SI units."""
-        seen, free, knots = self._blocks.symbols, self._blocks.free, self._knots
-        pieces = np.split(symbols, [self._first[name] for name in ("load", "others", "places")])
-        still = np.concatenate([v.lower / v.scale for v in seen.moving])
-        postures = np.tile(still, (knots, 1))
-        postures[:, free] = pieces[0].reshape(knots, -1)
+        seen, knots = self._blocks.symbols, self._knots
+        others = symbols[self._first["others"] : self._first["places"]]
+        postures, load = self._splines(symbols)
         return LiftCourse(
             lift=lift,
             forms=self._blocks.forms,
             coefficients=self._by_agent(seen.moving, postures),
-            carried=self._by_agent(seen.others, pieces[2].reshape(knots, -1)),
-            load=pieces[1],
+            carried=self._by_agent(seen.others, others.reshape(knots, -1)),
+            load=load,
+            disturbed={
+                name: self._by_agent(seen.others, others.reshape(knots, -1), load_case)
+                for load_case, name in enumerate(self._blocks.disturbances, 1)
+            },
         )
 
-    def _by_agent(self, variables: Sequence[object], columns: Array) -> dict[str, dict[str, Array]]:
-        """Columns of symbols as values by agent and part."""
+    def _splines(self, symbols: Array) -> tuple[Array, Array]:
+        """Coefficients of all posture symbols, shape (knots, symbols), and of the load's height [m]."""
+        seen, free = self._blocks.symbols, self._blocks.free
+        still = np.concatenate([v.lower / v.scale for v in seen.moving])
+        postures = np.tile(still, (self._knots, 1))
+        postures[:, free] = symbols[: self._first["load"]].reshape(self._knots, -1)
+        return postures, symbols[self._first["load"] : self._first["others"]]
+
+    def _by_agent(
+        self, variables: Sequence[object], columns: Array, load_case: int = 0
+    ) -> dict[str, dict[str, Array]]:
+        """Columns of symbols of a load case as values by agent and part."""
         found: dict[str, dict[str, Array]] = {form.agent.name: {} for form in self._blocks.forms}
         first = 0
         for variable in variables:
             key, scale, size = variable.key, variable.scale, len(variable.lower)  # type: ignore[attr-defined]
-            found[key.party][key.part] = scale * columns[:, first : first + size]
+            if isinstance(key, Slot) and key.load_case == load_case:
+                found[key.party][key.part] = scale * columns[:, first : first + size]
             first += size
         return found
 

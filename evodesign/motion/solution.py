@@ -29,12 +29,14 @@ class AgentEffort:
         slow_torques: mean over time of the same lift infinitely slowly [N m]; None where it was not found.
         power: of the joint torques at each time [W].
         work: of the joint torques [J].
+        disturbed: norms of the torques under each disturbance, by its name, likewise.
     """
 
     torques: Array
     slow_torques: float | None
     power: Array
     work: float
+    disturbed: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def mean_torque(self) -> float:

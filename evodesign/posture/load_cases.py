@@ -26,7 +26,7 @@ from evodesign.mechanics.disturbance import OverCases
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import ConstraintBlock, Expression, Program, Start, Variable
 
-__all__ = ["WorstCase", "aggregated"]
+__all__ = ["WorstCase", "aggregated", "counted_together"]
 
 
 SHARE_OF_MEAN = 0.01
@@ -44,17 +44,30 @@ def aggregated(program: Program, effort: OverCases, costs: Sequence[Expression])
         effort: how the cases count together.
         costs: K_c of each case, the undisturbed one among them.
     """
-    mean = sum(costs) / len(costs)
-    if effort is OverCases.MEAN:
-        return replace(program, cost=program.cost + mean)
-    worst = Variable.column(WORST, [0.0], [np.inf], [0.0], 1.0)
-    below = ConstraintBlock(WORST, ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
+    cost, variables, constraints = counted_together(effort, costs)
     return replace(
         program,
-        variables=(*program.variables, worst),
-        constraints=(*program.constraints, below),
-        cost=program.cost + (1.0 - SHARE_OF_MEAN) * worst.value + SHARE_OF_MEAN * mean,
+        variables=(*program.variables, *variables),
+        constraints=(*program.constraints, *constraints),
+        cost=program.cost + cost,
     )
+
+
+def counted_together(
+    effort: OverCases, costs: Sequence[Expression]
+) -> tuple[Expression, tuple[Variable, ...], tuple[ConstraintBlock, ...]]:
+    """What load cases cost together, with the variable s and the rows K_c - s where the worst counts.
+
+    Args:
+        effort: how the cases count together.
+        costs: K_c of each case, the undisturbed one among them.
+    """
+    mean = sum(costs) / len(costs)
+    if effort is OverCases.MEAN:
+        return mean, (), ()
+    worst = Variable.column(WORST, [0.0], [np.inf], [0.0], 1.0)
+    below = ConstraintBlock(WORST, ca.vertcat(*costs) - worst.value, -np.inf, 0.0)
+    return (1.0 - SHARE_OF_MEAN) * worst.value + SHARE_OF_MEAN * mean, (worst,), (below,)
 
 
 class WorstCase:

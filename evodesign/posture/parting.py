@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.buffered import BufferedFunction
-from evodesign.nlp.program import Program, Start
+from evodesign.nlp.program import ConstraintBlock, Program, Start
 from evodesign.nlp.solver import has_any
 from evodesign.posture.placed_shape import SHAPE, PlacedShape
 from evodesign.posture.separating_axes import Ways, ways_of
@@ -24,7 +24,7 @@ from evodesign.posture.terms.collisions import (
     placed_pairs,
 )
 
-__all__ = ["Parted", "PartedBody", "parted"]
+__all__ = ["ALMOST", "Meetings", "Parted", "PartedBody", "meetings_of", "parted", "rows_of"]
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -83,32 +83,105 @@ class Parted:
 
     def begun(self, values: Start, given: Mapping[str, Any]) -> Start:
         """What parts all bodies best at some values."""
-
-        def looked_at(seen: _Screened) -> NDArray[np.bool_]:
-            return np.ones(len(seen.margins), bool)
-
-        def wanted(ways: Ways, place: int, along: float) -> Array:
-            return ways.best
-
-        return self._changed(values, given, looked_at, wanted)
+        numbers, held = self._at(values, given)
+        return self._named(held, self._meetings.begun(numbers, held))
 
     def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0) -> Start:
         """What parts bodies that overlap, beside those that are parted already; none where none overlap."""
-
-        def looked_at(seen: _Screened) -> NDArray[np.bool_]:
-            return np.asarray(~seen.on & (seen.least < seen.margins + short))
-
-        def wanted(ways: Ways, place: int, along: float) -> Array | None:
-            wide = self._meetings.margins[place] + short
-            return ways.best if ways.distance < wide - ALMOST else None
-
-        return self._changed(values, given, looked_at, wanted)
+        numbers, held = self._at(values, given)
+        return self._named(held, self._meetings.violated(numbers, held, short))
 
     def better(self, values: Start, given: Mapping[str, Any], multipliers: Array, gain: float) -> Start:
         """What parts bodies farther that a row holds in touch; none where that gains less than asked for."""
         if not has_any(self.names, values):
             return {}
-        prices = self._meetings.prices(multipliers)
+        numbers, held = self._at(values, given)
+        found, gained = self._meetings.better(numbers, held, self._meetings.prices(multipliers))
+        return self._named(held, found) if gained > gain else {}
+
+    def _at(self, values: Start, given: Mapping[str, Any]) -> tuple[tuple[Array, Array], Array]:
+        """Symbols and parameters of the program with all rows, and the numbers of each meeting."""
+        program = self.program
+        held = program.held(values)
+        numbers = program.packed(values), program.packed_parameters(given, values)
+        return numbers, np.concatenate([held[each.name].reshape(-1, NUMBERS) for each in self._bodies])
+
+    def _named(self, held: Array, found: Mapping[int, Array]) -> Start:
+        """The parameters with new numbers for some meetings; without those of bodies for which none are new.
+
+        Args:
+            held: numbers of each meeting.
+            found: new ones, by place.
+        """
+        counts = [len(directed(each.body.form)) for each in self._bodies]
+        ends = np.cumsum([0, *counts])
+        named: dict[str, Array] = {}
+        for place, new in found.items():
+            body = int(np.searchsorted(ends, place, side="right")) - 1
+            begin, end = ends[body : body + 2].tolist()
+            own = named.setdefault(self._bodies[body].name, np.array(held[begin:end], float).ravel())
+            own[NUMBERS * (place - begin) : NUMBERS * (place - begin + 1)] = new
+        return named
+
+    @cached_property
+    def _meetings(self) -> Meetings:
+        """Of the program with all rows."""
+        program = self.program
+        switches = program.switches
+        bodies = switches._bodies if isinstance(switches, Parted) else ()
+        return meetings_of(bodies, program.constraints, [program.symbols, program.given])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Meetings:
+    """Functions of all meetings of some bodies, and which directions part them.
+
+    Args:
+        screen: how far each pair of shapes is apart at least, and along its meeting's direction [m].
+        shapes: numbers of each pair.
+        places: the meeting of each pair.
+        rows: the row of each pair in its program.
+        margins: of each meeting [m].
+    """
+
+    screen: BufferedFunction
+    shapes: BufferedFunction
+    places: Places
+    rows: Places
+    margins: Array
+
+    def begun(self, at: Sequence[Array], held: Array) -> dict[int, Array]:
+        """What parts all bodies best.
+
+        Args:
+            at: the functions' arguments.
+            held: numbers that say what parts each meeting, shape (meetings, NUMBERS).
+        Returns:
+            New numbers by the meeting's place.
+        """
+        return self._changed(
+            at, held, lambda seen: np.ones(len(seen.margins), bool), lambda own, *_: own.best
+        )
+
+    def violated(self, at: Sequence[Array], held: Array, short: float = 0.0) -> dict[int, Array]:
+        """What parts bodies that overlap, beside those that are parted already; likewise."""
+
+        def looked_at(seen: _Screened) -> NDArray[np.bool_]:
+            return np.asarray(~seen.on & (seen.least < seen.margins + short))
+
+        def wanted(ways: Ways, place: int, along: float) -> Array | None:
+            return ways.best if ways.distance < self.margins[place] + short - ALMOST else None
+
+        return self._changed(at, held, looked_at, wanted)
+
+    def better(self, at: Sequence[Array], held: Array, prices: Array) -> tuple[dict[int, Array], float]:
+        """What parts bodies farther that a row holds in touch, and what that gains to first order.
+
+        Args:
+            at: the functions' arguments.
+            held: numbers of each meeting.
+            prices: of each meeting, as `prices` has them.
+        """
         gains: list[float] = []
 
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
@@ -121,99 +194,33 @@ class Parted:
             gains.append(farther * float(prices[place]))
             return ways.best
 
-        found = self._changed(values, given, looked_at, wanted)
-        return found if sum(gains) > gain else {}
+        return self._changed(at, held, looked_at, wanted), sum(gains)
 
     def _changed(
         self,
-        values: Start,
-        given: Mapping[str, Any],
+        at: Sequence[Array],
+        held: Array,
         looked_at: Callable[[_Screened], NDArray[np.bool_]],
         wanted: Callable[[Ways, int, float], Array | None],
-    ) -> Start:
-        """The parameters with new numbers for some meetings; without those of bodies for which none are new.
+    ) -> dict[int, Array]:
+        """New numbers for some meetings, by their places.
 
         Args:
-            values: of a solution or a start.
-            given: the other parameters.
+            at: the functions' arguments.
+            held: numbers of each meeting.
             looked_at: which meetings may get new numbers.
             wanted: new numbers for one of them, from the ways to part it, its place, and how far it is apart
                 along its direction [m]; or None.
         """
-        program, meetings = self.program, self._meetings
-        held = program.held(values)
-        numbers = program.packed(values), program.packed_parameters(given, values)
-        columns = [held[each.name].reshape(-1, NUMBERS) for each in self._bodies]
-        least, along = map(meetings.least, meetings.screen(*numbers))
-        on = np.concatenate(columns)[:, 0] != 0.0
-        places = np.flatnonzero(looked_at(_Screened(on, least, along, meetings.margins))).tolist()
+        least, along = map(self.least, self.screen(*at))
+        on = np.asarray(held[:, 0] != 0.0)
+        places = np.flatnonzero(looked_at(_Screened(on, least, along, self.margins))).tolist()
         if not places:
             return {}
-        pairs = meetings.shapes(*numbers)[0].reshape(-1, 2, SHAPE)
-        ends = np.cumsum([0, *map(len, columns)])
-        found: dict[str, Array] = {}
-        ways = ways_of([pairs[meetings.places == place] for place in places])
-        for place, own in zip(places, ways, strict=True):
-            new = wanted(own, place, along[place])
-            if new is not None:
-                body = int(np.searchsorted(ends, place, side="right")) - 1
-                name, first = self._bodies[body].name, NUMBERS * (place - int(ends[body]))
-                found.setdefault(name, np.array(held[name], float))[first : first + NUMBERS] = new
-        return found
-
-    @cached_property
-    def _meetings(self) -> _Meetings:
-        """Of the program with all rows."""
-        program = self.program
-        switches = program.switches
-        bodies = switches._bodies if isinstance(switches, Parted) else ()
-        pairs: list[tuple[PlacedShape, PlacedShape]] = []
-        along: list[Any] = []
-        places: list[int] = []
-        margins: list[float] = []
-        rows: list[int] = []
-        ends = np.cumsum([0, *(block.expression.numel() for block in program.constraints)]).tolist()
-        begins = {block.name: begin for block, begin in zip(program.constraints, ends, strict=False)}
-        for each in bodies:
-            rules, before = each.body.agent.collisions, len(pairs)
-            for number, meeting in enumerate(directed(each.body.form)):
-                own = placed_pairs(each.body, meeting)
-                held = each.body.values[PARTING][NUMBERS * number : NUMBERS * (number + 1)]
-                pairs += own
-                along += [one.apart_along(other, held) for one, other in own]
-                places += [len(margins)] * len(own)
-                margins.append(rules.margin if rules else 0.0)
-            first = begins[each.rows]
-            rows += range(first, first + len(pairs) - before)
-        least = [_least_apart(*pair) for pair in pairs]
-        given = [program.symbols, program.given]
-        shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
-        return _Meetings(
-            _buffered("screen", given, [ca.vertcat(*least), ca.vertcat(*along)]),
-            _buffered("shapes", given, [ca.horzcat(*shapes)]),
-            np.array(places, np.intp),
-            np.array(rows, np.intp),
-            np.array(margins),
-        )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Meetings:
-    """Functions of all meetings of a program.
-
-    Args:
-        screen: how far each pair of shapes is apart at least, and along its meeting's direction [m].
-        shapes: numbers of each pair.
-        places: the meeting of each pair.
-        rows: the row of each pair in the program.
-        margins: of each meeting [m].
-    """
-
-    screen: BufferedFunction
-    shapes: BufferedFunction
-    places: Places
-    rows: Places
-    margins: Array
+        pairs = self.shapes(*at)[0].reshape(-1, 2, SHAPE)
+        ways = ways_of([pairs[self.places == place] for place in places])
+        found = {place: wanted(own, place, along[place]) for place, own in zip(places, ways, strict=True)}
+        return {place: new for place, new in found.items() if new is not None}
 
     def least(self, distances: Array) -> Array:
         """The least of each meeting's pairs [m]."""
@@ -224,6 +231,48 @@ class _Meetings:
     def prices(self, multipliers: Array) -> Array:
         """What each meeting's pairs cost together, per metre, from the multipliers of a program's rows."""
         return np.asarray(np.bincount(self.places, -multipliers[self.rows], len(self.margins)), float)
+
+
+def meetings_of(
+    bodies: Sequence[PartedBody], constraints: Sequence[ConstraintBlock], arguments: Sequence[Any]
+) -> Meetings:
+    """The meetings of bodies whose rows along directions are there.
+
+    Args:
+        bodies: with the numbers that part them among their values.
+        constraints: of the program, one after the other.
+        arguments: columns of symbols that everything follows from.
+    """
+    pairs: list[tuple[PlacedShape, PlacedShape]] = []
+    along: list[Any] = []
+    places: list[int] = []
+    margins: list[float] = []
+    for each in bodies:
+        rules = each.body.agent.collisions
+        for number, meeting in enumerate(directed(each.body.form)):
+            own = placed_pairs(each.body, meeting)
+            held = each.body.values[PARTING][NUMBERS * number : NUMBERS * (number + 1)]
+            pairs += own
+            along += [one.apart_along(other, held) for one, other in own]
+            places += [len(margins)] * len(own)
+            margins.append(rules.margin if rules else 0.0)
+    least = [_least_apart(*pair) for pair in pairs]
+    shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
+    given = list(arguments)
+    return Meetings(
+        _buffered("screen", given, [ca.vertcat(ca.SX(0, 1), *each) for each in (least, along)]),
+        _buffered("shapes", given, [ca.horzcat(ca.SX(2 * SHAPE, 0), *shapes)]),
+        np.array(places, np.intp),
+        rows_of(bodies, constraints),
+        np.array(margins),
+    )
+
+
+def rows_of(bodies: Sequence[PartedBody], constraints: Sequence[ConstraintBlock]) -> Places:
+    """Which rows of a program keep bodies apart along directions, body after body."""
+    ends = np.cumsum([0, *(block.expression.numel() for block in constraints)]).tolist()
+    places = {block.name: range(*ends[at : at + 2]) for at, block in enumerate(constraints)}
+    return np.array([row for each in bodies for row in places[each.rows]], np.intp)
 
 
 def _buffered(name: str, given: list[Any], results: list[Any]) -> BufferedFunction:

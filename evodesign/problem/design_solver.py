@@ -207,8 +207,9 @@ class _OneDesign:
             next(solution for solution in held if solution.case == scene.case(Hold(height_m=height)))
             for height in lift.heights
         ]
-        motions = self._solver.inner.lifts[case.pair]
-        return motions.solve(values, lift, ends, check.robot, human, slowly=False).in_case(case)
+        motions, starts = self._solver.inner.lifts[case.pair], self._solver.known.lift_starts(case.pair, lift)
+        solution = motions.solve(values, lift, ends, check.robot, human, known=starts, slowly=False)
+        return solution.in_case(case)
 
     def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
         """The most similar case of the same task that was solved before: of the same load if there is one."""

@@ -40,6 +40,7 @@ from evodesign.records import (
     Assessed,
     Constraint,
     Genome,
+    Lift,
     Objective,
     ProblemSource,
     RunHeader,
@@ -114,18 +115,27 @@ def values_factory(
     return ValuesFactory(_assessment_factory(problem, pool, progress))
 
 
-def evaluator_of(problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT) -> Evaluator:
+def evaluator_of(
+    problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT, lifts: Sequence[Lift] = ()
+) -> Evaluator:
     """The inner problems of a problem in this process; so many jobs work out what is missing."""
     with make_pool("joblib", jobs) as pool:
-        known = cached_precomputed(problem, pool, progress)
+        known = cached_precomputed(problem, pool, progress, lifts)
     return Evaluator(problem, known)
 
 
 def cached_precomputed(
-    problem: DesignProblem, pool: Pool, progress: PrecomputeProgress = SILENT
+    problem: DesignProblem, pool: Pool, progress: PrecomputeProgress = SILENT, lifts: Sequence[Lift] = ()
 ) -> Precomputed:
-    """What is known of a problem before any robot is evaluated, worked out where it is missing."""
-    return precomputed(problem, _cache("precomputed", progress), pool, progress)
+    """What is known of a problem before any robot is evaluated, worked out where it is missing.
+
+    Args:
+        problem: it.
+        pool: where it is worked out.
+        progress: is shown what is.
+        lifts: of which starts are asked for, beside the problem's own.
+    """
+    return precomputed(problem, _cache("precomputed", progress), pool, progress, lifts=lifts)
 
 
 def _assessment_factory(

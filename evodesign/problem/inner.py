@@ -48,10 +48,5 @@ def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPU
             )
             for setting in settings
         },
-        lifts={
-            scene.pair: LiftProblem(
-                Setting(scene, problem.space, problem.weights, problem.options), symmetric=symmetric
-            )
-            for scene in problem.scenes
-        },
+        lifts={setting.scene.pair: LiftProblem(setting, symmetric=symmetric) for setting in settings},
     )

@@ -57,6 +57,7 @@ def _one(pair: tuple[str, str], solution: LiftSolution) -> dict[str, Any]:
                 "peak_power_w": float(effort.power.max()),
                 "torque_norms": effort.torques.tolist(),
                 "powers_w": effort.power.tolist(),
+                "disturbed_torque_norms": {key: norms.tolist() for key, norms in effort.disturbed.items()},
             }
             for name, effort in solution.efforts.items()
         },

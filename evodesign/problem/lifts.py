@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from evodesign.motion.solution import LiftSolution
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Hold, Lift
@@ -19,10 +20,11 @@ class Lifts:
 
     Args:
         evaluator: of the problem's designs.
+        known: what is known beforehand, starts of the lifts among it.
     """
 
-    def __init__(self, evaluator: Evaluator) -> None:
-        self._evaluator, self._problem = evaluator, evaluator.problem
+    def __init__(self, evaluator: Evaluator, known: Precomputed) -> None:
+        self._evaluator, self._problem, self._known = evaluator, evaluator.problem, known
 
     def solve(self, values: Sequence[float], lift: Lift) -> dict[tuple[str, str], LiftSolution]:
         """The lift of a design, by names of person and load.
@@ -42,8 +44,11 @@ class Lifts:
             human = AgentModel.of(scene.human, scene.human.tree)
             checker = Checker(scene, robot, human)
             ends = [self._hold(values, plain.pair, height, checker) for height in (lift.from_m, lift.to_m)]
-            motions = self._evaluator.inner.lifts[plain.pair]
-            found[plain.pair] = motions.solve(values, lift, ends, robot, human)
+            motions, starts = (
+                self._evaluator.inner.lifts[plain.pair],
+                self._known.lift_starts(plain.pair, lift),
+            )
+            found[plain.pair] = motions.solve(values, lift, ends, robot, human, known=starts)
         return found
 
     def _hold(

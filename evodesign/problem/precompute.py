@@ -6,17 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from evodesign.errors import InputError, RunError
+from evodesign.motion.starts import lift_portfolio
 from evodesign.nlp.disk_cache import Cache
 from evodesign.pool.base import Limits, Pool
 from evodesign.posture.precompute.keys import key_of
-from evodesign.posture.precompute.pieces import compute_piece, with_piece
+from evodesign.posture.precompute.pieces import compute_piece, encoded_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, PrecomputeSetting, Subject, stages
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.prepared import prepared_pieces
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
-from evodesign.records import ProblemSource
+from evodesign.records import Lift, ProblemSource
 
 __all__ = ["COMPILING", "precompute_setting", "precomputed", "staged_pieces"]
 
@@ -31,6 +32,7 @@ WORK: Mapping[Subject, float] = {
     Subject.WIDER: 0.5,
     Subject.PERSON: 0.3,
     Subject.PERSON_REACH: 0.3,
+    Subject.LIFT: 2.5,
 }
 """How much work a piece is, by its subject: medians of public robots. It serves until one of them is done."""
 
@@ -51,10 +53,20 @@ def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
     )
 
 
-def staged_pieces(problem: DesignProblem) -> list[list[Piece]]:
-    """The pieces that a problem is made ready by, stage after stage."""
-    portfolios, people = problem.start_portfolio, problem.person_reaches
-    return stages(precompute_setting(problem), problem.holds, portfolios=portfolios, person_reaches=people)
+def staged_pieces(problem: DesignProblem, lifts: Sequence[Lift] = ()) -> list[list[Piece]]:
+    """The pieces that a problem is made ready by, stage after stage.
+
+    Args:
+        problem: to be made ready.
+        lifts: beside its own.
+    """
+    return stages(
+        precompute_setting(problem),
+        problem.holds,
+        portfolios=problem.start_portfolio,
+        person_reaches=problem.person_reaches,
+        lifts=[*(task for task in problem.tasks if isinstance(task, Lift)), *lifts],
+    )
 
 
 def precomputed(
@@ -64,6 +76,7 @@ def precomputed(
     watcher: PrecomputeProgress,
     after: Sequence[PendingPiece] = (),
     given: Mapping[Piece, bytes] | None = None,
+    lifts: Sequence[Lift] = (),
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
 
@@ -74,13 +87,14 @@ def precomputed(
         watcher: is shown what is worked out.
         after: what the caller will work out next, to be told along with the pieces.
         given: contents of pieces that need not be worked out; None for those that come with evodesign.
+        lifts: of which starts are asked for, beside the problem's own.
     Raises:
         RunError: a piece could not be worked out; it says which and why.
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, known = precompute_setting(problem), Precomputed()
     given = prepared_pieces(problem.source) if given is None else given
-    staged = staged_pieces(problem)
+    staged = staged_pieces(problem, lifts)
     pieces = {
         piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
         for stage, pieces in enumerate(staged)
@@ -180,4 +194,10 @@ class _PieceFactory:
 
     def __call__(self) -> Callable[[Piece], bytes]:
         setting = precompute_setting(build_problem(self.source))
-        return lambda piece: compute_piece(setting, piece, self.known)
+        return lambda piece: _content(setting, piece, self.known)
+
+
+def _content(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
+    if isinstance(piece.task, Lift):
+        return encoded_piece(lift_portfolio(setting, piece.pair, piece.task, known))
+    return compute_piece(setting, piece, known)

@@ -13,10 +13,15 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import Any, ClassVar
 
+import msgspec
+
 from evodesign.errors import InputError, nearest_name
 from evodesign.tasks.base import TaskRecord
 
 __all__ = ["FEWEST_KNOTS", "Lift", "LoadProfile", "minimum_jerk", "profile_named"]
+
+KNOTS = 12
+"""As many a lift has unless it says otherwise."""
 
 FEWEST_KNOTS = 4
 """A spline at rest at both ends has as many."""
@@ -60,7 +65,7 @@ class Lift(TaskRecord, frozen=True, tag="lift"):
     to_m: float
     seconds: float = 1.5
     profile: LoadProfile = LoadProfile.MINIMUM_JERK
-    knots: int = 12
+    knots: int = KNOTS
 
     def __post_init__(self) -> None:
         """Refuse what cannot be lifted."""
@@ -95,6 +100,11 @@ class Lift(TaskRecord, frozen=True, tag="lift"):
     def times(self) -> tuple[float, ...]:
         """Of both ends [s]."""
         return 0.0, self.seconds
+
+    @property
+    def coarse(self) -> Lift:
+        """The same with the usual number of knots, for which starts are chosen."""
+        return msgspec.structs.replace(self, knots=KNOTS)
 
     @property
     def step(self) -> float:

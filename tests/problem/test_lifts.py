@@ -200,6 +200,49 @@ def test_a_slow_lift_needs_the_torques_of_holds_in_its_postures(repository: Path
     assert max(posture.speeds["l_knee"] for posture in (i.postures["robot"] for i in lift.instants)) < 0.1
 
 
+@pytest.fixture(scope="module")
+def pushed(repository: Path) -> Moving:
+    """A lift while somebody pushes."""
+    push = '[[disturbance]]\nname = "pushed"\npush_n = [-20.0, 0.0, 0.0]\n\n[objectives]'
+    table = "from_m = 0.9\nto_m = 1.1\nseconds = 1.5\nknots = 6"
+    return Moving.of(changed(repository, (TABLE, table), ("[objectives]", push), (TORQUE, MINIMISE)))
+
+
+def test_a_lift_under_a_disturbance_is_a_case_of_its_own(pushed: Moving) -> None:
+    """Objectives follow from what the log holds of both, at every instant."""
+    found, (case,) = pushed.assessed.assessment.objectives, pushed.assessed.cases
+    times = [each.time_s for each in case.instants]
+    norms = [
+        [math.hypot(*load_case["robot"].torques_n_m.values()) for load_case in load_cases]
+        for load_cases in zip(
+            *[(each.agents, each.disturbed["pushed"]) for each in case.instants], strict=True
+        )
+    ]
+    means = [np.trapezoid(each, times) / 1.5 for each in norms]
+    assert means[0] != pytest.approx(means[1], rel=1e-3)
+    assert found["robot_torque"] == pytest.approx(np.mean(means))
+    assert found["worst_robot_torque"] == pytest.approx(max(map(max, norms)))
+    powers = [
+        [
+            sum(
+                max(torque * instant.agents["robot"].speeds_rad_s[name], 0.0)
+                for name, torque in load_case["robot"].torques_n_m.items()
+            )
+            for instant, load_case in zip(case.instants, load_cases, strict=True)
+        ]
+        for load_cases in zip(
+            *[(each.agents, each.disturbed["pushed"]) for each in case.instants], strict=True
+        )
+    ]
+    assert found["energy"] == pytest.approx(np.mean([np.trapezoid(each, times) for each in powers]))
+    outcome = pushed.assessed.assessment.cases[0]
+    assert outcome.disturbed["pushed"]["robot"] == pytest.approx(max(norms[1]))
+
+
+def test_gradients_under_a_disturbance_are_those_of_differences_along_the_tangent(pushed: Moving) -> None:
+    assert_gradients_agree(pushed)
+
+
 def test_a_height_out_of_reach_is_missed_by_a_lift_as_by_a_hold(repository: Path) -> None:
     high = Moving.of(changed(repository, (TABLE, "from_m = 0.9\nto_m = 2.5")))
     (case,) = high.result.cases
@@ -247,6 +290,10 @@ def test_what_is_for_loads_held_still_is_refused(repository: Path) -> None:
 
 
 def test_gradients_of_every_objective_are_those_of_differences_along_the_tangent(moving: Moving) -> None:
+    assert_gradients_agree(moving)
+
+
+def assert_gradients_agree(moving: Moving) -> None:
     """The quick chain rule over instants against whole tangents; tests/motion has those of the motion."""
     derivatives = Sensitivities(moving.problem, inner=moving.solver.inner)
     slow = derivatives.at(moving.values, moving.result).sensitivities()

@@ -26,10 +26,13 @@ def lift_tables(title: str, solutions: Mapping[tuple[str, str], LiftSolution]) -
 
 
 def _efforts(title: str, solution: LiftSolution) -> FittedTable:
-    columns = numbers("mean torque [N m]", "peak torque [N m]", "static share", "work [J]", "peak power [W]")
-    table = titled(title, [*names("agent"), *columns], caption=_caption(solution))
+    headers = ["mean torque [N m]", "peak torque [N m]", "static share", "work [J]", "peak power [W]"]
+    disturbances = {name: None for effort in solution.efforts.values() for name in effort.disturbed}
+    headers += [f"peak torque, {name} [N m]" for name in disturbances]
+    table = titled(title, [*names("agent"), *numbers(*headers)], caption=_caption(solution))
     for name, effort in solution.efforts.items():
-        found = (effort.mean_torque, effort.peak_torque, effort.static_share, effort.work, effort.power.max())
+        found = [effort.mean_torque, effort.peak_torque, effort.static_share, effort.work, effort.power.max()]
+        found += [effort.disturbed[disturbance].max() for disturbance in disturbances]
         table.add_row(markup(name), *(rounded(value) for value in found))
     return table
 

@@ -31,6 +31,8 @@ def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[st
     yield "lowest load", known.lowest, "m"
     for task in problem.holds:
         yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
+    for case, found in known.lifts.items():
+        yield ", ".join(part for part in (f"lift from {case.task}", case.label) if part), found, "100 N^2 m^2"
 
 
 def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:

@@ -18,8 +18,8 @@ from evodesign.posture.precompute.plan import (
 
 __all__ = ["NO_PART_OF", "key_of"]
 
-CODE = "evodesign.posture.precompute.pieces"
-"""The module that works pieces out."""
+CODE, CODE_OF_LIFTS = "evodesign.posture.precompute.pieces", "evodesign.motion.starts"
+"""The modules that work pieces out."""
 
 NO_PART_OF_PIECES: Exceptions = {
     PrecomputeSetting: {
@@ -80,6 +80,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
     Subject.POSTURE: NO_PART_OF_PIECES,
     Subject.WIDER: NO_PART_OF_WIDER,
+    Subject.LIFT: NO_PART_OF_PIECES,
 }
 """Fields on which a piece does not depend, by its subject, with the reason."""
 
@@ -92,4 +93,5 @@ def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     if piece.subject in UNDISTURBED and not parted:
         setting = all_undisturbed(setting)
     data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
-    return digest((data, code_digest(CODE)), without=without)
+    code = code_digest(CODE_OF_LIFTS if piece.subject is Subject.LIFT else CODE)
+    return digest((data, code), without=without)

@@ -33,7 +33,7 @@ from evodesign.posture.precompute.precomputed import NO_STARTS, PersonReach, Pre
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Task
 
-__all__ = ["compute_piece", "with_piece"]
+__all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
 REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
 HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
@@ -71,7 +71,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         piece: which one.
         known: what earlier stages gave.
     """
-    found: HumanValue | PersonReach | StartPortfolio | dict[str, list[BodyPair]] | None
+    found: HumanValue | PersonReach | StartPortfolio | None
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
         own = Setting(scene, setting.space, setting.weights, setting.options)
@@ -93,7 +93,12 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         found = None
     else:
         found = _portfolio(setting, piece, known)
-    return msgspec.json.encode(found, enc_hook=np.ndarray.tolist)
+    return encoded_piece(found)
+
+
+def encoded_piece(content: HumanValue | PersonReach | StartPortfolio | None) -> bytes:
+    """A piece's content, as it is kept."""
+    return msgspec.json.encode(content, enc_hook=np.ndarray.tolist)
 
 
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
@@ -116,6 +121,10 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
         found = msgspec.json.decode(content, type=StartPortfolio)
     except msgspec.DecodeError:
         return None
+    if piece.subject is Subject.LIFT and piece.task is not None:
+        person, payload = piece.pair
+        case = Case(person=person, payload=payload, task=piece.task)
+        return replace(known, lifts={**known.lifts, case: found})
     if piece.task is not None:
         return replace(known, postures={**known.postures, piece.task: found})
     highest = piece.subject is Subject.HIGHEST

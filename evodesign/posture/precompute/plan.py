@@ -11,7 +11,7 @@ from evodesign.mechanics.scene import Grasp, Scene
 from evodesign.nlp.solver import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.postures import Symmetry
-from evodesign.records import Hold, Task
+from evodesign.records import Hold, Lift, Task
 
 __all__ = [
     "OF_STARTS",
@@ -21,6 +21,7 @@ __all__ = [
     "PrecomputeSetting",
     "Subject",
     "all_undisturbed",
+    "lift_pieces",
     "stages",
 ]
 
@@ -38,9 +39,16 @@ class Subject(StrEnum):
     PROGRAM = "the program of postures"
     POSTURE = "starts of postures"
     WIDER = "starts of other heights"
+    LIFT = "starts of lifts"
 
 
-OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
+OF_PEOPLE = (
+    Subject.PERSON,
+    Subject.PERSON_REACH,
+    Subject.UNDISTURBED_PROGRAM,
+    Subject.PROGRAM,
+    Subject.LIFT,
+)
 """Of one person with one load; other pieces serve everyone."""
 
 PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
@@ -70,7 +78,8 @@ class Piece:
     beside: tuple[Task, ...] = ()
 
     def __str__(self) -> str:
-        name = str(self.subject) if self.task is None else f"{self.subject} at {self.task}"
+        at = "from" if isinstance(self.task, Lift) else "at"
+        name = str(self.subject) if self.task is None else f"{self.subject} {at} {self.task}"
         who = self.pair if self.subject in OF_PEOPLE else ()
         return ", ".join(part for part in (name, *who) if part)
 
@@ -99,7 +108,12 @@ class PrecomputeSetting:
 
 
 def stages(
-    setting: PrecomputeSetting, tasks: Sequence[Hold], *, portfolios: bool, person_reaches: bool
+    setting: PrecomputeSetting,
+    tasks: Sequence[Hold],
+    *,
+    portfolios: bool,
+    person_reaches: bool,
+    lifts: Sequence[Lift] = (),
 ) -> list[list[Piece]]:
     """The pieces of a problem, stage after stage; those of a stage need only what earlier ones gave.
 
@@ -108,6 +122,7 @@ def stages(
         tasks: of the problem.
         portfolios: whether solves begin at portfolios of starts.
         person_reaches: whether the people's own reach is asked for.
+        lifts: of the problem.
     """
     parting = [scene for scene in setting.scenes if scene.robot.collisions is not None]
     meetings = [Piece(Subject.MEETINGS, scene.pair) for scene in parting]
@@ -128,7 +143,13 @@ def stages(
     found = [meetings, [*_programs(setting), *extremes, *starts, *people]]
     if setting.symmetric and setting.middle.disturbances:
         found.append([_wider(middle, task, tasks) for task in longest])
-    return found
+    return [*found, lift_pieces(setting, lifts)] if lifts else found
+
+
+def lift_pieces(setting: PrecomputeSetting, lifts: Sequence[Lift]) -> list[Piece]:
+    """Starts of lifts, of every person with every load; they serve any number of knots."""
+    coarse = dict.fromkeys(lift.coarse for lift in lifts)
+    return [Piece(Subject.LIFT, scene.pair, lift) for scene in setting.scenes for lift in coarse]
 
 
 def _programs(setting: PrecomputeSetting) -> list[Piece]:

@@ -16,7 +16,7 @@ from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.formulations.human_value import HumanValue
-from evodesign.records import Case, Task
+from evodesign.records import Case, Lift, Task
 
 __all__ = ["NOTHING_PRECOMPUTED", "NO_STARTS", "PersonReach", "Precomputed"]
 
@@ -51,6 +51,7 @@ class Precomputed:
         postures: starts of the posture problem, by task.
         person_reaches: the people's own reach, by the names of person and load, where it was asked for.
         meetings: pairs of bodies that come near each other, by agent name and label.
+        lifts: starts of lifts, by case.
     """
 
     values: Mapping[Case, HumanValue] = field(default_factory=dict)
@@ -59,6 +60,7 @@ class Precomputed:
     postures: Mapping[Task, StartPortfolio] = field(default_factory=dict)
     person_reaches: Mapping[tuple[str, str], PersonReach] = field(default_factory=dict)
     meetings: Mapping[tuple[str, str], tuple[BodyPair, ...]] = field(default_factory=dict)
+    lifts: Mapping[Case, StartPortfolio] = field(default_factory=dict)
 
     def values_of(self, scene: Scene) -> Mapping[Task, HumanValue]:
         """The value functions of a scene's person and load, by task."""
@@ -67,6 +69,11 @@ class Precomputed:
     def starts(self, task: Task) -> tuple[Start, ...]:
         """The posture problem's starts for a task; none where none are known."""
         return self.postures.get(task, NO_STARTS).starts
+
+    def lift_starts(self, pair: tuple[str, str], lift: Lift) -> tuple[Start, ...]:
+        """Where a lift of a person and a load begins; none where nothing is known."""
+        person, payload = pair
+        return self.lifts.get(Case(person=person, payload=payload, task=lift.coarse), NO_STARTS).starts
 
 
 NOTHING_PRECOMPUTED = Precomputed()

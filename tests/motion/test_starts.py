@@ -1,0 +1,117 @@
+"""Starts of lifts: motions of one solve put beside other robots, and portfolios of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+import pytest
+
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.motion import starts
+from evodesign.motion.lifting import MOVED, lift_program, lift_starts
+from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.motion.solution import LiftSolution
+from evodesign.motion.starts import lift_portfolio
+from evodesign.nlp.start_portfolio import StartPortfolio, Training
+from evodesign.posture.precompute.pieces import encoded_piece, with_piece
+from evodesign.posture.precompute.plan import Piece, Subject, lift_pieces
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.precompute import precompute_setting
+from evodesign.records import Status
+from evodesign.tasks import Lift
+from tests.motion.lifted import LIFT, Lifted
+
+
+@pytest.fixture(scope="module")
+def program(lifted: Lifted) -> LiftProgram:
+    return lift_program(lifted.setting, LIFT.knots, symmetric=True)
+
+
+@pytest.fixture(scope="module")
+def found(solution: LiftSolution) -> LiftStart:
+    """The solution, which may have more knots than were asked for, as a start."""
+    assert solution.start is not None
+    assert solution.ending is not None
+    return replace(solution.start, symbols=solution.ending.symbols)
+
+
+def test_both_agents_motions_are_a_start_but_for_the_load(
+    lifted: Lifted, solution: LiftSolution, found: LiftStart
+) -> None:
+    own = lift_program(lifted.setting, solution.lift.knots, symmetric=True)
+    blank = replace(found, symbols=np.zeros_like(found.symbols), hands=np.zeros_like(found.hands))
+    moved = own.beside(own.beside(blank, own.motion_of(ROBOT, found)), own.motion_of(HUMAN, found))
+    left = np.flatnonzero(np.abs(moved.symbols - found.symbols) > 1e-12)
+    assert len(left) == solution.lift.knots, "the coefficients of the load's height"
+    assert moved.hands.tolist() == found.hands.tolist()
+
+
+def test_a_motion_of_other_knots_has_the_same_values_at_them(
+    program: LiftProgram, lifted: Lifted, found: LiftStart, solution: LiftSolution
+) -> None:
+    own = lift_program(lifted.setting, solution.lift.knots, symmetric=True)
+    finer = msgspec.structs.replace(solution.lift, knots=2 * solution.lift.knots - 1)
+    other = lift_program(lifted.setting, finer.knots, symmetric=True)
+    blank = other.followed(finer, lifted.hold(finer.from_m).postures, 0, lifted.design)
+    moved = other.beside(blank, own.motion_of(HUMAN, found))
+    course, again = own.course(solution.lift, found.symbols), other.course(finer, moved.symbols)
+    for one, two in zip(
+        course.instants(solution.lift.knot_times), again.instants(solution.lift.knot_times), strict=True
+    ):
+        assert one.postures[HUMAN].joints == pytest.approx(two.postures[HUMAN].joints, abs=1e-9)
+        assert one.postures[HUMAN].torques == pytest.approx(two.postures[HUMAN].torques, abs=1e-9)
+
+
+def test_a_robot_that_is_moved_by_nothing_begins_at_its_hold(
+    program: LiftProgram, lifted: Lifted, found: LiftStart
+) -> None:
+    ends = [lifted.hold(height).postures for height in LIFT.heights]
+    person = program.motion_of(HUMAN, program.followed(LIFT, ends[1], LIFT.knots - 1, lifted.design))
+    still = {**person, MOVED: np.array([1.0, *np.zeros(3 + len(ends[1][ROBOT].joints))])}
+    begun = lift_starts(program, LIFT, ends, lifted.design, [{}, person, still])
+    assert [*begun] == [
+        "hold at the beginning",
+        "hold at the end",
+        "hold at the beginning, start 2",
+        "hold at the end, start 2",
+        "hold at the end, moved, start 3",
+    ]
+    moved, unmoved = begun["hold at the end, moved, start 3"], begun["hold at the end, start 2"]
+    assert moved.symbols == pytest.approx(unmoved.symbols, abs=1e-6)
+
+
+def test_a_chosen_start_leads_to_no_worse_a_lift_than_the_holds(
+    lifted: Lifted, problem: DesignProblem, solution: LiftSolution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(starts, "TRAINING", Training(1, 2, 0, 1, 1, 1))
+    lift = LIFT.coarse
+    compiled = replace(precompute_setting(problem), options=lifted.setting.options)
+    portfolio = lift_portfolio(compiled, ("", ""), lift, NOTHING_PRECOMPUTED)
+    assert portfolio.coverage.designs == 1
+    known = with_piece(NOTHING_PRECOMPUTED, piece_of(problem, lift), encoded_piece(portfolio))
+    assert known is not None
+    chosen = known.lift_starts(("", ""), lift)
+    assert len(chosen) == 1
+    holds = [lifted.hold(height) for height in lift.heights]
+    better = lifted.lifts.solve(lifted.design, lift, holds, lifted.robot, lifted.human, known=chosen)
+    assert better.solved, better.reason
+    costs = [each.cost for each in better.attempts if each.status is Status.SOLVED]
+    before = [each.cost for each in solution.attempts if each.status is Status.SOLVED]
+    assert min(costs) <= 1.01 * min(before)
+
+
+def test_starts_of_a_lift_serve_any_number_of_knots(problem: DesignProblem) -> None:
+    fine, coarse = Lift(0.8, 1.2, 1.5, knots=24), Lift(0.8, 1.2, 1.5)
+    assert lift_pieces(precompute_setting(problem), [fine, coarse]) == [piece_of(problem, coarse)]
+    content = encoded_piece(StartPortfolio(({"human.joints": [1.0]},), NOTHING_PRECOMPUTED.highest.coverage))
+    known = with_piece(NOTHING_PRECOMPUTED, piece_of(problem, coarse), content)
+    assert known is not None
+    assert known.lift_starts(("", ""), fine) == ({"human.joints": [1.0]},)
+    assert known.lift_starts(("", ""), Lift(0.8, 1.3, 1.5)) == ()
+
+
+def piece_of(problem: DesignProblem, lift: Lift) -> Piece:
+    return Piece(Subject.LIFT, problem.scene.pair, lift)
