@@ -46,6 +46,32 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "known" in getattr(item, "fixturenames", ()):
             item.add_marker("prepared")
+    if workers := os.environ.get("PYTEST_XDIST_WORKER_COUNT"):
+        items[:] = slow_ones_sooner(items, int(workers))
+
+
+def slow_ones_sooner(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
+    """The tests in an order in which no worker is left with a slow one when the others are through.
+
+    Each begins with a share of the list, one after the other; whoever ends steals from another's end. So
+    modules with slow tests come first in every share, each module whole.
+    """
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    kinds = [[item for item in items if (item.path in slow) is first] for first in (True, False)]
+    ordered: list[pytest.Item] = []
+    for worker in range(workers):
+        for kind in kinds:
+            ends = [len(kind) * each // workers for each in (worker, worker + 1)]
+            begin, end = (_whole_modules(kind, place) for place in ends)
+            ordered += kind[begin:end]
+    return ordered
+
+
+def _whole_modules(items: list[pytest.Item], place: int) -> int:
+    """The place, moved on to where a module begins."""
+    while 0 < place < len(items) and items[place].path == items[place - 1].path:
+        place += 1
+    return place
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -18,6 +18,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.records import Evaluation
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
+from tests.cli.here import evodesign
 
 POPULATION, BUDGET, ENDLESS = 4, 24, 4000
 COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
@@ -130,7 +131,7 @@ def test_a_branch_begins_with_the_past_and_is_verified_like_any_run(
     assert len(new) == 14
     assert new[:8] == remembered(whole[0])[:8]
     assert not set(new[8:]) & set(remembered(whole[0]))
-    found = json.loads(finish([*COMMAND, "verify", str(tmp_path / "branch"), "--json"]).stdout)
+    found = json.loads(evodesign("verify", tmp_path / "branch", "--json").stdout)
     assert (found["sound"], found["evaluations"], found["segments"]) == (True, 14, 2)
 
 
@@ -187,7 +188,7 @@ def test_run_cut_anywhere_gives_what_had_arrived_before_the_cut(
 
 def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path: Path) -> None:
     plot = tmp_path / "front.html"
-    found = json.loads(finish([*COMMAND, "front", str(whole[0]), "--json", "--plot", str(plot)]).stdout)
+    found = json.loads(evodesign("front", whole[0], "--json", "--plot", plot).stdout)
     assert found["objectives"] == ["robot_torque", "human_torque", "reach_height"]
     logged = {evaluation.number: evaluation for evaluation in read_run(whole[0]).evaluations}
     for design in found["designs"]:
@@ -219,7 +220,7 @@ def test_evaluate_answers_in_full(repository: Path) -> None:
 
 def test_check_shows_what_each_parameter_changes(repository: Path) -> None:
     problem = repository / "problems" / "point_grasp.toml"
-    found = json.loads(finish([*COMMAND, "check", str(problem), "--json"]).stdout)
+    found = json.loads(evodesign("check", problem, "--json").stdout)
     assert len(found["parameters"]) == 16
     shank = next(p for p in found["parameters"] if p["name"] == "length.shank")
     assert [link["link"] for link in shank["links"]] == ["l_lower_leg", "r_lower_leg"]

@@ -14,7 +14,7 @@ from evodesign.runlog.run import RunLog, read_run
 from tests.fuzz.segment_cases import Message, examine, messages_of, sound_run, spoilt
 from tests.runlog import crafted
 
-QUICK_CASES, CASES = 100, 1_500
+QUICK_CASES, CASES, PARTS = 100, 1_500, 4
 CORPUS = sorted((Path(__file__).parent / "corpus/segments").iterdir())
 
 
@@ -29,7 +29,15 @@ def messages(run: RunLog) -> list[Message]:
 
 
 @pytest.mark.parametrize(
-    "numbers", [range(QUICK_CASES), pytest.param(range(QUICK_CASES, CASES), marks=pytest.mark.slow)], ids=str
+    "numbers",
+    [
+        range(QUICK_CASES),
+        *(
+            pytest.param(range(QUICK_CASES + part, CASES, PARTS), marks=pytest.mark.slow)
+            for part in range(PARTS)
+        ),
+    ],
+    ids=str,
 )
 def test_whatever_a_segment_holds_it_is_read_or_refused(
     numbers: range, run: RunLog, messages: list[Message], tmp_path: Path
