@@ -62,6 +62,7 @@ class LeastTime:
         slope: its derivative by each of the design's parameters; empty unless solved.
         course: the motion, with its time; None unless solved.
         checked: what the independent check found; None unless solved.
+        start: the motion as symbols, its share of the asked-for time last; None unless solved.
     """
 
     lift: Lift
@@ -72,6 +73,7 @@ class LeastTime:
     slope: Array = field(default_factory=lambda: np.empty(0))
     course: LiftCourse | None = None
     checked: CheckedLift | None = None
+    start: LiftStart | None = None
 
 
 class LeastTimes:
@@ -127,6 +129,7 @@ class LeastTimes:
             slope=lift.seconds * ending.cost_slope[: len(design)],
             course=course,
             checked=checked,
+            start=reached,
         )
 
     def _program(self, knots: int) -> LiftProgram:

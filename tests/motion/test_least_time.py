@@ -12,7 +12,7 @@ from evodesign.motion import least_time
 from evodesign.motion.instant import KnotBlocks, fastest_joints
 from evodesign.motion.least_time import LeastTime
 from evodesign.motion.lifting import LiftProblem
-from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.motion.program import LiftProgram
 from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel
@@ -73,11 +73,12 @@ def test_the_least_time_is_that_of_a_checked_motion_at_its_limits(limited: Lifte
 
 
 def test_a_lift_of_a_little_more_time_is_found_and_one_of_less_is_not(
-    limited: Lifted, quickest: LiftSolution, least: LeastTime
+    limited: Lifted, least: LeastTime
 ) -> None:
     """By the program in which time is given, from the quickest motion."""
     assert least.course is not None
-    setting, begin = limited.setting, symbols_of(limited, quickest, least)
+    assert least.start is not None
+    setting, begin = limited.setting, least.start
     blocks = KnotBlocks(symmetric_forms(setting.scene), setting)
     program = LiftProgram(blocks, least.lift.knots, replace(setting.options, iterations=100))
     start, words = replace(begin, symbols=begin.symbols[:-1]), []
@@ -89,15 +90,6 @@ def test_a_lift_of_a_little_more_time_is_found_and_one_of_less_is_not(
     assert words[1] is not Status.SOLVED
 
 
-def symbols_of(limited: Lifted, quickest: LiftSolution, least: LeastTime) -> LiftStart:
-    """Of the quickest motion, the share of the time last."""
-    assert least.course is not None
-    assert quickest.start is not None
-    share = least.course.lift.seconds / least.lift.seconds
-    start = replace(quickest.start, symbols=np.append(quickest.start.symbols, share))
-    return timed(limited, least).refined(least.lift, least.course, start)
-
-
 def timed(limited: Lifted, least: LeastTime) -> LiftProgram:
     """Solved to 1e-10."""
     blocks = KnotBlocks(symmetric_forms(limited.setting.scene), limited.setting, timed=True)
@@ -106,10 +98,11 @@ def timed(limited: Lifted, least: LeastTime) -> LiftProgram:
 
 
 def test_the_least_time_moves_with_the_design_as_solves_of_neighbours_do(
-    limited: Lifted, quickest: LiftSolution, least: LeastTime
+    limited: Lifted, least: LeastTime
 ) -> None:
     """Along two directions, by central differences at two steps, extrapolated to none (Richardson)."""
-    program, start = timed(limited, least), symbols_of(limited, quickest, least)
+    program, start = timed(limited, least), least.start
+    assert start is not None
     at, rng, step = np.array(limited.design), np.random.default_rng(7), 1e-4
 
     def seconds(design: np.ndarray) -> float:
