@@ -28,9 +28,9 @@ __all__ = [
     "NEAR",
     "Coverage",
     "Landscape",
-    "Optimum",
     "Searched",
     "StartPortfolio",
+    "StartResult",
     "Training",
     "spread_designs",
     "start_portfolio",
@@ -67,8 +67,8 @@ class Training:
     share: float = 0.99
 
 
-class Optimum(Protocol):
-    """Where a solve ended."""
+class StartResult(Protocol):
+    """Where a solve from a start ended."""
 
     @property
     def cost(self) -> float:
@@ -94,7 +94,7 @@ class Searched(Protocol):
         """Fixed ones, for any design."""
         ...
 
-    def solve(self, design: Design, start: Start) -> Optimum:
+    def solve(self, design: Design, start: Start) -> StartResult:
         """The optimum that is found from a start."""
         ...
 
@@ -294,7 +294,7 @@ def _crossed(landscape: Searched, study: _Study, others: Sequence[_Study]) -> _S
     return study
 
 
-def _cost(end: Optimum) -> float:
+def _cost(end: StartResult) -> float:
     """Cost of a solve that converged; infinite for one that did not."""
     return end.cost if end.status is Status.SOLVED else np.inf
 
