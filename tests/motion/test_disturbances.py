@@ -10,8 +10,6 @@ import pinocchio as pin
 import pytest
 from numpy.typing import NDArray
 
-from evodesign.cli.output import console, rounded
-from evodesign.cli.tables.lift import lift_tables
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import SIDES
@@ -157,17 +155,10 @@ def test_a_check_sees_a_wrong_torque_under_a_disturbance(pushed: Lifted, found: 
     assert "heavier: robot.torque" in checker.check(replace(course, disturbed=wrong)).wrong
 
 
-def test_tables_and_json_have_the_torques_under_each_disturbance(
-    found: LiftSolution, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for table in lift_tables("a lift", {("", ""): found}):
-        console().print(table)
-    shown = " ".join(capsys.readouterr().out.split())
+def test_json_has_the_torques_under_each_disturbance(found: LiftSolution) -> None:
     (lift,) = lift_json({("", ""): found})["lifts"]
     for name in (each.name for each in EVERY):
-        assert all(word in shown for word in name.split())
         for agent, effort in found.efforts.items():
-            assert rounded(effort.disturbed[name].max()) in shown
             assert lift["agents"][agent]["disturbed_torque_norms"][name] == effort.disturbed[name].tolist()
 
 
