@@ -33,7 +33,7 @@ SEARCH = ["--algorithm", "surrogate", "--population", "8", "--evaluations", "120
 
 HEAD = """# Gallery
 
-Eleven problems and their fronts, each from one search of 120 designs:
+Ten problems and their fronts, each from one search of 120 designs:
 
 ```
 evodesign search PROBLEM {search}
@@ -76,11 +76,6 @@ class Entry:
 
 
 ENTRIES = (
-    Entry(
-        "icub_lifting",
-        "icub-lifting",
-        "The [default problem](default.md): 15 kg in rigid grasps with a small woman or a large man.",
-    ),
     Entry("point_grasp", "point-grasp", "Point grasps: lengths and densities of the iCub."),
     Entry(
         "icub_materials",
