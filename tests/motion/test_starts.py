@@ -15,12 +15,13 @@ from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import LiftSolution
 from evodesign.motion.starts import lift_portfolio
 from evodesign.nlp.start_portfolio import StartPortfolio, Training
+from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import encoded_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, Subject, lift_pieces
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.precompute import precompute_setting
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 from evodesign.tasks import Lift
 from tests.motion.lifted import LIFT, Lifted
 
@@ -111,6 +112,13 @@ def test_starts_of_a_lift_serve_any_number_of_knots(problem: DesignProblem) -> N
     assert known is not None
     assert known.lift_starts(("", ""), fine) == ({"human.joints": [1.0]},)
     assert known.lift_starts(("", ""), Lift(0.8, 1.3, 1.5)) == ()
+
+
+def test_starts_of_a_lift_are_kept_for_problems_of_the_same_holds(problem: DesignProblem) -> None:
+    setting, piece = precompute_setting(problem), piece_of(problem, Lift(0.8, 1.2, 1.5))
+    other = replace(setting, tasks=(*setting.tasks, Hold(height_m=1.05)))
+    assert key_of(other, piece) != key_of(setting, piece)
+    assert key_of(replace(setting, weights=setting.weights), piece) == key_of(setting, piece)
 
 
 def piece_of(problem: DesignProblem, lift: Lift) -> Piece:

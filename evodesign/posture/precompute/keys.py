@@ -69,7 +69,8 @@ NO_PART_OF_PARTED: Exceptions = {
         if name in ("middle", "symmetry")
     },
 }
-"""Where bodies are kept apart every piece follows from the meetings of all scenes at all tasks."""
+"""Where bodies are kept apart every piece follows from the meetings of all scenes at all tasks; starts of a
+lift follow from the starts of holds, which do so too."""
 
 NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.MEETINGS: NO_PART_OF_MEETINGS,
@@ -80,7 +81,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
     Subject.POSTURE: NO_PART_OF_PIECES,
     Subject.WIDER: NO_PART_OF_WIDER,
-    Subject.LIFT: NO_PART_OF_PIECES,
+    Subject.LIFT: NO_PART_OF_PARTED,
 }
 """Fields on which a piece does not depend, by its subject, with the reason."""
 
