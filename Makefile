@@ -16,6 +16,10 @@ QUICK := tests/analysis tests/body tests/conformance/test_searches.py tests/desi
 	tests/searches tests/test_evolve.py tests/tree
 PIP := $(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check --constraint constraints.txt
 
+# bytecode is kept, wherever one works, and away from the sources: tests start hundreds of processes
+export PYTHONPYCACHEPREFIX = $(abspath $(VENV))/bytecode
+unexport PYTHONDONTWRITEBYTECODE
+
 export OMP_NUM_THREADS = 1
 
 .PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot prepared api docs clean

@@ -48,6 +48,7 @@ def test_design_has_the_results_that_a_search_logs(
         assert found.postures == expected.cases
 
 
+@pytest.mark.slow
 def test_postures_that_the_log_lacks_are_solved_anew(
     opened: Problem, problem: DesignProblem, evaluator: Evaluator, genome: tuple[float, ...]
 ) -> None:

@@ -56,6 +56,7 @@ def test_cache_does_not_change_an_answer(quick: Path, cold: tuple[dict, str]) ->
 
 
 @pytest.mark.needs_compiler
+@pytest.mark.slow
 def test_without_a_compiler_ipopt_finds_the_same(quick: Path, cold: tuple[dict, str], tmp_path: Path) -> None:
     ipopt, _ = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "without"), "CC": "/nowhere/cc"})
     assert cold[0]["objectives"] == pytest.approx(ipopt["objectives"], rel=1e-6)

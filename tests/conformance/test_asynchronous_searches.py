@@ -187,6 +187,7 @@ class TestEveryAsynchronousSearchThatLearns:
         assert min(found) < 0.05 * min(found[:12])
 
     @pytest.mark.parametrize("workers", [1, 12])
+    @pytest.mark.slow
     def test_finds_about_as_much_as_with_generations(self, algorithm, workers):
         asynchronous = run(make_asynchronous_search(settings(algorithm, population=24)), 600, workers=workers)
         search, generational = make_search(settings(algorithm, population=24)), []

@@ -84,6 +84,7 @@ def test_a_robot_that_is_moved_by_nothing_begins_at_its_hold(
     assert moved.symbols == pytest.approx(unmoved.symbols, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_chosen_start_leads_to_no_worse_a_lift_than_the_holds(
     lifted: Lifted, problem: DesignProblem, solution: LiftSolution, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -166,6 +166,7 @@ def met(apart: DesignProblem) -> dict:
     return {(name, ""): tuple(pairs) for name, pairs in found.items()}
 
 
+@pytest.mark.slow
 def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: DesignProblem) -> None:
     checked = {agent.name: agent.collisions.checked for agent in (apart.scene.robot, apart.scene.human)}
     assert ("l_foot_front", "r_foot_front") in met["robot", ""]
@@ -217,6 +218,7 @@ def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
         assert np.allclose(relative, world, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignProblem) -> None:
     scene = with_meetings(apart.scene, met)
     program = robot_program(symmetric_forms(scene)[0], replace(setting_of(apart), scene=scene))
@@ -247,6 +249,7 @@ def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignPro
         assert np.allclose(exact[:, column], difference, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_posture_at_the_end_of_reach_fits_programs_that_part_other_bodies(
     apart: DesignProblem, met: dict
 ) -> None:
@@ -260,6 +263,7 @@ def test_the_posture_at_the_end_of_reach_fits_programs_that_part_other_bodies(
     assert solved.values.keys() >= start.keys()
 
 
+@pytest.mark.slow
 def test_no_bodies_of_a_solved_posture_overlap(
     problem: DesignProblem, apart: DesignProblem, met: dict
 ) -> None:
@@ -279,6 +283,7 @@ def test_no_bodies_of_a_solved_posture_overlap(
     assert changed > 0
 
 
+@pytest.mark.slow
 def test_bodies_that_no_row_keeps_apart_are_no_matter_of_the_method(
     problem: DesignProblem, apart: DesignProblem
 ) -> None:
@@ -294,6 +299,7 @@ def test_bodies_that_no_row_keeps_apart_are_no_matter_of_the_method(
         assert {attempt.method for attempt in case.attempts} == {problem.options.method}
 
 
+@pytest.mark.slow
 def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
     problem: DesignProblem, apart: DesignProblem, met: dict
 ) -> None:
@@ -306,6 +312,7 @@ def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
     assert through < around < 0.8
 
 
+@pytest.mark.slow
 def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
     apart: DesignProblem, met: dict
 ) -> None:
@@ -330,6 +337,7 @@ def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
     assert compared >= 7
 
 
+@pytest.mark.slow
 def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem, met: dict) -> None:
     """Rows loosened by a little: the lowest load moves by their price times that."""
     setting = replace(setting_of(apart), scene=with_meetings(apart.scene, met))

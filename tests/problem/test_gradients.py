@@ -96,6 +96,7 @@ def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genom
     return errors
 
 
+@pytest.mark.slow
 def test_gradients_agree_with_differences_through_the_pool(
     problem: DesignProblem, known: Precomputed
 ) -> None:
@@ -149,6 +150,7 @@ def test_what_does_not_exist_has_no_gradient_and_a_reason(problem: DesignProblem
     assert gradients.values["height"] == pytest.approx({name: -slope for name, slope in reach.items()})
 
 
+@pytest.mark.slow
 def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
     problem: DesignProblem, known: Precomputed, tmp_path
 ) -> None:

@@ -217,6 +217,7 @@ def pushed(repository: Path) -> Moving:
     return Moving.of(changed(repository, (TABLE, table), ("[objectives]", push), (TORQUE, MINIMISE)))
 
 
+@pytest.mark.slow
 def test_a_lift_under_a_disturbance_is_a_case_of_its_own(pushed: Moving) -> None:
     """Objectives follow from what the log holds of both, at every instant."""
     found, (case,) = pushed.assessed.assessment.objectives, pushed.assessed.cases
@@ -248,6 +249,7 @@ def test_a_lift_under_a_disturbance_is_a_case_of_its_own(pushed: Moving) -> None
     assert outcome.disturbed["pushed"]["robot"] == pytest.approx(max(norms[1]))
 
 
+@pytest.mark.slow
 def test_gradients_under_a_disturbance_are_those_of_differences_along_the_tangent(pushed: Moving) -> None:
     assert_gradients_agree(pushed)
 
@@ -293,6 +295,7 @@ def quick(repository: Path) -> Moving:
     return Moving.of(text)
 
 
+@pytest.mark.slow
 def test_least_times_are_objectives_and_constraints_and_have_gradients(quick: Moving) -> None:
     """The mean and the largest of those of both lifts; both ways to a gradient agree."""
     assert quick.timed
@@ -395,6 +398,7 @@ def neighbours(
     return found
 
 
+@pytest.mark.slow
 def test_gradients_of_every_objective_are_those_of_solves_of_neighbours(repository: Path) -> None:
     """Central differences at two steps, extrapolated to none (Richardson), of three designs.
 

@@ -220,6 +220,7 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
 
 
 @pytest.mark.needs_compiler
+@pytest.mark.slow
 def test_programs_of_postures_are_compiled_before_they_are_solved(
     shaken: DesignProblem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
