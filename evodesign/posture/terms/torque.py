@@ -12,16 +12,18 @@ Source: Sartore et al. 2022, Eq. 14 b and Eq. 5 at rest; docs/model.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import casadi as ca
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.disturbance import PushedAt
-from evodesign.mechanics.floating_base import ROOT
-from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.mechanics.floating_base import ROOT, BodyState
+from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
     FORCE_UNIT,
@@ -38,7 +40,9 @@ from evodesign.posture.terms.load import turned_to_world
 from evodesign.tree.equip import rated_torques
 from evodesign.tree.kinematics import vector
 
-__all__ = ["TORQUE", "effort"]
+__all__ = ["TORQUE", "asked", "effort"]
+
+Array = NDArray[np.float64]
 
 LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit
 
@@ -108,17 +112,29 @@ def _push(body: Body) -> Iterator[AppliedWrench]:
         yield AppliedWrench(frame, body.poses[frame].position, force, ca.DM.zeros(3))
 
 
-def residuals(body: MeasuredBody) -> Iterator[Residual]:
-    """Rows of h - J^T f: six of the base, then the joints; and torques beyond their limits."""
-    agent, posture, state = body.agent, body.posture, body.state
+def asked(agent: Agent, posture: AgentPosture, state: BodyState, push: Sequence[float]) -> Array:
+    """Rows of h - J^T f, what balance asks of the base (six) and of the joints [N, N m].
+
+    Args:
+        agent: whose posture it is.
+        posture: with its wrenches.
+        state: of that posture; at rest, or as it moves.
+        push: on the agent's trunk, in the world [N].
+    """
     rows = np.array(state.bias)
-    push = np.array(body.disturbance.push_on(PushedAt(agent.name)))
-    if push.any():
-        in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ push
+    if any(push):
+        in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ np.array(push)
         rows -= state.jacobian_in_world(agent.pushed_frame)[:3].T @ in_agent
     for side in SIDES:
         rows -= state.jacobian_in_world(agent.hands[side]).T @ posture.hand_wrenches[side]
         rows -= state.jacobian_in_frame(agent.soles[side]).T @ posture.foot_wrenches[side]
+    return rows
+
+
+def residuals(body: MeasuredBody) -> Iterator[Residual]:
+    """What base and joints miss of their balance; and torques beyond their limits."""
+    agent, posture = body.agent, body.posture
+    rows = asked(agent, posture, body.state, body.disturbance.push_on(PushedAt(agent.name)))
     base, joints = np.abs(rows[:ROOT]), rows[ROOT:]
     wrong = float(np.abs(joints - [posture.torques[name] for name in agent.joints]).max())
     yield Residual("torque", wrong, "N m", "joint torques")

@@ -165,11 +165,12 @@ class JointBody(Part, frozen=True):
 
 
 class TreeBody(Part, frozen=True):
-    """An agent: its tree, and the links that are its soles, by side."""
+    """An agent: its tree, and the links that are its soles, by side; their length and width."""
 
     links: tuple[LinkBody, ...]
     joints: tuple[JointBody, ...]
     soles: dict[str, int]
+    sole_size_m: tuple[float, float]
 
 
 class LoadBody(Part, frozen=True):
@@ -255,6 +256,9 @@ class DesignContent(Part, frozen=True):
         cases: how each ended.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
+        resting: torques of lifts if nothing moved, by moment, agent and joint [N m]; likewise, none where no
+            load is lifted.
+        torque_limits: of the robot's joints that have a limit [N m].
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
         hardware: bill of materials; None where the problem has no hardware, or postures are left out.
@@ -267,6 +271,8 @@ class DesignContent(Part, frozen=True):
     cases: tuple[CaseOutcome, ...]
     postures: tuple[CaseDetail, ...] = ()
     clearances: tuple[ClearanceContent, ...] = ()
+    resting: tuple[tuple[dict[str, dict[str, float]], ...], ...] = ()
+    torque_limits: dict[str, float] = {}
     links: dict[int, LinkBody] = {}
     joints: dict[int, JointBody] = {}
     gradients: dict[str, dict[str, float]] = {}

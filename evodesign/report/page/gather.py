@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 
 from msgspec.structs import replace
 
@@ -34,6 +35,7 @@ from evodesign.report.page.content import (
 from evodesign.report.page.downloads import Downloads, rounded
 from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
+from evodesign.report.page.over_time import RestingTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
@@ -226,13 +228,10 @@ def _designs(
     on_front: Collection[int],
 ) -> dict[int, DesignContent]:
     wanted = {*on_front, *(mark.number for mark in marked)}
-    clearances = None if problem is None else Clearances(problem.scenes)
-    downloads = None if problem is None else Downloads(problem, run)
+    known = None if problem is None else _Known.of(problem, run)
     recorded = {mark.number for mark in marked}
     return {
-        evaluation.number: _design(
-            problem, clearances, downloads, evaluation, opened.get(evaluation.number), recorded
-        )
+        evaluation.number: _design(known, evaluation, opened.get(evaluation.number), recorded)
         for evaluation in shown
         if evaluation.number in wanted
     }
@@ -251,39 +250,56 @@ def _with_slices(
     }
 
 
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """What the run's problem, built again, tells of its designs."""
+
+    problem: DesignProblem
+    clearances: Clearances
+    resting: RestingTorques
+    downloads: Downloads
+
+    @classmethod
+    def of(cls, problem: DesignProblem, run: RunLog) -> _Known:
+        scenes = problem.scenes
+        return cls(problem, Clearances(scenes), RestingTorques(scenes), Downloads(problem, run))
+
+
 def _design(
-    problem: DesignProblem | None,
-    clearances: Clearances | None,
-    downloads: Downloads | None,
+    known: _Known | None,
     evaluation: Evaluation,
     detail: Detail | None,
     recorded: Collection[int],
 ) -> DesignContent:
     cases = evaluation.assessment.cases
-    if problem is None or clearances is None or downloads is None or detail is None:
+    if known is None or detail is None:
         return rounded(DesignContent(cases=cases))
+    problem = known.problem
     space, assessment = problem.space, evaluation.assessment
     design = [assessment.design[parameter.name] for parameter in space.parameters]
     values = space.given(design, assessment.rated_torques)
     links, joints = changes(problem, values)
     robot = problem.space.resized(problem.scene.robot.tree, values)
+    postures = tuple(each.thinned(MOMENTS) for each in detail.cases)
     try:
-        found = clearances.of(robot, detail.cases)
+        found, resting = known.clearances.of(robot, detail.cases), known.resting.of(robot, postures)
     except RunError:  # postures of strangers, whom the page does not draw
-        found = []
+        found, resting = [], ()
     nearest = tuple(
         ClearanceContent(first=each.first, second=each.second, distance_m=each.distance) for each in found
     )
     return rounded(
         DesignContent(
             cases=cases,
-            postures=tuple(each.thinned(MOMENTS) for each in detail.cases),
+            postures=postures,
             clearances=nearest,
+            resting=resting,
+            torque_limits=known.resting.limits(robot),
             links=links,
             joints=joints,
             hardware=hardware_content(problem, robot, detail.cases),
-            urdf=downloads.urdf(robot),
-            replay=downloads.replay(robot, detail) if evaluation.number in recorded else "",
+            urdf=known.downloads.urdf(robot),
+            replay=known.downloads.replay(robot, detail) if evaluation.number in recorded else "",
         )
     )
 

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import casadi as ca
 import msgspec
 import numpy as np
+import pinocchio as pin
 import pytest
 
+from evodesign.mechanics.balance import AppliedWrench, cut
+from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import (
@@ -25,14 +30,19 @@ from evodesign.records import (
     Status,
 )
 from evodesign.report.page import page_content, page_html
+from evodesign.report.page.over_time import RestingTorques
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
+from evodesign.tree.kinematics import Pose, forward
+from evodesign.tree.model import Tree
 from tests.report.page.chromium import Tab
 from tests.report.page.reading import open_page
 from tests.report.scenes import random_instant, random_values
 
 pytestmark = pytest.mark.needs_chromium
+
+AT_REST = ", at rest"
 
 LIFT = Lift(0.8, 1.2, 1.5, knots=4)
 
@@ -103,7 +113,7 @@ def test_torques_power_and_forces_on_hands_are_those_of_the_log(
     def over(value: Callable[[AgentDetail], float]) -> list[float]:
         return pytest.approx([value(each) for each in instants], rel=1e-5, abs=1e-5)
 
-    torques = drawn(page, 0)
+    torques = {name: line for name, line in drawn(page, 0).items() if not name.endswith(AT_REST)}
     most = {joint: max(abs(each.torques_n_m[joint]) for each in instants) for joint in instants[0].joints_rad}
     assert [*torques] == sorted(most, key=most.__getitem__, reverse=True)[:8]
     for joint, (times, values) in torques.items():
@@ -119,3 +129,60 @@ def test_torques_power_and_forces_on_hands_are_those_of_the_log(
     for side in ("left", "right"):
         force = drawn(page, 2)[f"{side} hand"][1]
         assert force == over(lambda each, side=side: math.hypot(*each.hand_wrenches[side][:3]))
+
+
+def statics(agent: Agent, tree: Tree, own: AgentDetail) -> dict[str, float]:
+    """Joint torques at rest, by cutting the tree where the page asks pinocchio [N m]."""
+    base = Pose(ca.DM(pin.rpy.rpyToMatrix(np.array(own.base_rpy_rad))), ca.DM(own.base_position_m))
+    poses = forward(tree, base, {joint: ca.DM(angle) for joint, angle in own.joints_rad.items()})
+    applied = []
+    for side in SIDES:
+        hand, sole = poses[agent.hands[side]], poses[agent.soles[side]]
+        force, moment = np.split(np.array(own.hand_wrenches[side]), 2)
+        applied.append(AppliedWrench(agent.hands[side], hand.position, ca.DM(force), ca.DM(moment)))
+        force, moment = np.split(np.array(own.foot_wrenches[side]), 2)
+        wrench = sole.rotation @ force, sole.rotation @ moment
+        applied.append(AppliedWrench(agent.soles[side], sole.position, *wrench))
+    found = cut(tree, poses, applied).torques
+    return {joint: float(found[joint]) for joint in agent.joints}
+
+
+@pytest.mark.parametrize(("option", "who"), [(0, "robot"), (1, "human")])
+def test_torques_at_rest_are_those_of_statics_in_the_same_moments(
+    page: Tab, run: RunLog, problem: DesignProblem, option: int, who: str
+) -> None:
+    page.value(f"document.querySelectorAll('input[name=over-time]')[{option}].click()")
+    agent = problem.scene.robot if who == "robot" else problem.scene.human
+    values = list(run.evaluations[0].assessment.design.values())
+    tree = problem.space.resized(agent.tree, values) if who == "robot" else agent.tree
+    wanted = [statics(agent, tree, each.agents[who]) for each in run.details[0].cases[0].instants]
+    lines = {name: line for name, line in drawn(page, 0).items() if name.endswith(AT_REST)}
+    assert len(lines) == 8
+    for name, (times, values) in lines.items():
+        assert times == pytest.approx(LIFT.result_times, rel=1e-6)
+        joint = name.removesuffix(AT_REST)
+        assert values == pytest.approx([each[joint] for each in wanted], rel=1e-4, abs=1e-4)
+
+
+def test_centres_of_pressure_are_where_the_ground_pushes(
+    page: Tab, run: RunLog, problem: DesignProblem
+) -> None:
+    page.value("document.querySelectorAll('input[name=over-time]')[0].click()")
+    lines = drawn(page, 3)
+    width = problem.scene.robot.sole_size.width
+    for side, middle in (("left", -0.75 * width), ("right", 0.75 * width)):
+        across, forward = lines[f"centre of pressure, {side}"]
+        outline = lines[f"{side} sole"]
+        assert max(outline[0]) - min(outline[0]) == pytest.approx(width)
+        assert max(outline[1]) - min(outline[1]) == pytest.approx(problem.scene.robot.sole_size.length)
+        for instant, right, ahead in zip(run.details[0].cases[0].instants, across, forward, strict=True):
+            force, moment = np.split(np.array(instant.agents["robot"].foot_wrenches[side]), 2)
+            there = np.array([ahead, middle - right, 0.0])
+            assert (moment - np.cross(there, force))[:2] == pytest.approx([0.0, 0.0], abs=1e-3)
+
+
+def test_limits_of_torques_are_told_beside_the_joints(problem: DesignProblem) -> None:
+    robot = replace(problem.scene.robot, torque_limits={"l_knee": 40.0}, limits_torques=True)
+    limited = [replace(scene, robot=robot) for scene in problem.scenes]
+    assert RestingTorques(limited).limits(robot.tree) == {"l_knee": 40.0}
+    assert RestingTorques(problem.scenes).limits(robot.tree) == {}

@@ -1,24 +1,38 @@
-// The lift that is shown, over its time: torques of the joints, power, forces on the hands. Its moments are those
-// that the page holds, joined by straight lines.
+// The lift that is shown, over its time: torques of the joints, as they are and as they would be at rest, power,
+// forces on the hands, and where the ground pushes the soles. Its moments are those that the page holds, joined by
+// straight lines.
 
 const MOST_LINES = 8;
+
+const LIFT_HINT = `The ${MOST_LINES} joints with the largest torques, with their limits where they have any; a thin
+  line is what the torque would be at rest, with the same forces on hands and feet, so what lies between accelerates
+  the body's own links. Then power of the joints, forces on the hands, and the centres of pressure under the soles,
+  which begin at the large dot.`;
 
 const momentsOf = (design, at) => {
   const own = everyStop.filter((stop) => taskTexts[stop] === taskTexts[at.stop]);
   const postures = own.map((stop) => postureAt(design, { ...at, stop }));
-  return { times: own.map((stop) => stops[stop].time_s), postures };
+  const resting = design.resting?.[design.postures.findIndex((one) => isOf(one, at))] ?? [];
+  return { times: own.map((stop) => stops[stop].time_s), postures, resting };
 };
 
-// The joints with the largest torques on the way: their torques [N m] at every moment.
-const torqueLines = (postures, agent) => {
+const withLimit = (joint, limit) => (limit === undefined ? joint : `${joint}, ±${figure(limit, 3)}`);
+
+// The joints with the largest torques on the way: their torques [N m] at every moment, and at rest.
+const torqueLines = ({ postures, resting }, agent, design) => {
   const torques = postures.map((posture) => posture.agents[agent].torques_n_m);
   const most = (joint) => Math.max(...torques.map((one) => Math.abs(one[joint])));
   const joints = Object.keys(torques[0]).sort((a, b) => most(b) - most(a));
-  return joints.slice(0, MOST_LINES).map((joint) => [joint, torques.map((one) => one[joint])]);
+  const limits = agent === "robot" ? (design.torque_limits ?? {}) : {};
+  return joints.slice(0, MOST_LINES).map((joint) => ({
+    name: withLimit(joint, limits[joint]),
+    values: torques.map((one) => one[joint]),
+    atRest: resting.map((one) => one[agent][joint]),
+  }));
 };
 
 // Torque times speed [W]: of all joints, and of those that drive.
-const powerLines = (postures, agent) => {
+const powerLines = ({ postures }, agent) => {
   const powers = postures.map(({ agents }) =>
     Object.entries(agents[agent].speeds_rad_s ?? {}).map(
       ([joint, speed]) => speed * agents[agent].torques_n_m[joint],
@@ -26,29 +40,42 @@ const powerLines = (postures, agent) => {
   );
   const sum = (values) => values.reduce((whole, one) => whole + one, 0);
   return [
-    ["all joints", powers.map(sum)],
-    ["joints that drive", powers.map((one) => sum(one.filter((power) => power > 0)))],
+    { name: "all joints", values: powers.map(sum) },
+    { name: "joints that drive", values: powers.map((one) => sum(one.filter((power) => power > 0))) },
   ];
 };
 
 // Size of the force on each hand [N].
-const handLines = (postures, agent) =>
-  ["left", "right"].map((side) => [
-    `${side} hand`,
-    postures.map(({ agents }) => Math.hypot(...agents[agent].hand_wrenches[side].slice(0, 3))),
-  ]);
+const handLines = ({ postures }, agent) =>
+  ["left", "right"].map((side) => ({
+    name: `${side} hand`,
+    values: postures.map(({ agents }) => Math.hypot(...agents[agent].hand_wrenches[side].slice(0, 3))),
+  }));
 
 const drawOverTime = (place, times, lines, title) => {
   const ink = (index) => mixedColour("accent", "second", lines.length > 1 ? index / (lines.length - 1) : 0);
-  const traces = lines.map(([name, values], index) => ({
-    type: "scatter",
-    mode: "lines+markers",
-    name: plain(name),
-    x: times,
-    y: values,
-    line: { color: ink(index), width: 1.6, dash: ["solid", "dot", "dash", "dashdot"][index % 4] },
-    marker: { size: 4 },
-  }));
+  const traces = lines.flatMap(({ name, values, atRest = [] }, index) => {
+    const line = { color: ink(index), width: 1.6, dash: ["solid", "dot", "dash", "dashdot"][index % 4] };
+    const moving = {
+      type: "scatter",
+      mode: "lines+markers",
+      name: plain(name),
+      x: times,
+      y: values,
+      line,
+      marker: { size: 4 },
+    };
+    const still = {
+      ...moving,
+      mode: "lines",
+      name: `${plain(name)}, at rest`,
+      y: atRest,
+      line: { ...line, width: 0.8 },
+      opacity: 0.7,
+      showlegend: false,
+    };
+    return atRest.length ? [moving, still] : [moving];
+  });
   place.drawn = Plotly.react(
     place,
     traces,
@@ -64,6 +91,52 @@ const drawOverTime = (place, times, lines, title) => {
   );
 };
 
+const FEET = { left: -1, right: 1 };
+
+// Both soles from above, toes up, and the way of the point at which the ground's force acts, (-m_y, m_x) / f_z.
+const drawPressure = (place, { times, postures }, agent, person) => {
+  const tree = agent === "robot" ? content.bodies.robot : content.bodies.people[person];
+  const [length, width] = tree.sole_size_m;
+  const [long, wide] = [length / 2, width / 2];
+  const traces = Object.entries(FEET).flatMap(([side, sign], index) => {
+    const middle = sign * 0.75 * width;
+    const wrenches = postures.map((posture) => posture.agents[agent].foot_wrenches[side]);
+    const loaded = wrenches.map(([, , fz]) => fz > 1e-6);
+    const outline = {
+      type: "scatter",
+      mode: "lines",
+      name: `${side} sole`,
+      x: [-wide, wide, wide, -wide, -wide].map((y) => middle + y),
+      y: [-long, -long, long, long, -long],
+      line: { color: colour("faint"), width: 1.2 },
+      hoverinfo: "skip",
+    };
+    const path = {
+      type: "scatter",
+      mode: "lines+markers",
+      name: `centre of pressure, ${side}`,
+      x: wrenches.map(([, , fz, mx], moment) => (loaded[moment] ? middle - mx / fz : null)),
+      y: wrenches.map(([, , fz, , my], moment) => (loaded[moment] ? -my / fz : null)),
+      text: times.map((time) => `${figure(time, 3)} s`),
+      hoverinfo: "text",
+      line: { color: colour(index ? "second" : "accent"), width: 1.6 },
+      marker: { size: times.map((_, moment) => (moment === 0 ? 9 : 4)) },
+    };
+    return [outline, path];
+  });
+  place.drawn = Plotly.react(
+    place,
+    traces,
+    plotLayout({
+      height: 270,
+      margin: { l: 46, r: 6, t: 10, b: 38 },
+      xaxis: plotAxis("to the right [m]", { zeroline: false, dtick: 0.1 }),
+      yaxis: plotAxis("forward [m]", { zeroline: false, scaleanchor: "x", dtick: 0.1 }),
+    }),
+    { ...plotConfig, displayModeBar: false },
+  );
+};
+
 // Nothing where no load moves.
 const motionSection = (design) => {
   if (!everyStop.some(isLift)) return null;
@@ -73,24 +146,29 @@ const motionSection = (design) => {
     ["power [W]", powerLines],
     ["force on a hand [N]", handLines],
   ];
-  const plots = kinds.map(([title]) =>
-    element("div", { class: "joint-plot", role: "img", "aria-label": `${capital(title)} over the time of the lift` }),
-  );
+  const plotOf = (title) =>
+    element("div", { class: "joint-plot", role: "img", "aria-label": `${title} over the time of the lift` });
+  const plots = kinds.map(([title]) => plotOf(capital(title)));
+  const soles = plotOf("Centres of pressure");
   const section = element(
     "details",
     { open: true, id: "over-time" },
     element("summary", { text: "Lift over time" }),
     element("div", { class: "choices", style: "margin-top:10px" }, agentSegments("over-time", (agent) => draw(agent))),
-    element("p", { class: "hint", text: `The ${MOST_LINES} joints with the largest torques, power of the joints, forces on the hands.` }),
+    element("p", { class: "hint", text: LIFT_HINT }),
     ...plots,
+    soles,
   );
   const draw = (agent = whose) => {
     whose = agent;
     const at = shownCase();
-    const { times, postures } = momentsOf(design, at);
-    section.hidden = !isLift(at.stop) || !postures.every(Boolean);
+    const moments = momentsOf(design, at);
+    section.hidden = !isLift(at.stop) || !moments.postures.every(Boolean);
     if (section.hidden) return;
-    kinds.forEach(([title, lines], place) => drawOverTime(plots[place], times, lines(postures, agent), title));
+    kinds.forEach(([title, lines], place) =>
+      drawOverTime(plots[place], moments.times, lines(moments, agent, design), title),
+    );
+    drawPressure(soles, moments, agent, at.person);
   };
   return { section, draw };
 };
