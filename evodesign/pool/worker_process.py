@@ -67,10 +67,9 @@ class WorkerProcess(Generic[A, R]):
         try:
             return self._submitted(index, argument)
         except (OSError, ValueError) as error:  # as loky says it when no process can be had
-            self.close()
-            never: Future[Finished[R]] = Future()
-            never.set_exception(_NotStartedError(f"no worker process could be started ({explain(error)})"))
-            return never
+            return self._never(_NotStartedError(f"no worker process could be started ({explain(error)})"))
+        except BrokenProcessPool as error:  # it ended before it could be given anything, and so did the next
+            return self._never(error)
 
     @property
     def due(self) -> float:
@@ -100,6 +99,12 @@ class WorkerProcess(Generic[A, R]):
     @property
     def _seconds(self) -> float:
         return time.perf_counter() - self._begun
+
+    def _never(self, why: Exception) -> Future[Finished[R]]:
+        self.close()
+        never: Future[Finished[R]] = Future()
+        never.set_exception(why)
+        return never
 
     def _submitted(self, index: int, argument: A) -> Future[Finished[R]]:
         try:

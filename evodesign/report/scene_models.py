@@ -19,7 +19,7 @@ from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Shape
 from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
-from evodesign.records import AgentDetail, CaseDetail
+from evodesign.records import AgentDetail, CaseDetail, Task
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Mesh, Tree
 
@@ -93,17 +93,21 @@ class ContactWrench:
 
 @dataclass(frozen=True, slots=True)
 class PlacedScene:
-    """One height: where everything is.
+    """One moment of a task: where everything is.
 
     Args:
-        height: of the load's centre [m].
+        task: that it belongs to.
+        time: since the task began [s].
+        place: what it is called: the load's height, and in a lift the time.
         models: robot, person and load.
         frames: world_from_link by agent and link name.
         world_from_load: of the load's box.
         wrenches: on robot and person.
     """
 
-    height: float
+    task: Task
+    time: float
+    place: str
     models: SceneModels
     frames: Mapping[str, Mapping[str, Placement]]
     world_from_load: Placement
@@ -150,9 +154,8 @@ def placed_scene(models: SceneModels, detail: CaseDetail) -> PlacedScene:
         placed = link_frames(models.trees[agent.name], world_from_agent @ base, posture.joints_rad)
         frames[agent.name] = placed
         wrenches += _wrenches(agent, posture, world_from_agent, placed)
-    height = detail.height_m
-    load = Placement(translation=(0.0, 0.0, height))
-    return PlacedScene(height, models, frames, load, tuple(wrenches))
+    load = Placement(translation=(0.0, 0.0, detail.height_m))
+    return PlacedScene(detail.case.task, detail.time_s, detail.place, models, frames, load, tuple(wrenches))
 
 
 def _wrenches(

@@ -11,9 +11,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
+from evodesign.pool.worker_process import WorkerProcess
 from tests.pool.tasks import (
     Alone,
     Hoards,
@@ -25,6 +27,7 @@ from tests.pool.tasks import (
     held,
     mark,
     process,
+    squares,
     unsendable,
 )
 from tests.processes import is_alive, wait_until_all_end
@@ -272,6 +275,24 @@ print(os.getpid())
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert not list(Path("/dev/shm").glob(f"*-{done.stdout.strip()}-*"))
+
+
+def test_processes_that_end_before_they_are_given_anything_are_an_argument_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Loky may notice that a process is dead before it takes the first argument."""
+    given: list[int] = []
+
+    def dead(self: WorkerProcess, index: int, argument: int) -> None:
+        given.append(index)
+        raise TerminatedWorkerError("gone")
+
+    monkeypatch.setattr(WorkerProcess, "_submit", dead)
+    worker = WorkerProcess(squares, "here")
+    end = worker.end(3, worker.begin(3, 2))
+    assert (end.index, end.value, end.worker_lost) == (3, None, True)
+    assert "worker process" in end.failure
+    assert given == [3, 3]
 
 
 def test_where_no_process_can_be_had_every_argument_says_so(tmp_path: Path) -> None:

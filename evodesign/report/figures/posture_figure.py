@@ -1,4 +1,4 @@
-"""Postures side by side, one panel per height: robot, person, load, and the contact forces as arrows.
+"""Postures side by side, one panel per height or moment of a lift: robot, person, load, and forces as arrows.
 
 Several people or loads have a row of panels each.
 
@@ -200,18 +200,23 @@ def posture_figure(stages: Sequence[PlacedScene], title: str, camera: Camera | N
 
 
 def _rows(stages: Sequence[PlacedScene]) -> list[list[PlacedScene | None]]:
-    """The stages of each person and load, at the same place those of a height; at least one row."""
+    """The stages of each person and load, at the same place those of a moment; at least one row."""
     pairs = [*dict.fromkeys(stage.models.label for stage in stages)]
     if len(pairs) < 2:
         return [[*stages]]
-    heights = sorted({stage.height for stage in stages})
-    found = {(stage.models.label, stage.height): stage for stage in stages}
-    return [[found.get((pair, height)) for height in heights] for pair in pairs]
+    moments = sorted({_moment(stage) for stage in stages})
+    found = {(stage.models.label, _moment(stage)): stage for stage in stages}
+    return [[found.get((pair, moment)) for moment in moments] for pair in pairs]
+
+
+def _moment(stage: PlacedScene) -> tuple[float, str, float]:
+    """Of whatever person and load, in the order of panels."""
+    return stage.task.heights[0], str(stage.task), stage.time
 
 
 def _heading(stage: PlacedScene) -> str:
-    height = f"load at {stage.height:g} m"
-    return f"{stage.models.label}\n{height}" if stage.models.label else height
+    place = f"load at {stage.place}"
+    return f"{stage.models.label}\n{place}" if stage.models.label else place
 
 
 def _paint(axes: Axes, stage: PlacedScene, view: Camera) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -11,10 +12,13 @@ from matplotlib.text import Annotation
 
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
+from evodesign.records import CaseDetail
 from evodesign.report.figures.joint_torques import joint_torques, torque_boxes
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, faces_of, posture_figure
-from tests.report.scenes import random_stages
+from evodesign.report.scene_models import placed_scene
+from evodesign.tasks import Lift
+from tests.report.scenes import random_cast, random_instant, random_stages
 
 TORQUES = {
     "old $robot$": {0.8: [0.0, 1.0, -2.0, 5.0], 1.0: [3.0, 3.5, -1.0, 0.25]},
@@ -61,6 +65,21 @@ def test_posture_figure_has_a_panel_per_height_and_an_arrow_per_contact(problem:
         ground, body = axes.collections
         assert len(ground.get_paths()) == 1
         assert len(body.get_paths()) > 500
+
+
+def test_a_lift_is_a_film_of_its_moments(problem: DesignProblem) -> None:
+    lift, rng = Lift(0.8, 1.2, 1.5), np.random.default_rng(5)
+    instants = tuple(
+        msgspec.structs.replace(random_instant(problem.scene, rng), time_s=time, load_height_m=height)
+        for time, height in ((0.0, 0.8), (0.75, 1.0), (1.5, 1.2))
+    )
+    moments = CaseDetail(case=problem.scene.case(lift), instants=instants).moments
+    stages = [placed_scene(random_cast(problem, 5), moment) for moment in moments]
+    assert titles(posture_figure(stages, "lift")) == [
+        "load at 0.8 m at 0 s",
+        "load at 1 m at 0.75 s",
+        "load at 1.2 m at 1.5 s",
+    ]
 
 
 def test_arrows_begin_where_forces_act_and_follow_them_on_one_scale(problem: DesignProblem) -> None:
