@@ -11,6 +11,7 @@ import os
 import re
 import signal
 import time
+import warnings
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -116,6 +117,10 @@ class WorkerProcess(Generic[A, R]):
     def _submit(self, index: int, argument: A) -> Future[Finished[R]]:
         if self._executor is None:
             _begin_resource_trackers()
+            # A worker that has grown by 300 MB, as with programs of lifts, is replaced between two arguments.
+            warnings.filterwarnings(
+                "ignore", message="A worker stopped while some jobs", category=UserWarning
+            )
             self._executor = ProcessPoolExecutor(
                 max_workers=1,
                 initializer=start_worker,

@@ -170,6 +170,20 @@ class Hoards:
         return lambda size: len(bytearray(size))
 
 
+class Grows:
+    """A task that keeps 200 MB each time, and gives its process."""
+
+    def __call__(self) -> Callable[[int], int]:
+        kept: list[bytes] = []
+
+        def grow(_: int) -> int:
+            kept.append(b"x" * 200_000_000)
+            time.sleep(1.1)
+            return os.getpid()
+
+        return grow
+
+
 def mark() -> Callable[[object], str]:
     """A task that reads how readily the system ends its process."""
     return lambda _: Path("/proc/self/oom_score_adj").read_text().strip()

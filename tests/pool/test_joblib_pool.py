@@ -295,6 +295,22 @@ def test_processes_that_end_before_they_are_given_anything_are_an_argument_lost(
     assert given == [3, 3]
 
 
+def test_a_worker_that_grew_is_replaced_without_a_word() -> None:
+    script = """
+from evodesign.pool.joblib_pool import JoblibPool
+from tests.pool.tasks import Grows
+with JoblibPool(1) as pool:
+    ends = list(pool.run(Grows(), range(5)))
+    assert [end.failure for end in ends] == [None] * 5
+    print(len({end.value for end in ends}))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert int(done.stdout) > 1
+
+
 def test_where_no_process_can_be_had_every_argument_says_so(tmp_path: Path) -> None:
     script = f"""
 import sys

@@ -20,7 +20,7 @@ const startFailures = () => {
       element("td", { class: "number", text: `${failure.count}` }),
       element(
         "td",
-        { style: "width:18%" },
+        { class: "share" },
         element("div", {
           class: "bar",
           style: `width:${(100 * failure.count) / most}%`,
@@ -28,15 +28,15 @@ const startFailures = () => {
         }),
       ),
       element("td", { class: "number", text: percent(failure.count / content.facts.evaluations) }),
-      element("td", { style: "width:40%", text: `Design ${failure.example}: ${failure.reason}` }),
+      element("td", { class: "example", text: `Design ${failure.example}: ${failure.reason}` }),
     ),
   );
   const heads = [
     ["Cause", ""],
     ["Designs", "number"],
-    ["", ""],
+    ["", "share"],
     ["of all", "number"],
-    ["First example", ""],
+    ["First example", "example"],
   ];
   place.append(
     element(
