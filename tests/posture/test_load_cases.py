@@ -208,6 +208,7 @@ def from_several(scene: Scene, problem: DesignProblem, starts: StartPortfolio, t
     return postures.solve(values, task, checker_of(scene, problem, values))
 
 
+@pytest.mark.slow
 def test_the_best_undisturbed_optima_lead_to_the_best_disturbed_one(
     problem: DesignProblem, several: StartPortfolio
 ) -> None:
@@ -222,6 +223,7 @@ def test_the_best_undisturbed_optima_lead_to_the_best_disturbed_one(
     assert 1 <= len(both.attempts) <= MOST_OPTIMA < len(several.starts)
 
 
+@pytest.mark.slow
 def test_where_no_undisturbed_optimum_leads_to_a_posture_every_start_is_tried(
     problem: DesignProblem, several: StartPortfolio
 ) -> None:

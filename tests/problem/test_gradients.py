@@ -116,6 +116,7 @@ def test_gradients_of_forty_designs_agree_with_differences(
     assert max(compared) < 1e-5
 
 
+@pytest.mark.slow
 def test_the_quick_gradients_are_the_exact_ones(problem: DesignProblem, known: Precomputed) -> None:
     """Of every objective, against five-point differences along the exact tangent (`sensitivities`)."""
     limits = dict.fromkeys(problem.scene.robot.joints, 30.0)

@@ -20,6 +20,7 @@ from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, NotCompiled, built, c
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
 from evodesign.nlp.native.elimination import elimination
+from evodesign.nlp.native.lanes import NAME, in_lanes, in_one_lane, lane_flags
 from evodesign.nlp.native.library import SELDOM_FLAGS
 from evodesign.nlp.native.pieces import in_pieces
 from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
@@ -38,11 +39,13 @@ class BlockFunctions:
 
     Args:
         library: that holds them.
+        lanes: how many repetitions they take at once.
         jacobian, hessian: rows and symbols of the entries that they give.
         work, integers: what they need.
     """
 
     library: ctypes.CDLL
+    lanes: int
     jacobian: tuple[Integers, Integers]
     hessian: tuple[Integers, Integers]
     work: int
@@ -64,11 +67,14 @@ def block_functions(block: Block, *, seldom: bool = False) -> BlockFunctions | N
     if isinstance(tools, NotCompiled):
         return tools
     expressions = ca.Function("block", block.arguments, block.values).serialize()
-    flags = SELDOM_FLAGS if seldom else FUNCTION_FLAGS
+    lanes = lane_flags(tools[0])
+    flags = (*(SELDOM_FLAGS if seldom else FUNCTION_FLAGS), *lanes)
 
     def texts() -> Mapping[str, str]:
         text = _c_text(block)
-        return {"functions.c": in_pieces(text) if seldom else text}
+        if lanes:
+            return {"functions.c": in_lanes(in_pieces(text))}
+        return {"functions.c": in_one_lane(in_pieces(text) if seldom else text)}
 
     try:
         found = built((code_digest(__name__), expressions), texts, flags, *tools)
@@ -125,8 +131,10 @@ def _c_text(block: Block) -> str:
 def _loaded(library: Library) -> BlockFunctions:
     made = [ca.external(name, str(library.path)) for name in ("values", "derivatives")]
     jacobian, hessian = (made[1].sparsity_out(place).get_triplet() for place in (3, 4))
+    loaded = ctypes.CDLL(str(library.path))
     return BlockFunctions(
-        library=ctypes.CDLL(str(library.path)),
+        library=loaded,
+        lanes=ctypes.c_int.in_dll(loaded, NAME).value,
         jacobian=(np.array(jacobian[0], int), np.array(jacobian[1], int)),
         hessian=(np.array(hessian[0], int), np.array(hessian[1], int)),
         work=max(function.sz_w() for function in made),
@@ -192,7 +200,7 @@ class NativeBlocks:
             blocks,
             variables=variables,
             rows=rows,
-            work=max(f.work + _kept_by(p, f) for p, f, _ in made),
+            work=max(f.lanes * (f.work + _kept_by(p, f)) for p, f, _ in made),
             integers=max(f.integers for f in functions),
             shared=shared,
         )
@@ -213,6 +221,7 @@ class NativeBlocks:
         block, memory = part.block, self._memory
         return BlockRecord(
             repetitions=part.times,
+            lanes=functions.lanes,
             symbols=block.symbols.numel(),
             own=block.own.numel(),
             rows=block.rows.numel(),
@@ -250,5 +259,7 @@ class NativeBlocks:
 
 
 def _kept_by(part: Repeated, functions: BlockFunctions) -> int:
-    """Numbers that the C keeps of one repetition: symbols, slopes, entries."""
-    return 2 * int(part.block.symbols.numel()) + len(functions.jacobian[0]) + len(functions.hessian[0])
+    """Numbers that the C keeps of a lane: cost, symbols, slopes, parameters, rows, multipliers, entries."""
+    block = part.block
+    numbers = 2 * block.symbols.numel() + block.own.numel() + block.shared.numel() + 2 * block.rows.numel()
+    return 1 + int(numbers) + len(functions.jacobian[0]) + len(functions.hessian[0])

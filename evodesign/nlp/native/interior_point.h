@@ -21,7 +21,8 @@ typedef struct {
 /* A part of a program that repeats: repetition k has f(y_k, p_k, s) and g(y_k, p_k, s) with y_k = A_k x + b_k, p_k
    numbers of its own and s numbers that all share. The image is stored by rows, one repetition after the other. */
 typedef struct {
-    int repetitions, symbols, own, rows, jacobian_entries, hessian_entries;
+    int repetitions, lanes; /* how many the functions take at once */
+    int symbols, own, rows, jacobian_entries, hessian_entries;
     Function values;      /* (y, p, s) -> f, g */
     Function derivatives; /* (y, p, s, multipliers) -> f, grad f, g, jacobian, hessian */
     const int *image_starts, *image_columns;

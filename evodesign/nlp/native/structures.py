@@ -30,7 +30,7 @@ class BlockRecord(ctypes.Structure):
     """The C's `Block`."""
 
     _fields_ = (
-        *_all_of(ctypes.c_int, "repetitions symbols own rows jacobian_entries hessian_entries"),
+        *_all_of(ctypes.c_int, "repetitions lanes symbols own rows jacobian_entries hessian_entries"),
         *_all_of(ctypes.c_void_p, "values derivatives"),
         *_all_of(_Integers, "image_starts image_columns"),
         *_all_of(_Reals, "image constants"),
