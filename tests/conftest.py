@@ -54,9 +54,14 @@ def slow_ones_sooner(items: list[pytest.Item], workers: int) -> list[pytest.Item
     """The tests in an order in which no worker is left with a slow one when the others are through.
 
     Each begins with a share of the list, one after the other; whoever ends steals from another's end. So
-    modules with slow tests come first in every share, each module whole.
+    modules with slow tests or a browser come first in every share, each module whole.
     """
-    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    slow = {
+        item.path
+        for item in items
+        for marker in ("slow", "needs_chromium")
+        if item.get_closest_marker(marker)
+    }
     kinds = [[item for item in items if (item.path in slow) is first] for first in (True, False)]
     ordered: list[pytest.Item] = []
     for worker in range(workers):

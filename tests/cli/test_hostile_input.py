@@ -69,7 +69,8 @@ def fixed(name: str, parent: str, y: float) -> str:
     )
 
 
-@pytest.mark.parametrize("spread", [0.001, pytest.param(0.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("spread", [0.001, 0.0])
 def test_a_robot_with_three_thousand_fixed_children_is_read_within_bounds(spread: float, place: Path) -> None:
     ys = [spread * (1 + n // 2) * (1 if n % 2 else -1) for n in range(3_000)]
     problem = robot_with(place, "".join(fixed(f"extra{n}", "root_link", y) for n, y in enumerate(ys)))

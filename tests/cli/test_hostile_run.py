@@ -248,7 +248,13 @@ CONTENTS: dict[str, Callable[[], bytes]] = {
 }
 
 
-@pytest.mark.parametrize("name", CONTENTS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        *[*CONTENTS][:5],
+        *(pytest.param(name, marks=pytest.mark.slow) for name in [*CONTENTS][5:]),
+    ],
+)
 def test_crafted_content_with_right_checksums_costs_itself_and_nothing_else(
     name: str, work: Path, every_command: EveryCommand
 ) -> None:

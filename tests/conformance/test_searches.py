@@ -106,6 +106,7 @@ class TestEverySearch:
             resumed.tell([mixed(genome, 2) for genome in genomes])
         assert run(resumed, 4) == whole[5:]
 
+    @pytest.mark.slow
     def test_another_process_asks_for_the_same_genomes_bit_for_bit(self, algorithm):
         search = make_search(settings(algorithm, objectives=1))
         asked = run(search, 6, 1, lambda genome, _: Outcome((genome[0] + genome[1] ** 2,), 0.0))

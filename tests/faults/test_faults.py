@@ -20,7 +20,7 @@ from tests.faults.synthetic import Size
 from tests.faults.trials import KINDS, Outcome
 
 
-@pytest.mark.parametrize("asynchronous", [False, True])
+@pytest.mark.parametrize("asynchronous", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_killed_search_loses_nothing_reported_and_goes_on_as_if_never_killed(
     asynchronous: bool, tmp_path: Path
 ) -> None:

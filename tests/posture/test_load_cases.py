@@ -233,6 +233,7 @@ def test_where_no_undisturbed_optimum_leads_to_a_posture_every_start_is_tried(
     assert len({attempt.start for attempt in solution.attempts}) >= len(several.starts)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_held_undisturbed_is_not_tried_with_disturbances(
     problem: DesignProblem, several: StartPortfolio
 ) -> None:
