@@ -215,7 +215,7 @@ def _most_designs(details: Collection[Detail]) -> int:
     cases = [each for detail in details for each in detail.cases]
     lifts = any(isinstance(each.case.task, Lift) for each in cases)
     disturbed = max((len(instant.disturbed) for each in cases for instant in each.instants), default=0)
-    many = pairs * (1 + disturbed) * (2 if lifts else 1)
+    many = pairs * (1 + disturbed) * (3 if lifts else 1)
     return MOST_POSTURES if many < 2 else max(MOST_POSTURES // many, MOST_POSTURES // 5)
 
 

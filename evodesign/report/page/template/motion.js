@@ -83,7 +83,7 @@ const drawOverTime = (place, times, lines, title) => {
       height: 210 + 16 * Math.ceil(lines.length / 3),
       showlegend: true,
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: plotFont() },
-      margin: { l: 46, r: 6, t: 30, b: 38 },
+      margin: { l: 58, r: 6, t: 30, b: 38 },
       xaxis: plotAxis("time [s]"),
       yaxis: plotAxis(title, { zeroline: true, zerolinecolor: colour("faint") }),
     }),
@@ -129,7 +129,7 @@ const drawPressure = (place, { times, postures }, agent, person) => {
     traces,
     plotLayout({
       height: 270,
-      margin: { l: 46, r: 6, t: 10, b: 38 },
+      margin: { l: 58, r: 6, t: 10, b: 38 },
       xaxis: plotAxis("to the right [m]", { zeroline: false, dtick: 0.1 }),
       yaxis: plotAxis("forward [m]", { zeroline: false, scaleanchor: "x", dtick: 0.1 }),
     }),
