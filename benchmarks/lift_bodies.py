@@ -8,8 +8,8 @@ their holds [s], and why others were not found.
 
     python -m benchmarks.lift_bodies [--problem point-grasp] [--designs 12] [--ways apart overlapping]
 
-`point-grasp` is the point-grasp problem with a [collisions] table, `point-grasp-pushed` that with a push of
-20 N; other problems are files.
+`point-grasp` is that problem with a [collisions] table, `point-grasp-disturbed` the one with a push
+of 20 N, `point-grasp-pushed` the one with both; other problems are files.
 """
 
 from __future__ import annotations
@@ -40,9 +40,11 @@ from evodesign.records import Hold
 from evodesign.tasks import Lift
 
 COLLISIONS = "\n[collisions]\n"
+PUSH = "\n[[disturbance]]\npush_n = [-20.0, 0.0, 0.0]\n"
 VARIANTS: Mapping[str, str] = {
     "point-grasp": COLLISIONS,
-    "point-grasp-pushed": f"{COLLISIONS}\n[[disturbance]]\npush_n = [-20.0, 0.0, 0.0]\n",
+    "point-grasp-disturbed": PUSH,
+    "point-grasp-pushed": COLLISIONS + PUSH,
 }
 """What is added to the point-grasp problem."""
 LIFT = Lift(0.8, 1.2, 1.5)
