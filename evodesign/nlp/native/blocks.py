@@ -20,7 +20,7 @@ from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, NotCompiled, built, c
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
 from evodesign.nlp.native.elimination import elimination
-from evodesign.nlp.native.lanes import NAME, in_lanes, in_one_lane, lane_flags
+from evodesign.nlp.native.lanes import LANES_SYMBOL, in_lanes, in_one_lane, lane_flags
 from evodesign.nlp.native.library import SELDOM_FLAGS
 from evodesign.nlp.native.pieces import in_pieces
 from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
@@ -134,7 +134,7 @@ def _loaded(library: Library) -> BlockFunctions:
     loaded = ctypes.CDLL(str(library.path))
     return BlockFunctions(
         library=loaded,
-        lanes=ctypes.c_int.in_dll(loaded, NAME).value,
+        lanes=ctypes.c_int.in_dll(loaded, LANES_SYMBOL).value,
         jacobian=(np.array(jacobian[0], int), np.array(jacobian[1], int)),
         hessian=(np.array(hessian[0], int), np.array(hessian[1], int)),
         work=max(function.sz_w() for function in made),

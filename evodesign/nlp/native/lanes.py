@@ -17,12 +17,12 @@ from pathlib import Path
 
 from evodesign.nlp.codegen import Compiler
 
-__all__ = ["LANES", "NAME", "in_lanes", "in_one_lane", "lane_flags"]
+__all__ = ["LANES", "LANES_SYMBOL", "in_lanes", "in_one_lane", "lane_flags"]
 
 LANES = 4
 """Arguments that are worked on at once."""
 
-NAME = "evodesign_lanes"
+LANES_SYMBOL = "evodesign_lanes"
 """Of the number in a library that says how many lanes its functions have."""
 
 CALLS = {"casadi_sq": "x * x", "casadi_fabs": "fabs(x)"} | {
@@ -70,12 +70,12 @@ def in_lanes(text: str) -> str:
     if len(taken) < len(changed):
         return in_one_lane(text)
     head, include, rest = "\n".join(taken).partition("#include <math.h>\n")
-    return f"{head}{include}{HEAD}{rest}\nconst int {NAME} = {LANES};\n"
+    return f"{head}{include}{HEAD}{rest}\nconst int {LANES_SYMBOL} = {LANES};\n"
 
 
 def in_one_lane(text: str) -> str:
     """The same C with the number of its lanes."""
-    return f"{text}\nconst int {NAME} = 1;\n"
+    return f"{text}\nconst int {LANES_SYMBOL} = 1;\n"
 
 
 def _in_lanes(line: str) -> str | None:

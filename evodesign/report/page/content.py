@@ -256,8 +256,8 @@ class DesignContent(Part, frozen=True):
         cases: how each ended.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
-        resting: torques of lifts if nothing moved, by moment, agent and joint [N m]; likewise, none where no
-            load is lifted.
+        static_torques: those of lifts if nothing moved, by moment, agent and joint [N m]; likewise, none
+            where no load is lifted.
         torque_limits: of the robot's joints that have a limit [N m].
         links, joints: those that differ from the unscaled robot's, by index.
         gradients: of each objective by parameter; empty when the log has none.
@@ -271,7 +271,7 @@ class DesignContent(Part, frozen=True):
     cases: tuple[CaseOutcome, ...]
     postures: tuple[CaseDetail, ...] = ()
     clearances: tuple[ClearanceContent, ...] = ()
-    resting: tuple[tuple[dict[str, dict[str, float]], ...], ...] = ()
+    static_torques: tuple[tuple[dict[str, dict[str, float]], ...], ...] = ()
     torque_limits: dict[str, float] = {}
     links: dict[int, LinkBody] = {}
     joints: dict[int, JointBody] = {}

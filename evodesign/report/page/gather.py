@@ -35,7 +35,7 @@ from evodesign.report.page.content import (
 from evodesign.report.page.downloads import Downloads, rounded
 from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
-from evodesign.report.page.over_time import RestingTorques
+from evodesign.report.page.static_torques import StaticTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
@@ -256,13 +256,13 @@ class _Known:
 
     problem: DesignProblem
     clearances: Clearances
-    resting: RestingTorques
+    statics: StaticTorques
     downloads: Downloads
 
     @classmethod
     def of(cls, problem: DesignProblem, run: RunLog) -> _Known:
         scenes = problem.scenes
-        return cls(problem, Clearances(scenes), RestingTorques(scenes), Downloads(problem, run))
+        return cls(problem, Clearances(scenes), StaticTorques(scenes), Downloads(problem, run))
 
 
 def _design(
@@ -282,9 +282,10 @@ def _design(
     robot = problem.space.resized(problem.scene.robot.tree, values)
     postures = tuple(each.thinned(MOMENTS) for each in detail.cases)
     try:
-        found, resting = known.clearances.of(robot, detail.cases), known.resting.of(robot, postures)
+        found = known.clearances.of(robot, detail.cases)
+        static_torques, limits = known.statics.of(robot, postures)
     except RunError:  # postures of strangers, whom the page does not draw
-        found, resting = [], ()
+        found, static_torques, limits = [], (), {}
     nearest = tuple(
         ClearanceContent(first=each.first, second=each.second, distance_m=each.distance) for each in found
     )
@@ -293,8 +294,8 @@ def _design(
             cases=cases,
             postures=postures,
             clearances=nearest,
-            resting=resting,
-            torque_limits=known.resting.limits(robot),
+            static_torques=static_torques,
+            torque_limits=limits,
             links=links,
             joints=joints,
             hardware=hardware_content(problem, robot, detail.cases),

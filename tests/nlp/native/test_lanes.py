@@ -14,7 +14,7 @@ from evodesign.nlp.blocks import Block, Repeated
 from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, find_compiler
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native import blocks
-from evodesign.nlp.native.lanes import LANES, NAME, in_lanes, lane_flags
+from evodesign.nlp.native.lanes import LANES, LANES_SYMBOL, in_lanes, lane_flags
 from evodesign.nlp.native.pieces import in_pieces
 from evodesign.nlp.repeated import RepeatedProgram
 from tests.nlp.native.test_pieces import compiled
@@ -43,7 +43,7 @@ def block(number: int) -> Block:
 def test_each_lane_has_the_bits_of_the_function(longest: int, tmp_path: Path) -> None:
     text = blocks._c_text(block(0))
     whole = in_lanes(in_pieces(text, longest))
-    assert f"{NAME} = {LANES};" in whole
+    assert f"{LANES_SYMBOL} = {LANES};" in whole
     assert ("kept[" in whole) is (longest == 15)
     flags = (*FUNCTION_FLAGS, "-Wno-psabi")
     plain = ca.external("derivatives", compiled(text, FUNCTION_FLAGS, tmp_path / "plain"))
@@ -97,7 +97,7 @@ def test_what_lanes_cannot_do_is_done_in_one() -> None:
         "choosing", seen, none, none, ca.if_else(seen[0] > 0.0, seen[1], 2.0), seen, -np.ones(2), np.ones(2)
     )
     text = blocks._c_text(choosing)
-    assert in_lanes(text) == f"{text}\nconst int {NAME} = 1;\n"
+    assert in_lanes(text) == f"{text}\nconst int {LANES_SYMBOL} = 1;\n"
 
 
 def test_only_gcc_is_asked_for_lanes() -> None:

@@ -30,7 +30,7 @@ from evodesign.records import (
     Status,
 )
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.over_time import RestingTorques
+from evodesign.report.page.static_torques import StaticTorques
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
@@ -184,5 +184,7 @@ def test_centres_of_pressure_are_where_the_ground_pushes(
 def test_limits_of_torques_are_told_beside_the_joints(problem: DesignProblem) -> None:
     robot = replace(problem.scene.robot, torque_limits={"l_knee": 40.0}, limits_torques=True)
     limited = [replace(scene, robot=robot) for scene in problem.scenes]
-    assert RestingTorques(limited).limits(robot.tree) == {"l_knee": 40.0}
-    assert RestingTorques(problem.scenes).limits(robot.tree) == {}
+    cases = [moved(problem)]
+    assert StaticTorques(limited).of(robot.tree, cases)[1] == {"l_knee": 40.0}
+    assert StaticTorques(problem.scenes).of(robot.tree, cases)[1] == {}
+    assert StaticTorques(limited).of(robot.tree, []) == ((), {})

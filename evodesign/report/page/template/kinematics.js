@@ -55,11 +55,14 @@ const between = (from, to, share) => {
   };
 };
 
-// Force of the ground on a foot, at its centre of pressure (-m_y, m_x) / f_z of the sole, in the world.
+// Centre of pressure (-m_y, m_x) / f_z in a sole; nothing where the ground does not push.
+const centreOfPressure = ([, , fz, mx, my]) => (fz > 1e-6 ? [-my / fz, mx / fz, 0] : null);
+
+// Force of the ground on a foot, at its centre of pressure, in the world.
 const groundForces = (tree, poses, posture) =>
   Object.entries(tree.soles).map(([side, sole]) => {
-    const [fx, fy, fz, mx, my] = posture.foot_wrenches[side];
-    const pressure = fz > 1e-6 ? [-my / fz, mx / fz, 0] : [0, 0, 0];
+    const wrench = posture.foot_wrenches[side];
+    const pressure = centreOfPressure(wrench) ?? [0, 0, 0];
     const { rotation, position } = poses[sole];
-    return { at: plus(position, turned(rotation, pressure)), force: turned(rotation, [fx, fy, fz]) };
+    return { at: plus(position, turned(rotation, pressure)), force: turned(rotation, wrench.slice(0, 3)) };
   });

@@ -12,7 +12,7 @@ const LIFT_HINT = `The ${MOST_LINES} joints with the largest torques, with their
 const momentsOf = (design, at) => {
   const own = everyStop.filter((stop) => taskTexts[stop] === taskTexts[at.stop]);
   const postures = own.map((stop) => postureAt(design, { ...at, stop }));
-  const resting = design.resting?.[design.postures.findIndex((one) => isOf(one, at))] ?? [];
+  const resting = design.static_torques?.[design.postures.findIndex((one) => isOf(one, at))] ?? [];
   return { times: own.map((stop) => stops[stop].time_s), postures, resting };
 };
 
@@ -93,15 +93,14 @@ const drawOverTime = (place, times, lines, title) => {
 
 const FEET = { left: -1, right: 1 };
 
-// Both soles from above, toes up, and the way of the point at which the ground's force acts, (-m_y, m_x) / f_z.
+// Both soles from above, toes up, and the way of their centres of pressure.
 const drawPressure = (place, { times, postures }, agent, person) => {
   const tree = agent === "robot" ? content.bodies.robot : content.bodies.people[person];
   const [length, width] = tree.sole_size_m;
   const [long, wide] = [length / 2, width / 2];
   const traces = Object.entries(FEET).flatMap(([side, sign], index) => {
     const middle = sign * 0.75 * width;
-    const wrenches = postures.map((posture) => posture.agents[agent].foot_wrenches[side]);
-    const loaded = wrenches.map(([, , fz]) => fz > 1e-6);
+    const centres = postures.map((posture) => centreOfPressure(posture.agents[agent].foot_wrenches[side]));
     const outline = {
       type: "scatter",
       mode: "lines",
@@ -115,8 +114,8 @@ const drawPressure = (place, { times, postures }, agent, person) => {
       type: "scatter",
       mode: "lines+markers",
       name: `centre of pressure, ${side}`,
-      x: wrenches.map(([, , fz, mx], moment) => (loaded[moment] ? middle - mx / fz : null)),
-      y: wrenches.map(([, , fz, , my], moment) => (loaded[moment] ? -my / fz : null)),
+      x: centres.map((centre) => centre && middle - centre[1]),
+      y: centres.map((centre) => centre && centre[0]),
       text: times.map((time) => `${figure(time, 3)} s`),
       hoverinfo: "text",
       line: { color: colour(index ? "second" : "accent"), width: 1.6 },
