@@ -27,6 +27,7 @@ from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.design_result import DesignResult
@@ -82,7 +83,8 @@ class Judge:
         self.problem = problem
         self._starts = starts
         self._evaluator = Evaluator(problem, known)
-        settings = [Setting(each, problem.space, problem.weights, problem.options) for each in problem.scenes]
+        scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
+        settings = [Setting(each, problem.space, problem.weights, problem.options) for each in scenes]
         self._first, self._joint = (
             {each.scene.pair: PostureProblem(each, problem.symmetry, given) for each in settings}
             for given in (known, Precomputed())

@@ -113,15 +113,18 @@ class Parted:
             held: numbers of each meeting.
             found: new ones, by place.
         """
-        counts = [len(directed(each.body.form)) for each in self._bodies]
-        ends = np.cumsum([0, *counts])
         named: dict[str, Array] = {}
         for place, new in found.items():
-            body = int(np.searchsorted(ends, place, side="right")) - 1
-            begin, end = ends[body : body + 2].tolist()
+            body = int(np.searchsorted(self._ends, place, side="right")) - 1
+            begin, end = self._ends[body : body + 2].tolist()
             own = named.setdefault(self._bodies[body].name, np.array(held[begin:end], float).ravel())
             own[NUMBERS * (place - begin) : NUMBERS * (place - begin + 1)] = new
         return named
+
+    @cached_property
+    def _ends(self) -> Places:
+        """Where each body's meetings begin among all, and where the last one's end."""
+        return np.cumsum([0, *(len(directed(each.body.form)) for each in self._bodies)])
 
     @cached_property
     def _meetings(self) -> Meetings:

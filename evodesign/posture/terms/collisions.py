@@ -25,7 +25,7 @@ part boxes: Gottschalk, Lin and Manocha, OBBTree (1996). The residual is coal's.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -51,6 +51,7 @@ from evodesign.posture.terms.base import (
 )
 from evodesign.tree.kinematics import Expression, Pose, pose_from
 from evodesign.tree.model import Tree
+from evodesign.tree.symmetry import Mirror
 
 __all__ = [
     "CLEAR",
@@ -107,15 +108,16 @@ class Meeting:
 def meetings(form: Form) -> tuple[Meeting, ...]:
     """The meetings of a form, once each: of mirror images one stands for both."""
     rules = form.agent.collisions
-    return () if rules is None else tuple(dict.fromkeys(_meeting(form, pair) for pair in rules.parted))
+    if rules is None:
+        return ()
+    kept = form.part(form.agent.tree)[0].link_by_name
+    return tuple(dict.fromkeys(_meeting(form.mirror, kept, pair) for pair in rules.parted))
 
 
-def _meeting(form: Form, pair: BodyPair) -> Meeting:
+def _meeting(mirror: Mirror | None, kept: Collection[str], pair: BodyPair) -> Meeting:
     first, second = pair
-    mirror = form.mirror
     if mirror is None:
         return Meeting(MeetingKind.PLANE if second in PLANES else MeetingKind.DIRECTION, first, second)
-    kept = form.part(form.agent.tree)[0].link_by_name
     if second == LOAD or second in PLANES:
         first = first if first in kept else mirror.links[first]
         return Meeting(MeetingKind.PLANE if second in PLANES else MeetingKind.DIRECTION, first, second)
