@@ -83,8 +83,8 @@ class Judge:
         self.problem = problem
         self._starts = starts
         self._evaluator = Evaluator(problem, known)
-        scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
-        settings = [Setting(each, problem.space, problem.weights, problem.options) for each in scenes]
+        self.scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
+        settings = [Setting(each, problem.space, problem.weights, problem.options) for each in self.scenes]
         self._first, self._joint = (
             {each.scene.pair: PostureProblem(each, problem.symmetry, given) for each in settings}
             for given in (known, Precomputed())

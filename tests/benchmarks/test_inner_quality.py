@@ -31,6 +31,14 @@ def test_reachable_heights_are_solved_and_about_as_good_as_the_best_of_many_star
     assert figures["within_1_percent_share"] >= 0.99
 
 
+@pytest.mark.slow
+def test_random_starts_are_solved_with_the_bodies_apart_that_the_problem_keeps_apart() -> None:
+    judge = judge_of("problems/icub_lifting.toml", 1)
+    assert len(judge.scenes) == 2
+    for scene in judge.scenes:
+        assert all(agent.collisions and agent.collisions.parted for agent in (scene.robot, scene.human))
+
+
 @pytest.mark.parametrize("variant", [name for name in VARIANTS if name != DEFAULT])
 def test_variants_of_the_default_problem_are_solved_whole(variant: str) -> None:
     assert problem_at(HEIGHTS, variant).symmetry is Symmetry.OFF
