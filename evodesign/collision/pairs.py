@@ -24,7 +24,7 @@ from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.tree.frames import link_frames, link_poses
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["checked_pairs", "collision_pairs", "holding_links"]
+__all__ = ["checked_pairs", "collision_pairs", "feet_pairs", "holding_links"]
 
 BETWEEN, AXES = 1, 3
 """Links with a body, or joints that move, between two neighbours."""
@@ -76,6 +76,22 @@ def collision_pairs(
         *(_always_in_touch(each, joints, pairs) for each in (tree, *resized))
     )
     return tuple(pair for pair in pairs if pair not in always)
+
+
+def feet_pairs(
+    tree: Tree, joints: Collection[str], soles: Mapping[str, str], checked: Collection[BodyPair]
+) -> tuple[BodyPair, ...]:
+    """Each part of a foot with that of the other foot, of the pairs that must not overlap.
+
+    Args:
+        tree: of the agent.
+        joints: that move.
+        soles: frames under the feet, by side.
+        checked: pairs that must not overlap.
+    """
+    feet = [[*_foot(tree, joints, sole)] for sole in soles.values()]
+    both = {frozenset(pair) for one, other in combinations(feet, 2) for pair in zip(one, other, strict=False)}
+    return tuple(pair for pair in checked if frozenset(pair) in both)
 
 
 def holding_links(tree: Tree, joints: Collection[str], hands: Mapping[str, str]) -> frozenset[str]:

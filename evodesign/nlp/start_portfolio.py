@@ -32,13 +32,18 @@ __all__ = [
     "StartPortfolio",
     "StartResult",
     "Training",
+    "chosen",
     "spread_designs",
     "start_portfolio",
-    "widened",
 ]
 
 NEAR = (0.01, 1e-4)
 """How far above the best optimum of a posture another one is still good: 1 %; near zero 0.1 N m."""
+
+GOOD_ENOUGH = 0.99
+"""Share of designs served with which a portfolio is good enough."""
+
+REFUSED = "the check refuses it"
 
 Costs = NDArray[np.float64]
 Design = tuple[float, ...]
@@ -64,7 +69,7 @@ class Training:
     candidates: int = 8
     portfolio: int = 6
     rounds: int = 3
-    share: float = 0.99
+    share: float = GOOD_ENOUGH
 
 
 class StartResult(Protocol):
@@ -118,6 +123,7 @@ class Landscape:
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
             and in the cost's unit.
         parted: whether rows that are switched off at first elsewhere are on from the beginning.
+        accepted: whether a solution of a design counts; left out, each does.
     """
 
     solver: Solver
@@ -126,13 +132,17 @@ class Landscape:
     relative: float
     absolute: float
     parted: bool = False
+    accepted: Callable[[Design, RawSolution], bool] | None = None
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
         parameters = {"design": design, **self.beside}
         if self.parted:
             start = self.solver.parted_start(parameters, start)
-        return self.solver.settled(parameters, self.solver.solve(parameters, start))
+        found = self.solver.settled(parameters, self.solver.solve(parameters, start))
+        if found.status is Status.SOLVED and self.accepted is not None and not self.accepted(design, found):
+            return replace(found, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
+        return found
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
         """Which costs are close enough to the best ones."""
@@ -206,32 +216,54 @@ def start_portfolio(landscape: Searched, designs: Iterator[Design], training: Tr
     return StartPortfolio(chosen, coverage)
 
 
-def widened(
-    portfolio: StartPortfolio, offers: Sequence[Start], cases: Iterator[tuple[Searched, Design]], most: int
+def chosen(
+    landscape: Landscape, offers: Sequence[Start], designs: Sequence[Design], most: int
 ) -> StartPortfolio:
-    """The portfolio with those offered starts that serve cases which its own do not.
+    """The fewest of some starts that serve designs as well as all of them do.
+
+    Half of the designs are chosen with, the others examined; where those are not served well enough, starts
+    are added that serve them.
 
     Args:
-        portfolio: of one of the landscapes.
-        offers: starts of similar landscapes.
-        cases: that are to be served.
+        landscape: in which they are to serve.
+        offers: starts of this landscape and of similar ones.
+        designs: to choose and examine with.
         most: starts that the portfolio may hold.
     """
-    starts = (*portfolio.starts, *offers)
-    good = np.array([_served(*case, starts) for case in cases], bool).reshape(-1, len(starts))
-    chosen = list(range(len(portfolio.starts)))
-    while len(chosen) < most:
-        served = good[~good[:, chosen].any(axis=1)].sum(axis=0)
-        if not served.any():
+    ends = [[landscape.solve(design, start) for start in offers] for design in designs]
+    costs = np.array([[_cost(end) for end in row] for row in ends]).reshape(-1, len(offers))
+    work = np.array([[end.iterations for end in row] for row in ends]).reshape(-1, len(offers)).mean(axis=0)
+    best = costs.min(axis=1, initial=np.inf)
+    held = np.isfinite(best)
+    costs, best = costs[held], best[held]
+    good = np.isfinite(costs) & landscape.good(costs, best[:, None])
+    half = len(good) // 2
+    few = _cover((), good[:half], work, most)
+    served = good[half:][:, few].any(axis=1)
+    short = costs[half:][:, few].min(axis=1, initial=np.inf) - best[half:]
+    coverage = Coverage(len(served), int(served.sum()), float(np.max(short[np.isfinite(short)], initial=0.0)))
+    if coverage.share < GOOD_ENOUGH:
+        few = _cover(few, good, work, most)
+    return StartPortfolio(tuple(offers[place] for place in few), coverage)
+
+
+def _cover(begun: Sequence[int], good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
+    """Starts, some given, until no other one serves a design that they do not: those that serve most first.
+
+    Args:
+        begun: columns that are taken already.
+        good: whether a start (column) serves a design (row).
+        work: iterations of each start, of which the fewest are best where as many are served.
+        most: starts at most.
+    """
+    found = [*begun]
+    while len(found) < most and good.size:
+        served = good[~good[:, found].any(axis=1)].sum(axis=0)
+        place = max(range(len(work)), key=lambda each: (served[each], -work[each]))
+        if not served[place]:
             break
-        chosen.append(int(np.argmax(served)))
-    return StartPortfolio(tuple(starts[place] for place in chosen), portfolio.coverage)
-
-
-def _served(landscape: Searched, design: Design, starts: Sequence[Start]) -> NDArray[np.bool_]:
-    """Which starts lead close to the best optimum that any of them leads to."""
-    costs = np.array([_cost(landscape.solve(design, start)) for start in starts])
-    return np.asarray(np.isfinite(costs) & landscape.good(costs, costs.min()))
+        found.append(place)
+    return found
 
 
 def spread_designs(

@@ -188,6 +188,21 @@ class Checker:
             self._solids[key] = SceneBodies(solids, self._scene.payload.size) if solids else None
         return self._solids[key]
 
+    def overlaps(self, instants: Sequence[Instant], load_heights: Sequence[float]) -> bool:
+        """Whether bodies that must not do so overlap in postures, with the load's centre at heights [m]."""
+        solids = self._bodies()
+        if solids is None:
+            return False
+
+        def deepest(instant: Instant, height: float) -> float:
+            poses = {
+                model.agent.name: (model.agent.sign, model.at(instant.postures[model.agent.name]).poses)
+                for model in self._models
+            }
+            return min((gap.distance for gap in solids.near(poses, height)), default=0.0)
+
+        return any(deepest(*each) < -TOLERANCE for each in zip(instants, load_heights, strict=True))
+
     def residuals(
         self, instant: Instant, load_height: float, motion: SceneMotion = AT_REST
     ) -> tuple[Residual, ...]:

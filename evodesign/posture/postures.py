@@ -179,10 +179,25 @@ class PostureProblem:
         formulation = self._formulation(name, task, self._methods(name)[0])
         return formulation.derivative(design, solution, exact=exact)
 
-    def landscape(self, task: Task) -> Landscape:
-        """The cost for a task of the formulation that is tried first, of which portfolios are made."""
+    def landscape(
+        self, task: Task, checker_of: Callable[[Sequence[float]], Checker] | None = None
+    ) -> Landscape:
+        """The cost for a task of the formulation that is tried first, of which portfolios are made.
+
+        Args:
+            task: of the problem.
+            checker_of: the check of a design, by which postures count where no bodies overlap; left out, or
+                where the person is not in the program, all count.
+        """
         name, _ = next(self._in_turn(task))
-        return self._formulation(name, task, self._methods(name)[0]).landscape(task)
+        formulation = self._formulation(name, task, self._methods(name)[0])
+        found = formulation.landscape(task)
+        if checker_of is None or not isinstance(formulation, JointPostures):
+            return found
+        return replace(
+            found,
+            accepted=lambda design, raw: formulation.keeps_clear(raw, task, checker_of(design)),
+        )
 
     def _trials(
         self,
@@ -195,10 +210,14 @@ class PostureProblem:
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn: from its portfolio, and then from what else is known.
 
+        A neighbour's solution counts among those of other tasks where starts were chosen for this very case.
         Where all starts ended at postures that violate the constraints no more than any near them, no other
         method is asked: IPOPT solves no such height either (docs/benchmarks.md). Nor where bodies overlap
         that no row keeps apart.
         """
+        known, pair = self._known, self._setting.scene.pair
+        if neighbour is not None and not neighbour.unchecked and known.is_chosen(pair, task):
+            others, neighbour = (neighbour, *others), None
         for name, portfolio in self._in_turn(task):
             for method in self._methods(name):
                 formulation = self._formulation(name, task, method)
@@ -221,7 +240,7 @@ class PostureProblem:
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""
-        portfolio = self._known.starts(task)
+        portfolio = self._known.starts(self._setting.scene.pair, task)
         if self._symmetry is Symmetry.OFF:
             yield WHOLE, portfolio
             if portfolio:

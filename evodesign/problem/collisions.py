@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
-from evodesign.collision.pairs import checked_pairs
+from evodesign.collision.pairs import checked_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
@@ -56,8 +56,9 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     for pair in table.part:
         if pair[0] in names and (pair[1] in names or pair[1] == LOAD or pair[1] in PLANES):
             own.setdefault(frozenset(pair), pair)
-    parted = tuple(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own)
-    return CollisionRules(table.margin_m, tuple(own.values()), parted)
+    feet = feet_pairs(agent.tree, agent.joints, agent.soles, checked)
+    parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
+    return CollisionRules(table.margin_m, tuple(own.values()), tuple(dict.fromkeys(parted)))
 
 
 def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:

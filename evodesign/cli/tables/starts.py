@@ -29,10 +29,15 @@ def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[st
         return
     yield "highest load", known.highest, "m"
     yield "lowest load", known.lowest, "m"
-    for task in problem.holds:
-        yield f"posture at {task}", known.postures[task], "100 N^2 m^2"
-    for case, found in known.lifts.items():
-        yield ", ".join(part for part in (f"lift from {case.task}", case.label) if part), found, "100 N^2 m^2"
+    of_all = {f"posture at {case.task}": found for case, found in known.postures.items()}
+    own = {_named(f"posture at {case.task}", case): found for case, found in known.chosen.items()}
+    lifts = {_named(f"lift from {case.task}", case): found for case, found in known.lifts.items()}
+    for name, found in {**(own or of_all), **lifts}.items():
+        yield name, found, "100 N^2 m^2"
+
+
+def _named(subject: str, case: Case) -> str:
+    return ", ".join(part for part in (subject, case.label) if part)
 
 
 def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:

@@ -45,12 +45,13 @@ NO_PART_OF_A_PERSONS: Exceptions = {
     Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
 }
 
-NO_PART_OF_WIDER: Exceptions = {
+NO_PART_OF_CHOSEN: Exceptions = {
     **NO_PART_OF_PIECES,
     PrecomputeSetting: {
-        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "scenes"
+        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name == "symmetry"
     },
 }
+"""A choice is made of the starts of all scenes at all tasks."""
 
 NO_PART_OF_MEETINGS: Exceptions = {
     **NO_PART_OF_PIECES,
@@ -80,7 +81,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.LOWEST: NO_PART_OF_PIECES,
     **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
     Subject.POSTURE: NO_PART_OF_PIECES,
-    Subject.WIDER: NO_PART_OF_WIDER,
+    Subject.CHOSEN: NO_PART_OF_CHOSEN,
     Subject.LIFT: NO_PART_OF_PARTED,
 }
 """Fields on which a piece does not depend, by its subject, with the reason."""

@@ -14,8 +14,11 @@ import msgspec
 import numpy as np
 
 from evodesign.collision.rules import BodyPair
+from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.start_portfolio import StartPortfolio, Training, spread_designs, start_portfolio, widened
+from evodesign.nlp.program import Start
+from evodesign.nlp.start_portfolio import StartPortfolio, Training, chosen, spread_designs, start_portfolio
+from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
@@ -43,8 +46,9 @@ WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, 
 PARTED_SHARE = 0.5
 """Of the usual designs so many are trained with where bodies are kept apart: solves take twice as long."""
 
-PARTED_STARTS = 1
-"""Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
+PARTED_PORTFOLIO, PARTED_ROUNDS = 12, 4
+"""Starts that a portfolio may hold there before some are chosen, and rounds of fresh designs: a bend around a
+load has many optima."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -53,8 +57,11 @@ Whole postures have many optima that lie close to each other; from random starts
 but the optima of other designs lead there.
 """
 
-WIDER_DESIGNS, MOST_WIDER = 48, 12
-"""Designs for which starts of other heights are tried with everyone, and starts of a portfolio with them."""
+CHOOSING, MOST_CHOSEN = 64, 8
+"""Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
+
+MOST_LOWEST = 2
+"""Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -126,7 +133,11 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
         case = Case(person=person, payload=payload, task=piece.task)
         return replace(known, lifts={**known.lifts, case: found})
     if piece.task is not None:
-        return replace(known, postures={**known.postures, piece.task: found})
+        person, payload = piece.pair
+        case = Case(person=person, payload=payload, task=piece.task)
+        if piece.subject is Subject.CHOSEN:
+            return replace(known, chosen={**known.chosen, case: found})
+        return replace(known, postures={**known.postures, case: found})
     highest = piece.subject is Subject.HIGHEST
     return replace(known, highest=found) if highest else replace(known, lowest=found)
 
@@ -168,10 +179,9 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
-        if landscape.parted and scene.robot.collisions is not None:
-            training = replace(training, portfolio=PARTED_STARTS)
     else:
-        landscape = PostureProblem(own, setting.symmetry, known).landscape(task)
+        checker_of = None if scene.robot.collisions is None else _Checkers(scene, space).of
+        landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
         training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
     if not setting.symmetric:
         near = STRICTER * landscape.relative, STRICTER * landscape.absolute
@@ -184,15 +194,46 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         return space.given(space.values(genome), {})
 
     parted = scene.robot.collisions is not None
+    if parted and setting.symmetric:
+        training = replace(training, portfolio=PARTED_PORTFOLIO, rounds=PARTED_ROUNDS)
     if parted:
         training = replace(training, designs=int(PARTED_SHARE * training.designs))
-    looked_at = LOOKED_AT * training.designs
+    looked_at = LOOKED_AT * max(training.designs, CHOOSING)
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
-    if task is None or piece.subject is not Subject.WIDER:
-        return start_portfolio(landscape, designs, training)
-    offers = [start for other in piece.beside for start in known.postures[other].starts]
-    settings = [replace(own, scene=each) for each in setting.scenes]
-    landscapes = [PostureProblem(each, setting.symmetry, known).landscape(task) for each in settings]
-    few = list(islice(designs, int(WIDER_DESIGNS * (PARTED_SHARE if parted else 1.0))))
-    cases = ((each, design) for design in few for each in landscapes)
-    return widened(known.postures[task], offers, cases, MOST_WIDER)
+    if task is not None and piece.subject is Subject.CHOSEN:
+        offers = _offers(setting, piece.pair, task, known)
+        return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
+    found = start_portfolio(landscape, designs, training)
+    if landscape.parted and parted:
+        return chosen(landscape, found.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
+    return found
+
+
+class _Checkers:
+    """The check of any design; that of the latest one is at hand.
+
+    Args:
+        scene: robot, person and load.
+        space: of the designs.
+    """
+
+    def __init__(self, scene: Scene, space: DesignSpace) -> None:
+        self._scene, self._space = scene, space
+        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
+        self._latest: tuple[tuple[float, ...], Checker] | None = None
+
+    def of(self, design: Sequence[float]) -> Checker:
+        """That of a design."""
+        if self._latest is None or self._latest[0] != tuple(design):
+            robot = self._robot.resized(self._space.resized(self._scene.robot.tree, design))
+            self._latest = tuple(design), Checker(self._scene, robot, self._human)
+        return self._latest[1]
+
+
+def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:
+    """Starts of a person at every task, or those made in the middle, and those of others at this task."""
+    found = {case: portfolio.starts for case, portfolio in known.postures.items()}
+    whose = pair if any(case.pair == pair for case in found) else setting.middle.pair
+    return [
+        start for case, starts in found.items() for start in starts if case.task == task or case.pair == whose
+    ]

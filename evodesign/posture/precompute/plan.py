@@ -38,7 +38,7 @@ class Subject(StrEnum):
     UNDISTURBED_PROGRAM = "the program of undisturbed postures"
     PROGRAM = "the program of postures"
     POSTURE = "starts of postures"
-    WIDER = "starts of other heights"
+    CHOSEN = "choice of starts"
     LIFT = "starts of lifts"
 
 
@@ -47,6 +47,8 @@ OF_PEOPLE = (
     Subject.PERSON_REACH,
     Subject.UNDISTURBED_PROGRAM,
     Subject.PROGRAM,
+    Subject.POSTURE,
+    Subject.CHOSEN,
     Subject.LIFT,
 )
 """Of one person with one load; other pieces serve everyone."""
@@ -54,7 +56,7 @@ OF_PEOPLE = (
 PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
 """Machine code, which is found again in the cache of functions."""
 
-OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.WIDER)
+OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.CHOSEN)
 """Portfolios of starts."""
 
 UNDISTURBED = (*OF_STARTS, Subject.UNDISTURBED_PROGRAM)
@@ -69,13 +71,11 @@ class Piece:
         subject: what it is about.
         pair: names of the person and the load that it is of, or is worked out with.
         task: None if it belongs to none.
-        beside: other tasks that it follows from.
     """
 
     subject: Subject
     pair: tuple[str, str]
     task: Task | None = None
-    beside: tuple[Task, ...] = ()
 
     def __str__(self) -> str:
         at = "from" if isinstance(self.task, Lift) else "at"
@@ -136,13 +136,16 @@ def stages(
     if not portfolios:
         return [meetings, people]
     middle = setting.middle.pair
+    own = setting.scenes if parting and setting.symmetric else (setting.middle,)
     around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
     longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
-    starts = [Piece(Subject.POSTURE, middle, task) for task in longest]
+    starts = [Piece(Subject.POSTURE, scene.pair, task) for task in longest for scene in own]
     extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
     found = [meetings, [*_programs(setting), *extremes, *starts, *people]]
-    if setting.symmetric and setting.middle.disturbances:
-        found.append([_wider(middle, task, tasks) for task in longest])
+    if setting.symmetric and (parting or setting.middle.disturbances):
+        found.append(
+            [Piece(Subject.CHOSEN, scene.pair, task) for task in longest for scene in setting.scenes]
+        )
     return [*found, lift_pieces(setting, lifts)] if lifts else found
 
 
@@ -161,10 +164,6 @@ def _programs(setting: PrecomputeSetting) -> list[Piece]:
         *(Piece(Subject.UNDISTURBED_PROGRAM, scene.pair) for scene in disturbed),
         *(Piece(Subject.PROGRAM, scene.pair) for scene in joint),
     ]
-
-
-def _wider(pair: tuple[str, str], task: Task, tasks: Sequence[Hold]) -> Piece:
-    return Piece(Subject.WIDER, pair, task, tuple(other for other in tasks if other != task))
 
 
 def _push_alone(scene: Scene, space: DesignSpace) -> bool:

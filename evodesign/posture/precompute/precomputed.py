@@ -43,12 +43,14 @@ class PersonReach(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
 class Precomputed:
     """What is known; left out, everything is solved jointly and from fixed starts.
 
-    Portfolios serve every scene: they are starting values, and hardly depend on who holds what.
+    A portfolio serves every scene: starting values hardly depend on who holds what. Where some do better in
+    one scene than in another, they are chosen for each.
 
     Args:
         values: the people's value functions, for the cases that have one.
         highest, lowest: starts of the reach problem.
-        postures: starts of the posture problem, by task.
+        postures: starts of the posture problem, by the case that they were found in.
+        chosen: those of them all that serve a case, where they were chosen.
         person_reaches: the people's own reach, by the names of person and load, where it was asked for.
         meetings: pairs of bodies that come near each other, by agent name and label.
         lifts: starts of lifts, by case.
@@ -57,7 +59,8 @@ class Precomputed:
     values: Mapping[Case, HumanValue] = field(default_factory=dict)
     highest: StartPortfolio = NO_STARTS
     lowest: StartPortfolio = NO_STARTS
-    postures: Mapping[Task, StartPortfolio] = field(default_factory=dict)
+    postures: Mapping[Case, StartPortfolio] = field(default_factory=dict)
+    chosen: Mapping[Case, StartPortfolio] = field(default_factory=dict)
     person_reaches: Mapping[tuple[str, str], PersonReach] = field(default_factory=dict)
     meetings: Mapping[tuple[str, str], tuple[BodyPair, ...]] = field(default_factory=dict)
     lifts: Mapping[Case, StartPortfolio] = field(default_factory=dict)
@@ -66,9 +69,19 @@ class Precomputed:
         """The value functions of a scene's person and load, by task."""
         return {case.task: value for case, value in self.values.items() if case.pair == scene.pair}
 
-    def starts(self, task: Task) -> tuple[Start, ...]:
-        """The posture problem's starts for a task; none where none are known."""
-        return self.postures.get(task, NO_STARTS).starts
+    def starts(self, pair: tuple[str, str], task: Task) -> tuple[Start, ...]:
+        """The posture problem's starts for a person, a load and a task; none where none are known."""
+        case = Case(person=pair[0], payload=pair[1], task=task)
+        for own in (self.chosen, self.postures):
+            if case in own:
+                return own[case].starts
+        return tuple(
+            start for other, found in self.postures.items() if other.task == task for start in found.starts
+        )
+
+    def is_chosen(self, pair: tuple[str, str], task: Task) -> bool:
+        """Whether the posture problem's starts were chosen for this person, load and task."""
+        return Case(person=pair[0], payload=pair[1], task=task) in self.chosen
 
     def lift_starts(self, pair: tuple[str, str], lift: Lift) -> tuple[Start, ...]:
         """Where a lift of a person and a load begins; none where nothing is known."""
