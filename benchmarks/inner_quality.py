@@ -24,6 +24,7 @@ from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
 from evodesign.nlp.start_portfolio import Landscape
+from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
@@ -89,6 +90,7 @@ class Judge:
             {each.scene.pair: PostureProblem(each, problem.symmetry, given) for each in settings}
             for given in (known, Precomputed())
         )
+        self._checkers = {each.pair: DesignCheckers(each, problem.space) for each in self.scenes}
         self._reach = ReachProblem(settings[0], symmetric=problem.symmetry is not Symmetry.OFF)
 
     def judged(self, number: int, design: Design, joint: bool) -> tuple[Ends, list[Row]]:
@@ -108,7 +110,7 @@ class Judge:
             if result.reach.distance(solution.case.task.height_m) != 0.0:
                 continue
             pair, task = solution.case.pair, solution.case.task
-            own = self._first[pair].landscape(task)
+            own = self._first[pair].landscape(task, self._checkers[pair].of)
             costs = [attempt.cost for attempt in solution.attempts if attempt.status is Status.SOLVED]
             best = self._best(own, design, rng)
             both = self._best(self._joint[pair].landscape(task), design, rng) if joint else np.nan

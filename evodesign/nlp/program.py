@@ -110,6 +110,16 @@ class Switches(Protocol):
         """
         ...
 
+    def needed(self, values: Start, multipliers: Array, price: float) -> Start:
+        """Parameters that switch on no more than the rows that hold a solution.
+
+        Args:
+            values: of the solution, with the parameters that are on.
+            multipliers: of the rows of the program with all rows.
+            price: what a metre must cost for a row to count.
+        """
+        ...
+
     def better(self, values: Start, given: Mapping[str, Any], multipliers: Array, gain: float) -> Start:
         """Parameters with which rows that hold a solution leave it more room; none where that gains little.
 

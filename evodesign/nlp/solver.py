@@ -82,6 +82,9 @@ ROUNDS = 6
 GAIN = 1e-4
 """Share of its cost by which a solution must get better to be solved again."""
 
+FREE = 1e-4
+"""Share of its cost that a solution must save per metre [1/m] by a row's yielding, for the row to hold it."""
+
 UNSETTLED = "rows remain that are to be switched on"
 
 _STATUS = {
@@ -182,6 +185,14 @@ class Solver:
                 parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
             )
         return self._bettered(parameters, found, gain)
+
+    def needed(self, raw: RawSolution) -> Start:
+        """A solution's values without the rows on that do not hold it: for solves that begin close to it."""
+        switches = self.program.switches
+        if switches is None or raw.status is not Status.SOLVED or not has_any(switches.names, raw.values):
+            return raw.values
+        on = switches.needed(raw.values, raw.multipliers.constraints, FREE * abs(raw.cost))
+        return {**raw.values, **on}
 
     def parted_start(self, parameters: Mapping[str, Any], start: Start) -> Start:
         """A start with all rows on, unless it has some on already."""

@@ -11,7 +11,7 @@ Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any, Protocol
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import RawSolution, Solver
+from evodesign.nlp.solver import RawSolution, Solver, has_any
 from evodesign.records import Status
 
 __all__ = [
@@ -123,7 +123,10 @@ class Landscape:
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
             and in the cost's unit.
         parted: whether rows that are switched off at first elsewhere are on from the beginning.
+        begun: where a solve begins for a start and the parameters; left out, at the start as it is.
         accepted: whether a solution of a design counts; left out, each does.
+        party: names of the variables of one of two that hardly depend on each other: those of one optimum are
+            tried with the others of another one.
     """
 
     solver: Solver
@@ -132,11 +135,15 @@ class Landscape:
     relative: float
     absolute: float
     parted: bool = False
+    begun: Callable[[Start, Mapping[str, Any]], Start] | None = None
     accepted: Callable[[Design, RawSolution], bool] | None = None
+    party: Collection[str] = ()
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
         parameters = {"design": design, **self.beside}
+        if self.begun is not None:
+            start = self.begun(start, parameters)
         if self.parted:
             start = self.solver.parted_start(parameters, start)
         found = self.solver.settled(parameters, self.solver.solve(parameters, start))
@@ -147,6 +154,13 @@ class Landscape:
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
         """Which costs are close enough to the best ones."""
         return costs <= best + self.relative * np.abs(best) + self.absolute
+
+    def size(self, start: Start) -> int:
+        """Variables and rows of the program that is solved from a start."""
+        switches, program = self.solver.program.switches, self.solver.program
+        if switches is not None and (self.parted or has_any(switches.names, start)):
+            program = switches.program
+        return int(program.symbols.numel() + program.rows.numel())
 
     def random_start(self, rng: np.random.Generator) -> Start:
         """One of the fixed starts, with all that is drawn anywhere between its bounds."""
@@ -219,10 +233,9 @@ def start_portfolio(landscape: Searched, designs: Iterator[Design], training: Tr
 def chosen(
     landscape: Landscape, offers: Sequence[Start], designs: Sequence[Design], most: int
 ) -> StartPortfolio:
-    """The fewest of some starts that serve designs as well as all of them do.
+    """Those of some starts that serve designs as well as all of them do, with little work.
 
-    Half of the designs are chosen with, the others examined; where those are not served well enough, starts
-    are added that serve them.
+    How well they do is told of a choice made with half of the designs, examined with the others.
 
     Args:
         landscape: in which they are to serve.
@@ -232,38 +245,41 @@ def chosen(
     """
     ends = [[landscape.solve(design, start) for start in offers] for design in designs]
     costs = np.array([[_cost(end) for end in row] for row in ends]).reshape(-1, len(offers))
-    work = np.array([[end.iterations for end in row] for row in ends]).reshape(-1, len(offers)).mean(axis=0)
+    iterations = np.array([[end.iterations for end in row] for row in ends]).reshape(-1, len(offers))
+    work = iterations.mean(axis=0) * [landscape.size(start) for start in offers]
     best = costs.min(axis=1, initial=np.inf)
     held = np.isfinite(best)
     costs, best = costs[held], best[held]
     good = np.isfinite(costs) & landscape.good(costs, best[:, None])
     half = len(good) // 2
-    few = _cover((), good[:half], work, most)
+    few = _cover(good[:half], work, most)
     served = good[half:][:, few].any(axis=1)
     short = costs[half:][:, few].min(axis=1, initial=np.inf) - best[half:]
     coverage = Coverage(len(served), int(served.sum()), float(np.max(short[np.isfinite(short)], initial=0.0)))
-    if coverage.share < GOOD_ENOUGH:
-        few = _cover(few, good, work, most)
-    return StartPortfolio(tuple(offers[place] for place in few), coverage)
+    every = _cover(good, work, most)
+    return StartPortfolio(tuple(offers[place] for place in every), coverage)
 
 
-def _cover(begun: Sequence[int], good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
-    """Starts, some given, until no other one serves a design that they do not: those that serve most first.
+def _cover(good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
+    """Starts that together serve all designs that any serves, with little work: those that serve most first.
 
     Args:
-        begun: columns that are taken already.
         good: whether a start (column) serves a design (row).
-        work: iterations of each start, of which the fewest are best where as many are served.
+        work: of each start.
         most: starts at most.
     """
-    found = [*begun]
+    found: list[int] = []
     while len(found) < most and good.size:
         served = good[~good[:, found].any(axis=1)].sum(axis=0)
-        place = max(range(len(work)), key=lambda each: (served[each], -work[each]))
+        place = int(np.argmax(served / work))
         if not served[place]:
             break
         found.append(place)
-    return found
+    for place in sorted(found, key=lambda each: -work[each]):
+        others = [each for each in found if each != place]
+        if good[:, others].any(axis=1).sum() == good[:, found].any(axis=1).sum():
+            found = others
+    return sorted(found, key=lambda each: -int(good[:, each].sum()))
 
 
 def spread_designs(
@@ -318,12 +334,22 @@ def _study(
 
 
 def _crossed(landscape: Searched, study: _Study, others: Sequence[_Study]) -> _Study:
-    """The study with a better optimum, if those of others lead to one."""
+    """The study with a better optimum, if those of others lead to one, or parts of its own and of others."""
     for other in others:
-        end = landscape.solve(study.design, other.optimum)
-        if _cost(end) < study.cost:
-            study = replace(study, cost=end.cost, optimum=end.values, start=other.optimum)
+        for start in _crossings(landscape, study.optimum, other.optimum):
+            end = landscape.solve(study.design, start)
+            if _cost(end) < study.cost:
+                study = replace(study, cost=end.cost, optimum=end.values, start=start)
     return study
+
+
+def _crossings(landscape: Searched, own: Start, other: Start) -> Iterator[Start]:
+    """Another optimum, and where it can be told apart one party of it beside the other one of an own."""
+    yield other
+    party = landscape.party if isinstance(landscape, Landscape) else ()
+    if party and own is not other:
+        for one, two in ((own, other), (other, own)):
+            yield {**one, **{name: values for name, values in two.items() if name in party}}
 
 
 def _cost(end: StartResult) -> float:

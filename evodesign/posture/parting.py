@@ -91,6 +91,12 @@ class Parted:
         numbers, held = self._at(values, given)
         return self._named(held, self._meetings.violated(numbers, held, short))
 
+    def needed(self, values: Start, multipliers: Array, price: float) -> Start:
+        """What parts bodies that a row holds in touch, at a price per metre; nothing for all others."""
+        held = self._held(values)
+        costly = self._meetings.prices(multipliers) > price
+        return self._named(held, {place: np.zeros(NUMBERS) for place in np.flatnonzero(~costly).tolist()})
+
     def better(self, values: Start, given: Mapping[str, Any], multipliers: Array, gain: float) -> Start:
         """What parts bodies farther that a row holds in touch; none where that gains less than asked for."""
         if not has_any(self.names, values):
@@ -102,9 +108,12 @@ class Parted:
     def _at(self, values: Start, given: Mapping[str, Any]) -> tuple[tuple[Array, Array], Array]:
         """Symbols and parameters of the program with all rows, and the numbers of each meeting."""
         program = self.program
-        held = program.held(values)
-        numbers = program.packed(values), program.packed_parameters(given, values)
-        return numbers, np.concatenate([held[each.name].reshape(-1, NUMBERS) for each in self._bodies])
+        return (program.packed(values), program.packed_parameters(given, values)), self._held(values)
+
+    def _held(self, values: Start) -> Array:
+        """The numbers of each meeting."""
+        held = self.program.held(values)
+        return np.concatenate([held[each.name].reshape(-1, NUMBERS) for each in self._bodies])
 
     def _named(self, held: Array, found: Mapping[int, Array]) -> Start:
         """The parameters with new numbers for some meetings; without those of bodies for which none are new.
@@ -143,6 +152,7 @@ class Meetings:
         screen: how far each pair of shapes is apart at least, and along its meeting's direction [m].
         shapes: numbers of each pair.
         places: the meeting of each pair.
+        starts: the first pair of each meeting.
         rows: the row of each pair in its program.
         margins: of each meeting [m].
     """
@@ -150,6 +160,7 @@ class Meetings:
     screen: BufferedFunction
     shapes: BufferedFunction
     places: Places
+    starts: Places
     rows: Places
     margins: Array
 
@@ -227,9 +238,7 @@ class Meetings:
 
     def least(self, distances: Array) -> Array:
         """The least of each meeting's pairs [m]."""
-        found = np.full(len(self.margins), np.inf)
-        np.minimum.at(found, self.places, distances)
-        return found
+        return np.asarray(np.minimum.reduceat(distances, self.starts))
 
     def prices(self, multipliers: Array) -> Array:
         """What each meeting's pairs cost together, per metre, from the multipliers of a program's rows."""
@@ -266,6 +275,7 @@ def meetings_of(
         _buffered("screen", given, [ca.vertcat(ca.SX(0, 1), *each) for each in (least, along)]),
         _buffered("shapes", given, [ca.horzcat(ca.SX(2 * SHAPE, 0), *shapes)]),
         np.array(places, np.intp),
+        np.searchsorted(places, np.arange(len(margins))),
         rows_of(bodies, constraints),
         np.array(margins),
     )

@@ -125,6 +125,13 @@ class PostureProblem:
                 break
         return self._finished(design, task, checker, trials)
 
+    def sketched(self, design: Sequence[float], task: Task, checker: Checker) -> CaseSolution:
+        """What the first start leads to; arguments as in `solve`."""
+        name, portfolio = next(self._in_turn(task))
+        formulation = self._formulation(name, task, self._methods(name)[0])
+        trial = formulation.solve(design, task, portfolio[:1], checker)
+        return case_solution(self._setting.scene.case(task), [trial])
+
     def begun(
         self,
         design: Sequence[float],
@@ -186,8 +193,9 @@ class PostureProblem:
 
         Args:
             task: of the problem.
-            checker_of: the check of a design, by which postures count where no bodies overlap; left out, or
-                where the person is not in the program, all count.
+            checker_of: the check of a design, by which postures count where no bodies overlap, and the
+                person of one is tried beside the robot of another; left out, or where the person is not in
+                the program, all count as they are.
         """
         name, _ = next(self._in_turn(task))
         formulation = self._formulation(name, task, self._methods(name)[0])
@@ -197,6 +205,7 @@ class PostureProblem:
         return replace(
             found,
             accepted=lambda design, raw: formulation.keeps_clear(raw, task, checker_of(design)),
+            party=formulation.person,
         )
 
     def _trials(

@@ -114,6 +114,15 @@ class _OneDesign:
             body = body.carrying(mounted_solids(self._tree, chosen))
         return SizedRobot(self._robot.agent, body, self._problem.stances, solver.near, solver.added)
 
+    def sketched(self, values: Sequence[float]) -> Cases:
+        """Postures of every case from one start each, not checked; none where something is lifted as well."""
+        if not all(isinstance(case.task, Hold) for case in self._problem.cases):
+            return ()
+        postures = self._solver.inner.postures
+        return tuple(
+            postures[case.pair].sketched(values, case.task, Unchecked()) for case in self._problem.cases
+        )
+
     def first(self, values: Sequence[float]) -> Cases:
         """Postures of every case, not checked."""
         return self._cases(values, None, Unchecked())

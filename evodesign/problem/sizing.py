@@ -3,10 +3,11 @@
     rated torque of a group = margin x demand on it
 
 An actuator is part of what the others carry, so postures and sizes are found in rounds (`hardware.sizing`).
-The first round begins as any evaluation; each further one moves the robot's postures of the last to sizes
-that would meet the demand if postures stayed: torques are about linear then in the masses of actuators
-(`mechanics.added_mass`). What is checked, and solved to the end, are the postures of the last sizes. If the
-check finds better ones, which ask for other actuators, the rounds begin again from those.
+Which postures are best depends on the sizes, so one start of each case tells first about which ones will be
+asked for. The first round begins there as any evaluation; each further one moves the robot's postures of the
+last to sizes that would meet the demand if postures stayed: torques are about linear then in the masses of
+actuators (`mechanics.added_mass`). What is checked, and solved to the end, are the postures of the last
+sizes. If the check finds better ones, which ask for other actuators, the rounds begin again from those.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from evodesign.design.space import TYPICAL, DesignSpace
-from evodesign.hardware.sizing import TOLERANCE, Sizing, sized
+from evodesign.hardware.sizing import TOLERANCE, Sizing, met, sized
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.demand import Demand, SizedRobot, demand_of
 from evodesign.problem.design_result import DesignResult
@@ -37,6 +38,9 @@ Cases = tuple[CaseSolution, ...]
 
 class SizingRounds(Protocol):
     """What is asked of a design's postures, round after round; values have rated torques for margins."""
+
+    def sketched(self, values: Sequence[float]) -> Cases:
+        """Postures of every case from one start each, not checked; none where they tell too little."""
 
     def first(self, values: Sequence[float]) -> Cases:
         """Postures of every case, not checked."""
@@ -85,9 +89,14 @@ def sized_result(
         return latest.at(sizes) if isinstance(latest, Demand) else sizes
 
     margins = {name: values[place] for name, place in groups.items()}
+    bounds = dict.fromkeys(groups, BOUNDS)
     start: Mapping[str, float] = {name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()}
+    sketch = rounds.sketched(given(start))
+    told = demand_of(space, given(start), robot, sketch) if sketch else ""
+    if isinstance(told, Demand):
+        start = met(told.at, start, margins, bounds)
     for _ in range(BEGINNINGS):
-        sizing = sized(demand, start, margins, dict.fromkeys(groups, BOUNDS), predict)
+        sizing = sized(demand, start, margins, bounds, predict)
         ended, latest = given(sizing.sizes), asked[-1]
         if sizing.status is not Status.SOLVED and all(each.solved for each in cases[-1]):
             reason = latest if isinstance(latest, str) else sizing.reason

@@ -52,12 +52,11 @@ HOPELESS = 1.1
 Of 216 holds of 36 designs none had its best posture there.
 """
 
-HOPEFUL = 1.03
-"""Disturbed postures are sought from undisturbed optima that cost so many times the cheapest at most: of 615
-cases of 120 designs one had its best posture elsewhere, by 1.2 %."""
-
 MOST_OPTIMA = 3
 """Undisturbed optima from which disturbed postures are sought (docs/benchmarks.md)."""
+
+FEW = 8
+"""Starts that are solved with disturbances at once."""
 
 DISTINCT = 1e-5
 """Share of its cost by which one optimum must exceed another not to be the same."""
@@ -123,7 +122,15 @@ class JointPostures:
 
     def landscape(self, task: Task) -> Landscape:
         """The program's cost for a task."""
-        return Landscape(self._solver, self._beside(task), self._fixed, *NEAR)
+        return Landscape(self._solver, self._beside(task), self._fixed, *NEAR, begun=self._begun)
+
+    @cached_property
+    def person(self) -> frozenset[str]:
+        """Names of all that starts say of the person."""
+        program = self._solver.program
+        own = layout_of(program, HUMAN).values()
+        switches = program.switches.names if program.switches is not None else ()
+        return frozenset([*own, *(name for name in switches if name.split(".")[-2] == HUMAN)])
 
     def keeps_clear(self, raw: RawSolution, task: Task, checker: Checker) -> bool:
         """Whether the check finds no bodies that overlap in a solution."""
@@ -155,15 +162,16 @@ class JointPostures:
         """The postures of another design near those of a solution."""
         task, solver = solution.case.task, self._solver
         parameters = {"design": design, **self._beside(task)}
-        start = self._begun(raw.values, parameters)
-        raw = solver.settled(parameters, solver.near.solve(parameters, start))
+        start = self._begun(solver.needed(raw), parameters)
+        raw = solver.settled(parameters, solver.near.solve(parameters, start), gain=np.inf)
         if raw.status is not Status.SOLVED:
             return None
         return replace(solution, instants=self._instants(raw, task), raw=raw)
 
     def finished(self, design: Sequence[float], task: Task, raw: RawSolution, checker: Checker) -> Trial:
         """A solve for this design that was not checked, checked."""
-        return self._cheapest({"design": design, **self._beside(task)}, task, [("neighbour", raw)], checker)
+        parameters, ends = {"design": design, **self._beside(task)}, [("neighbour", raw)]
+        return self._cheapest(parameters, task, ends, checker, gain=np.inf)
 
     def polish(
         self, design: Sequence[float], task: Task, known: Sequence[Instant], checker: Checker
@@ -232,15 +240,16 @@ class JointPostures:
         task: Task,
         ends: Sequence[tuple[str, RawSolution]],
         checker: Checker,
+        gain: float = 0.0,
     ) -> Trial:
-        """The best of where starts led, settled and checked."""
+        """The best of where starts led, settled with a gain and checked."""
 
         def finish(start: str, raw: RawSolution) -> Candidate:
             instants = self._instants(raw, task)
             residuals = checker.task_residuals(instants, task.heights)
             return Candidate(checked(self.name, start, raw, residuals), instants, residuals, raw)
 
-        return cheapest(self.name, ends, lambda raw: self._solver.settled(parameters, raw), finish)
+        return cheapest(self.name, ends, lambda raw: self._solver.settled(parameters, raw, gain), finish)
 
     def _ends(
         self, parameters: Mapping[str, Any], starts: Sequence[tuple[str, Start]]
@@ -249,15 +258,15 @@ class JointPostures:
 
         What cannot be held without disturbances cannot be held with them.
         """
-        solver, begun = self._solver, self._undisturbed if len(starts) > MOST_OPTIMA else None
+        solver, begun = self._solver, self._undisturbed if len(starts) > FEW else None
         if begun is not None:
             first = [(name, begun.solve(parameters, start)) for name, start in starts]
             settled = _settled(begun, parameters, _distinct(first))
             if not any(raw.status is Status.SOLVED for _, raw in settled):
                 return settled or first
             ends = [
-                (name, _after(raw, solver.solve(parameters, self._begun(raw.values, parameters))))
-                for name, raw in _hopeful(_distinct(settled))
+                (name, _after(raw, solver.solve(parameters, self._begun(begun.needed(raw), parameters))))
+                for name, raw in _distinct(settled)
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
@@ -282,11 +291,6 @@ def _settled(
         if end.status is Status.SOLVED:
             costs.append(end.cost)
     return found
-
-
-def _hopeful(optima: Sequence[tuple[str, RawSolution]]) -> list[tuple[str, RawSolution]]:
-    """Optima that do not cost far more than the first, which is the cheapest."""
-    return [(name, raw) for name, raw in optima if raw.cost <= HOPEFUL * optima[0][1].cost]
 
 
 def _distinct(ends: Sequence[tuple[str, RawSolution]]) -> list[tuple[str, RawSolution]]:

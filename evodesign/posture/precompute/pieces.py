@@ -14,19 +14,18 @@ import msgspec
 import numpy as np
 
 from evodesign.collision.rules import BodyPair
-from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import StartPortfolio, Training, chosen, spread_designs, start_portfolio
-from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
-    OF_STARTS,
     PROGRAMS,
+    UNDISTURBED,
     Piece,
     PrecomputeSetting,
     Subject,
@@ -88,7 +87,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
-    if piece.subject in OF_STARTS:
+    if piece.subject in UNDISTURBED:
         setting = all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.PERSON and piece.task is not None:
@@ -180,7 +179,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
         training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
     else:
-        checker_of = None if scene.robot.collisions is None else _Checkers(scene, space).of
+        checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
         landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
         training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
     if not setting.symmetric:
@@ -207,27 +206,6 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     if landscape.parted and parted:
         return chosen(landscape, found.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
     return found
-
-
-class _Checkers:
-    """The check of any design; that of the latest one is at hand.
-
-    Args:
-        scene: robot, person and load.
-        space: of the designs.
-    """
-
-    def __init__(self, scene: Scene, space: DesignSpace) -> None:
-        self._scene, self._space = scene, space
-        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
-        self._latest: tuple[tuple[float, ...], Checker] | None = None
-
-    def of(self, design: Sequence[float]) -> Checker:
-        """That of a design."""
-        if self._latest is None or self._latest[0] != tuple(design):
-            robot = self._robot.resized(self._space.resized(self._scene.robot.tree, design))
-            self._latest = tuple(design), Checker(self._scene, robot, self._human)
-        return self._latest[1]
 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:

@@ -59,7 +59,7 @@ PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
 OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.CHOSEN)
 """Portfolios of starts."""
 
-UNDISTURBED = (*OF_STARTS, Subject.UNDISTURBED_PROGRAM)
+UNDISTURBED = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.UNDISTURBED_PROGRAM)
 """Follow from what is held undisturbed."""
 
 

@@ -1,0 +1,32 @@
+"""The check of postures of any design of a problem."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from evodesign.design.space import DesignSpace
+from evodesign.mechanics.scene import Scene
+from evodesign.posture.check import AgentModel, Checker
+
+__all__ = ["DesignCheckers"]
+
+
+class DesignCheckers:
+    """The check of any design; that of the latest one is at hand.
+
+    Args:
+        scene: robot, person and load.
+        space: of the designs.
+    """
+
+    def __init__(self, scene: Scene, space: DesignSpace) -> None:
+        self._scene, self._space = scene, space
+        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
+        self._latest: tuple[tuple[float, ...], Checker] | None = None
+
+    def of(self, design: Sequence[float]) -> Checker:
+        """That of a design."""
+        if self._latest is None or self._latest[0] != tuple(design):
+            robot = self._robot.resized(self._space.resized(self._scene.robot.tree, design))
+            self._latest = tuple(design), Checker(self._scene, robot, self._human)
+        return self._latest[1]
