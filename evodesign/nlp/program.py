@@ -91,6 +91,21 @@ class Switches(Protocol):
         """With all rows."""
         ...
 
+    @property
+    def off(self) -> float:
+        """What a row is that is off."""
+        ...
+
+    def rows_of(self, program: Program) -> Sequence[tuple[int, int]]:
+        """The rows of a program with all of them that may be off.
+
+        Args:
+            program: with all rows.
+        Returns:
+            Numbers of rows, and places among `given` of what is zero where they are off.
+        """
+        ...
+
     def begun(self, values: Start, given: Mapping[str, Any]) -> Start:
         """Parameters that switch on every row, for a solve that begins at some values.
 

@@ -19,6 +19,7 @@ from evodesign.posture.separating_axes import Ways, ways_of
 from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
     NUMBERS,
+    OFF,
     PARTING,
     directed,
     placed_pairs,
@@ -80,6 +81,21 @@ class Parted:
     def program(self) -> Program:
         """With all rows."""
         return self._program()
+
+    @property
+    def off(self) -> float:
+        """What a row is that is off [m]."""
+        return OFF
+
+    def rows_of(self, program: Program) -> list[tuple[int, int]]:
+        """Rows along directions, with the places of what says whether they are on."""
+        on = [
+            program.columns[each.name].start + NUMBERS * number
+            for each in self._bodies
+            for number, meeting in enumerate(directed(each.body.form))
+            for _ in placed_pairs(each.body, meeting)
+        ]
+        return [*zip(rows_of(self._bodies, program.constraints).tolist(), on, strict=True)]
 
     def begun(self, values: Start, given: Mapping[str, Any]) -> Start:
         """What parts all bodies best at some values."""

@@ -125,11 +125,11 @@ class PostureProblem:
                 break
         return self._finished(design, task, checker, trials)
 
-    def sketched(self, design: Sequence[float], task: Task, checker: Checker) -> CaseSolution:
-        """What the first start leads to; arguments as in `solve`."""
+    def sketched(self, design: Sequence[float], task: Task) -> CaseSolution:
+        """What the first start leads to about, not checked; arguments as in `solve`."""
         name, portfolio = next(self._in_turn(task))
         formulation = self._formulation(name, task, self._methods(name)[0])
-        trial = formulation.solve(design, task, portfolio[:1], checker)
+        trial = formulation.sketched(design, task, portfolio)
         return case_solution(self._setting.scene.case(task), [trial])
 
     def begun(

@@ -119,9 +119,7 @@ class _OneDesign:
         if not all(isinstance(case.task, Hold) for case in self._problem.cases):
             return ()
         postures = self._solver.inner.postures
-        return tuple(
-            postures[case.pair].sketched(values, case.task, Unchecked()) for case in self._problem.cases
-        )
+        return tuple(postures[case.pair].sketched(values, case.task) for case in self._problem.cases)
 
     def first(self, values: Sequence[float]) -> Cases:
         """Postures of every case, not checked."""

@@ -2,6 +2,30 @@
 
 #include "solver.h"
 
+static void add_entries(double *entries, const int *places, const double *added, int count) {
+    for (int k = 0; k < count; k++)
+        entries[places[k]] += added[k];
+}
+
+/* The rows that are on; derivatives where there are multipliers. */
+static void evaluate_switched(Solver *s, const double *primals, const double *multipliers, Evaluation *at) {
+    const double *arguments[3] = {primals, s->parameters, multipliers};
+    for (int k = 0; k < s->problem.switched_count; k++) {
+        const SwitchedRow *row = &s->problem.switched[k];
+        if (s->parameters[row->parameter] == 0)
+            continue;
+        double jacobian[row->jacobian_entries + 1], hessian[row->hessian_entries + 1];
+        double *results[3] = {&at->rows[row->row], jacobian, hessian};
+        if (!multipliers) {
+            row->values(arguments, results, s->integers, s->work, 0);
+            continue;
+        }
+        row->derivatives(arguments, results, s->integers, s->work, 0);
+        add_entries(at->jacobian, row->jacobian_places, jacobian, row->jacobian_entries);
+        add_entries(at->hessian, row->hessian_places, hessian, row->hessian_entries);
+    }
+}
+
 void evaluate_all(Solver *s, const double *primals, const double *multipliers, Evaluation *at) {
     if (s->problem.blocks) {
         evaluate_blocks(s, primals, multipliers, at);
@@ -10,6 +34,7 @@ void evaluate_all(Solver *s, const double *primals, const double *multipliers, E
     const double *arguments[3] = {primals, s->parameters, multipliers};
     double *results[5] = {&at->cost, at->gradient, at->rows, at->jacobian, at->hessian};
     s->problem.derivatives(arguments, results, s->integers, s->work, 0);
+    evaluate_switched(s, primals, multipliers, at);
 }
 
 void evaluate_values(Solver *s, const double *primals, Evaluation *at) {
@@ -20,6 +45,7 @@ void evaluate_values(Solver *s, const double *primals, Evaluation *at) {
     const double *arguments[2] = {primals, s->parameters};
     double *results[2] = {&at->cost, at->rows};
     s->problem.values(arguments, results, s->integers, s->work, 0);
+    evaluate_switched(s, primals, NULL, at);
 }
 
 /* Rows less their limit or their slack; returns the sum of their sizes, WB's theta. */

@@ -30,6 +30,16 @@ typedef struct {
     Scatter jacobian, hessian;
 } Block;
 
+/* A row that is there only where a parameter is not zero; elsewhere it has a value that violates nothing, and no
+   derivatives. Its entries are added to those of the program. */
+typedef struct {
+    int parameter, row;
+    int jacobian_entries, hessian_entries;
+    const int *jacobian_places, *hessian_places;
+    Function values;      /* (x, p) -> g */
+    Function derivatives; /* (x, p, y) -> g, jacobian, hessian */
+} SwitchedRow;
+
 /* What is known of a program before it is solved. Matrices are stored by columns: `starts` of each column among
    the `rows` of its entries. */
 typedef struct {
@@ -48,6 +58,8 @@ typedef struct {
     Size work, integers;  /* what the functions need */
     int block_count, shared; /* blocks, in place of functions; numbers that they share come first among p */
     const Block *blocks;     /* the rows of one after those of the other */
+    int switched_count;
+    const SwitchedRow *switched;
 } Problem;
 
 typedef struct {

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.native.elimination import Elimination, Entries, determined, elimination
+from evodesign.nlp.native.switched import SwitchedRow, Symbols, switched_rows
 from evodesign.nlp.program import Array, Program
 
 __all__ = ["METHOD_FILES", "PROBLEM", "fixed_variables", "program_text"]
@@ -49,8 +50,22 @@ def program_text(program: Program) -> str:
     cost, rows, by_fixed, by_given = ca.substitute(
         [program.cost, program.rows, by_fixed, ca.gradient(lagrangian, given)], [fixed], [ca.SX(lower[held])]
     )
-    hessian = ca.triu(ca.hessian(cost + ca.dot(multipliers, rows), free)[0])
-    jacobian = ca.jacobian(rows, free)
+    symbols = Symbols(free, given, multipliers)
+    hessian, jacobian = symbols.hessian(cost + ca.dot(multipliers, rows)), ca.jacobian(rows, free)
+    sparsities = hessian.sparsity(), jacobian.sparsity()
+    switched = switched_rows(program, rows, symbols, *sparsities)
+    if switched and program.switches is not None:
+        rows = ca.SX(rows)
+        for each in switched:
+            rows[each.row] = program.switches.off
+        hessian, jacobian = (
+            ca.project(each, sparsity)
+            for each, sparsity in zip(
+                (symbols.hessian(cost + ca.dot(multipliers, rows)), ca.jacobian(rows, free)),
+                sparsities,
+                strict=True,
+            )
+        )
     functions = [
         ca.Function("values", [free, given], ca.cse([ca.densify(cost), ca.densify(rows)])),
         ca.Function(
@@ -65,7 +80,7 @@ def program_text(program: Program) -> str:
         ),
     ]
     generator = ca.CodeGenerator("functions", {"verbose": False})
-    for function in functions:
+    for function in [*functions, *(function for each in switched for function in each.functions)]:
         generator.add(function)
     equalities = np.asarray(limits[0] == limits[1])
     order = elimination(Entries.of(hessian), Entries.of(jacobian), determined(jacobian, equalities))
@@ -74,13 +89,18 @@ def program_text(program: Program) -> str:
         [
             str(generator.dump()),
             (HERE / "interior_point.h").read_text(encoding="ascii"),
-            _problem_text(functions, hessian, jacobian, vectors, order),
+            _problem_text(functions, hessian, jacobian, vectors, order, switched),
         ]
     )
 
 
 def _problem_text(
-    functions: Sequence[Any], hessian: Any, jacobian: Any, vectors: Sequence[Array], order: Elimination
+    functions: Sequence[Any],
+    hessian: Any,
+    jacobian: Any,
+    vectors: Sequence[Array],
+    order: Elimination,
+    switched: Sequence[SwitchedRow],
 ) -> str:
     """The definition of the problem, with its arrays."""
     sparse = [(matrix.sparsity().colind(), matrix.sparsity().row()) for matrix in (hessian, jacobian)]
@@ -94,13 +114,22 @@ def _problem_text(
     reals = dict(zip(("lower", "upper", "row_lower", "row_upper"), vectors, strict=True))
     lines = [_array("int", name, [str(int(value)) for value in values]) for name, values in integers.items()]
     lines += [_array("double", name, [_real(value) for value in values]) for name, values in reals.items()]
+    every = [*functions, *(function for each in switched for function in each.functions)]
+    for number, each in enumerate(switched):
+        lines += [
+            _array("int", f"{kind}_of_row_{number}", [*map(str, places)]) for kind, places in each.places
+        ]
+    if switched:
+        inside = ", ".join(each.text(number) for number, each in enumerate(switched))
+        lines.append(f"static const SwitchedRow switched[] = {{{inside}}};")
     fields = {
         "variables": hessian.size1(),
         "rows": jacobian.size1(),
         **{name: name for name in (*integers, *reals)},
         **{function.name(): function.name() for function in functions},
-        "work": max(function.sz_w() for function in functions),
-        "integers": max(function.sz_iw() for function in functions),
+        "work": max(function.sz_w() for function in every),
+        "integers": max(function.sz_iw() for function in every),
+        **({"switched_count": len(switched), "switched": "switched"} if switched else {}),
     }
     inside = ", ".join(f".{name} = {value}" for name, value in fields.items())
     lines += [f"static const Problem problem = {{{inside}}};", f"const Problem *{PROBLEM}(void);"]

@@ -65,6 +65,9 @@ class Formulation(Protocol):
     ) -> Trial:
         """What the starts of a portfolio lead to, or fixed starts if there are none that fit."""
 
+    def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
+        """What one start leads to about, not checked."""
+
     def solve_beside(
         self,
         design: Sequence[float],

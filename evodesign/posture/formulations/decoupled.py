@@ -32,7 +32,7 @@ from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
 from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
-from evodesign.posture.check import Checker
+from evodesign.posture.check import Checker, Unchecked
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.formulations.human_value import (
     COEFFICIENTS,
@@ -109,6 +109,10 @@ class DecoupledPostures:
     def landscape(self, task: Task) -> Landscape:
         """The robot's cost for a task, with V(X)."""
         return Landscape(self._robot, self._beside(task), self._fixed, *NEAR)
+
+    def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
+        """What the first start leads the robot to, with the person beside it."""
+        return self.solve(design, task, portfolio[:1], Unchecked())
 
     def solve(
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker

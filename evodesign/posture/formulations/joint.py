@@ -92,13 +92,13 @@ class JointPostures:
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
-    def _undisturbed(self) -> Solver | None:
-        """Of the program without disturbances; None where there are none."""
+    def _undisturbed(self) -> JointPostures | None:
+        """Without disturbances; None where there are none."""
         scene = self._setting.scene
         if not scene.disturbances:
             return None
         setting = replace(self._setting, scene=scene.undisturbed)
-        return JointPostures(self.name, self._forms, setting, self._solvers, self._kind)._solver
+        return JointPostures(self.name, self._forms, setting, self._solvers, self._kind)
 
     @cached_property
     def _worst(self) -> WorstCase:
@@ -143,6 +143,16 @@ class JointPostures:
         starts = named_starts(self._solver, portfolio, self._fixed)
         return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
+    def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
+        """What the first start leads to without disturbances, bodies passing through each other or not."""
+        simple = self._undisturbed or self
+        name, start = named_starts(simple._solver, portfolio, simple._fixed)[0]
+        parameters = {"design": design, **simple._beside(task)}
+        raw = simple._solver.solve(parameters, simple._begun(start, parameters))
+        attempt = checked(self.name, name, raw, ())
+        found = Candidate(attempt, simple._instants(raw, task), (), raw)
+        return Trial((attempt,), found if found.solved else None)
+
     def solve_beside(
         self,
         design: Sequence[float],
@@ -163,13 +173,16 @@ class JointPostures:
         task, solver = solution.case.task, self._solver
         parameters = {"design": design, **self._beside(task)}
         start = self._begun(solver.needed(raw), parameters)
-        raw = solver.settled(parameters, solver.near.solve(parameters, start), gain=np.inf)
+        raw = solver.near.solve(parameters, start)  # the check comes later
         if raw.status is not Status.SOLVED:
             return None
         return replace(solution, instants=self._instants(raw, task), raw=raw)
 
     def finished(self, design: Sequence[float], task: Task, raw: RawSolution, checker: Checker) -> Trial:
         """A solve for this design that was not checked, checked."""
+        found = self._candidate("neighbour", raw, task, checker)
+        if found.solved:
+            return Trial((found.attempt,), found)
         parameters, ends = {"design": design, **self._beside(task)}, [("neighbour", raw)]
         return self._cheapest(parameters, task, ends, checker, gain=np.inf)
 
@@ -243,13 +256,18 @@ class JointPostures:
         gain: float = 0.0,
     ) -> Trial:
         """The best of where starts led, settled with a gain and checked."""
+        return cheapest(
+            self.name,
+            ends,
+            lambda raw: self._solver.settled(parameters, raw, gain),
+            lambda start, raw: self._candidate(start, raw, task, checker),
+        )
 
-        def finish(start: str, raw: RawSolution) -> Candidate:
-            instants = self._instants(raw, task)
-            residuals = checker.task_residuals(instants, task.heights)
-            return Candidate(checked(self.name, start, raw, residuals), instants, residuals, raw)
-
-        return cheapest(self.name, ends, lambda raw: self._solver.settled(parameters, raw, gain), finish)
+    def _candidate(self, start: str, raw: RawSolution, task: Task, checker: Checker) -> Candidate:
+        """A solve that succeeded, after the check."""
+        instants = self._instants(raw, task)
+        residuals = checker.task_residuals(instants, task.heights)
+        return Candidate(checked(self.name, start, raw, residuals), instants, residuals, raw)
 
     def _ends(
         self, parameters: Mapping[str, Any], starts: Sequence[tuple[str, Start]]
@@ -258,8 +276,9 @@ class JointPostures:
 
         What cannot be held without disturbances cannot be held with them.
         """
-        solver, begun = self._solver, self._undisturbed if len(starts) > FEW else None
-        if begun is not None:
+        solver, simple = self._solver, self._undisturbed if len(starts) > FEW else None
+        if simple is not None:
+            begun = simple._solver
             first = [(name, begun.solve(parameters, start)) for name, start in starts]
             settled = _settled(begun, parameters, _distinct(first))
             if not any(raw.status is Status.SOLVED for _, raw in settled):

@@ -57,6 +57,7 @@ __all__ = [
     "CLEAR",
     "COLLISIONS",
     "NUMBERS",
+    "OFF",
     "OVERLAP",
     "PARTING",
     "Meeting",
@@ -72,7 +73,7 @@ CLEAR = "clear"
 """Rows along directions."""
 
 OFF = 10.0
-"""What a row that is switched off has added to it [m]."""
+"""What a row that is switched off has added to it [m], or is in its place."""
 
 
 class MeetingKind(Enum):
