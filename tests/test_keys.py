@@ -214,7 +214,7 @@ def test_a_piece_is_that_of_its_scene_and_of_symmetric_postures_or_not() -> None
     turned, unlike = replace(setting, scenes=setting.scenes[::-1]), replace(setting, symmetry=Symmetry.OFF)
     for subject in Subject:
         key = key_of(setting, Piece(subject, first, task))
-        of_everyone = subject in (Subject.WIDER, Subject.MEETINGS, Subject.LIFT)
+        of_everyone = subject in (Subject.CHOSEN, Subject.MEETINGS, Subject.LIFT)
         assert (key == key_of(turned, Piece(subject, first, task))) is not of_everyone
         assert key != key_of(setting, Piece(subject, last, task))
         assert key != key_of(unlike, Piece(subject, first, task))

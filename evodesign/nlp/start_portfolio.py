@@ -244,9 +244,10 @@ def chosen(
         most: starts that the portfolio may hold.
     """
     ends = [[landscape.solve(design, start) for start in offers] for design in designs]
-    costs = np.array([[_cost(end) for end in row] for row in ends]).reshape(-1, len(offers))
-    iterations = np.array([[end.iterations for end in row] for row in ends]).reshape(-1, len(offers))
-    work = iterations.mean(axis=0) * [landscape.size(start) for start in offers]
+    shape = len(designs), len(offers)
+    costs = np.array([[_cost(end) for end in row] for row in ends]).reshape(shape)
+    iterations = np.array([[end.iterations for end in row] for row in ends]).reshape(shape)
+    work = iterations.sum(axis=0) * [landscape.size(start) for start in offers]
     best = costs.min(axis=1, initial=np.inf)
     held = np.isfinite(best)
     costs, best = costs[held], best[held]

@@ -7,7 +7,7 @@ from itertools import pairwise
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Sphere
-from evodesign.collision.pairs import collision_pairs, holding_links
+from evodesign.collision.pairs import checked_pairs, collision_pairs, feet_pairs, holding_links
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
@@ -45,6 +45,26 @@ def test_a_pair_that_always_overlaps_is_not_collision_pairs() -> None:
     checked = collision_pairs(tree, tree.actuated)
     assert not [pair for pair in checked if "shell" in pair]
     assert ("ball 0", "ball 4") in checked
+
+
+def test_each_part_of_a_foot_is_kept_from_that_of_the_other(problem: DesignProblem) -> None:
+    feet = {
+        agent.name: feet_pairs(
+            agent.tree,
+            agent.joints,
+            agent.soles,
+            checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles),
+        )
+        for agent in (problem.scene.robot, problem.scene.human)
+    }
+    assert {("l_foot_front", "r_foot_front"), ("l_foot_rear", "r_foot_rear")} <= set(feet["robot"])
+    assert set(feet["human"]) == {("LeftFoot", "RightFoot"), ("LeftToe", "RightToe")}
+    assert all(one.lower().lstrip("lr") != other for pairs in feet.values() for one, other in pairs)
+    agent = problem.scene.human
+    assert feet_pairs(agent.tree, agent.joints, agent.soles, [("LeftToe", "RightToe")]) == (
+        ("LeftToe", "RightToe"),
+    )
+    assert feet_pairs(agent.tree, agent.joints, agent.soles, ()) == ()
 
 
 def test_hands_hold_and_forearms_do_not(problem: DesignProblem) -> None:

@@ -10,14 +10,15 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.program import ConstraintBlock, Program, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import Solver, SolverOptions
 from evodesign.nlp.start_portfolio import (
+    Coverage,
     Landscape,
     Training,
+    chosen,
     spread_designs,
     start_portfolio,
-    widened,
 )
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
@@ -164,15 +165,79 @@ def test_seeds_reach_higher_than_fixed_starts(
     assert seeded > fixed + 0.05
 
 
-def test_starts_of_similar_landscapes_are_taken_where_they_serve_more() -> None:
-    one = start_portfolio(landscape(), designs(), replace(TRAINING, portfolio=1))
-    offers = [{"robot.joints": [well]} for well in WELLS]
-    cases = ((landscape(), design) for design in designs(40))
-    wider = widened(one, offers, cases, most=8)
-    wells = {min(WELLS, key=lambda well: abs(well - start["robot.joints"][0])) for start in wider.starts}
-    assert wider.starts[0] == one.starts[0]
-    assert wells == set(WELLS)
-    assert len(wider.starts) == len(WELLS)
-    served = widened(one, offers, iter([(landscape(), (one.starts[0]["robot.joints"][0],))]), most=8)
-    assert served.starts == one.starts
-    assert len(widened(one, offers, ((landscape(), each) for each in designs(40)), most=2).starts) == 2
+def well_of(start: Start) -> float:
+    return min(WELLS, key=lambda well: abs(well - start["robot.joints"][0]))
+
+
+def test_as_few_starts_are_chosen_as_serve_every_design() -> None:
+    offers = [{"robot.joints": [well + shift]} for shift in (0.0, 0.01) for well in (*WELLS, -2.8)]
+    found = chosen(landscape(), offers, list(designs(60)), most=8)
+    assert sorted(map(well_of, found.starts)) == sorted(WELLS)
+    assert found.coverage == Coverage(30, 30, 0.0)
+    few = chosen(landscape(), offers, list(designs(60)), most=2)
+    served = {well_of(start) for start in few.starts}
+    assert len(few.starts) == len(served) == 2
+    assert few.coverage.good < few.coverage.designs
+    assert few.coverage.worst > 0.1
+    one = min(WELLS, key=lambda well: -np.cos(2.0 * np.pi * (well - 1.0) / 6.0))
+    assert [well_of(start) for start in chosen(landscape(), offers, [(1.0,)] * 4, most=8).starts] == [one]
+
+
+def test_nothing_is_chosen_where_nothing_is_offered_or_no_design_is_held() -> None:
+    assert chosen(landscape(), [], list(designs(4)), most=3).starts == ()
+    assert chosen(landscape(), list(FIXED), [], most=3).starts == ()
+    nowhere = chosen(landscape(limit=1.0, least=2.5), list(FIXED), list(designs(4)), most=3)
+    assert nowhere.starts == ()
+    assert nowhere.coverage.designs == 0
+
+
+class CountedSolver(LeavingSolver):
+    """As many iterations as a start says."""
+
+    def solve(self, parameters: dict, start: dict) -> SimpleNamespace:
+        """The same optimum from everywhere."""
+        (work,) = start["robot.joints"]
+        return SimpleNamespace(status=Status.SOLVED, cost=1.0, iterations=work, values=start)
+
+
+def test_of_starts_that_serve_as_many_the_one_with_the_least_work_is_chosen() -> None:
+    counted = CountedSolver()
+    counted.program = landscape().solver.program
+    offers = [{"robot.joints": [work]} for work in (30, 20, 40)]
+    found = chosen(replace(landscape(), solver=counted), offers, list(designs(6)), most=3)
+    assert [start["robot.joints"] for start in found.starts] == [[20]]
+
+
+def test_a_solution_that_is_not_accepted_counts_as_none() -> None:
+    above = replace(landscape(), accepted=lambda design, raw: raw.values["robot.joints"][0] > 0.0)
+    assert above.solve((0.0,), {"robot.joints": [1.0]}).status is Status.SOLVED
+    refused = above.solve((0.0,), {"robot.joints": [-0.5]})
+    assert refused.status is Status.NUMERICAL_FAILURE
+    assert refused.reason == "the check refuses it"
+    found = start_portfolio(above, designs(), TRAINING)
+    assert {well_of(start) for start in found.starts} == {1.0, 2.5}
+
+
+def two_parties() -> Landscape:
+    """Two unknowns, each with a good well near one fixed start only, and a poor one near the other."""
+    design = ca.SX.sym("design")
+    names = ("robot.joints", "human.joints")
+    both = [replace(Variable.column(name, [-2.0], [2.0], [0.0], 1.0), drawn=True) for name in names]
+    one, other = (variable.value[0] for variable in both)
+
+    def wells(x: ca.SX, deep: float) -> ca.SX:
+        return -sum(depth * ca.exp(-40.0 * (x - well) ** 2) for well, depth in ((deep, 1.0), (-deep, 0.5)))
+
+    cost = wells(one, 1.0) + wells(other, -1.0) + 0.01 * design * (one + other)
+    program = Program("two", tuple(both), (), cost, {"design": design})
+    starts = tuple({name: [place] for name in names} for place in (1.0, -1.0))
+    return Landscape(Solver(program, SolverOptions()), {}, starts, 0.01, 1e-6)
+
+
+@pytest.mark.parametrize("party", [(), ("human.joints",)])
+def test_one_party_of_an_optimum_is_tried_beside_the_other_of_another(party: tuple[str, ...]) -> None:
+    """From both fixed starts one of two is in a poor well; together they have a good one each."""
+    training = Training(designs=8, starts=0, crossed=4, candidates=4, portfolio=2, rounds=1)
+    found = start_portfolio(replace(two_parties(), party=party), designs(), training)
+    costs = [two_parties().solve((0.0,), start).cost for start in found.starts]
+    assert (min(costs) < -1.9) is bool(party)

@@ -20,6 +20,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel
+from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.human_value import human_program
@@ -33,6 +34,7 @@ from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.collisions import (
+    NUMBERS,
     directed,
     placed_pairs,
     placed_shape,
@@ -40,6 +42,7 @@ from evodesign.posture.terms.collisions import (
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.sensitivities import Sensitivities
+from evodesign.records import Status
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Link, Look, Tree
 
@@ -281,6 +284,43 @@ def test_no_bodies_of_a_solved_posture_overlap(
                 assert other.residuals["overlap"] == 0.0
                 changed += other.attempt.cost > one.attempt.cost + 1e-6
     assert changed > 0
+
+
+@pytest.mark.slow
+def test_a_solution_stays_without_the_rows_that_do_not_hold_it(apart: DesignProblem, met: dict) -> None:
+    """With every row on, and with those that are needed: the same posture; without those, another one."""
+    setting = replace(setting_of(apart), scene=with_meetings(apart.scene, met))
+    solver = ReachProblem(setting, symmetric=True)._solver
+    (name,) = solver.program.switches.names
+    values = apart.space.unscaled(apart.scene.robot.tree)
+    parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST}
+    start = solver.parted_start(parameters, {HEIGHT: [1.0]})
+    found = solver.settled(parameters, solver.solve(parameters, start))
+    assert found.status is Status.SOLVED
+    needed = solver.needed(found)
+    on, kept = (np.array(each[name]).reshape(-1, NUMBERS)[:, 0] != 0.0 for each in (found.values, needed))
+    assert 0 < kept.sum() < on.sum()
+    again = solver.near.solve(parameters, needed)
+    assert again.cost == pytest.approx(found.cost, abs=1e-5)
+    bare = {**found.values, name: np.zeros(len(found.values[name]))}
+    assert solver.near.solve(parameters, bare).cost < found.cost - 1e-3
+
+
+@pytest.mark.slow
+def test_postures_in_which_bodies_overlap_are_told(problem: DesignProblem, apart: DesignProblem) -> None:
+    """Those of the problem without rows, by the checkers of the one that asks for parted bodies."""
+    values = tuple(problem.space.unscaled(problem.scene.robot.tree))
+    checkers = DesignCheckers(apart.scene, apart.space)
+    told = []
+    for case in Evaluator(problem).solve(values).cases:
+        checker = checkers.of(values)
+        assert checkers.of(values) is checker
+        residuals = checker.task_residuals(case.instants, case.case.task.heights)
+        deep = next(each.size for each in residuals if each.name == "overlap")
+        assert checker.overlaps(case.instants, case.case.task.heights) is (deep > 1e-5)
+        told.append(deep > 1e-5)
+    assert any(told)
+    assert not DesignCheckers(problem.scene, problem.space).of(values).overlaps(case.instants, (1.0,))
 
 
 @pytest.mark.slow

@@ -52,8 +52,8 @@ def test_only_machine_code_is_made_of_the_default_problem(source: ProblemSource)
     problem, pool = build_problem(source), Recorder()
     known = precomputed(problem, None, pool, SILENT)
     assert {piece.subject for piece in pool.asked} == set(PROGRAMS)
-    assert set(known.postures) == set(problem.holds)
-    assert all(portfolio.starts for portfolio in (known.highest, known.lowest, *known.postures.values()))
+    assert set(known.postures) == set(known.chosen) == set(problem.cases)
+    assert all(portfolio.starts for portfolio in (known.highest, known.lowest, *known.chosen.values()))
     assert set(known.person_reaches) == {scene.pair for scene in problem.scenes}
     assert known.meetings
 

@@ -53,10 +53,10 @@ STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
 
 Whole postures have many optima that lie close to each other; from random starts the best one is rarely found,
-but the optima of other designs lead there.
+but the optima of other designs lead there. So have extreme heights where bodies are kept apart.
 """
 
-CHOOSING, MOST_CHOSEN = 64, 8
+CHOOSING, MOST_CHOSEN = 96, 8
 """Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
 MOST_LOWEST = 2
@@ -182,7 +182,8 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
         landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
         training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
-    if not setting.symmetric:
+    parted = scene.robot.collisions is not None
+    if not setting.symmetric or (parted and task is None):
         near = STRICTER * landscape.relative, STRICTER * landscape.absolute
         landscape = replace(landscape, relative=near[0], absolute=near[1])
 
@@ -192,7 +193,6 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})
 
-    parted = scene.robot.collisions is not None
     if parted and setting.symmetric:
         training = replace(training, portfolio=PARTED_PORTFOLIO, rounds=PARTED_ROUNDS)
     if parted:
@@ -210,7 +210,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:
     """Starts of a person at every task, or those made in the middle, and those of others at this task."""
-    found = {case: portfolio.starts for case, portfolio in known.postures.items()}
+    found = {case: known.postures[case].starts for case in sorted(known.postures, key=lambda each: each.name)}
     whose = pair if any(case.pair == pair for case in found) else setting.middle.pair
     return [
         start for case, starts in found.items() for start in starts if case.task == task or case.pair == whose
