@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,9 +14,11 @@ from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import CaseSolution
 from evodesign.problem import sizing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.design_result import DesignResult
+from evodesign.problem.design_solver import _OneDesign
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.objectives import objective_kinds
@@ -114,6 +117,34 @@ def test_predictions_are_first_order_in_the_masses_of_actuators(
     ((_, squat),) = result.standing.torques(tree)
     predicted = demand.at(sizes)["margin.knee"]
     assert predicted == pytest.approx(2 * abs(squat.torques["l_knee"]) / actuator_law().peak(1.0), rel=1e-5)
+
+
+def test_rounds_begin_at_the_sizes_that_a_sketch_asks_for_and_end_where_they_do_without(
+    inner: Evaluator, result: DesignResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[list[float]] = []
+    sketches: list[tuple[CaseSolution, ...]] = []
+    first, sketched = _OneDesign.first, _OneDesign.sketched
+
+    def seen(design: _OneDesign, values: Sequence[float]) -> tuple[CaseSolution, ...]:
+        begun.append(list(values[2:]))
+        return first(design, values)
+
+    def kept(design: _OneDesign, values: Sequence[float]) -> tuple[CaseSolution, ...]:
+        sketches.append(sketched(design, values))
+        return sketches[-1]
+
+    monkeypatch.setattr(_OneDesign, "first", seen)
+    monkeypatch.setattr(_OneDesign, "sketched", kept)
+    told = inner.solve(DESIGN)
+    monkeypatch.setattr(_OneDesign, "sketched", lambda design, values: ())
+    untold = inner.solve(DESIGN)
+    ((case,),) = sketches
+    arms = [abs(case.postures[ROBOT].torques[joint]) for joint in GROUPS["elbow"]]
+    assert begun[0][1] == pytest.approx(DESIGN[3] * max(arms), rel=0.05)
+    assert begun[1][1] != pytest.approx(begun[0][1], rel=0.05)
+    assert told.rated == result.rated
+    assert untold.rated == pytest.approx(told.rated, rel=1e-3)
 
 
 def test_an_actuator_that_nothing_is_asked_of_is_the_smallest_that_is_made(

@@ -56,7 +56,7 @@ Whole postures have many optima that lie close to each other; from random starts
 but the optima of other designs lead there. So have extreme heights where bodies are kept apart.
 """
 
-CHOOSING, MOST_CHOSEN = 96, 8
+CHOOSING, MOST_CHOSEN = 64, 8
 """Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
 MOST_LOWEST = 2
