@@ -26,7 +26,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import DesignProblem
-from evodesign.records import Hold, Status
+from evodesign.records import Case, Hold, Status
 from tests.posture.violations import violations
 
 HEAVIER = Disturbance("heavier", mass_share=0.2)
@@ -57,7 +57,9 @@ def postures_in(
     forms = symmetric_forms(scene) if symmetry is Symmetry.ON else (whole(scene.robot), whole(scene.human))
     start = start_from(landscape.solver.program, forms, [Instant(0.0, like)])
     portfolio = StartPortfolio((start,), Coverage(0, 0, 0.0))
-    return PostureProblem(setting, symmetry, Precomputed(postures={HOLD: portfolio}), solvers)
+    return PostureProblem(
+        setting, symmetry, Precomputed(postures={Case(person="", payload="", task=HOLD): portfolio}), solvers
+    )
 
 
 def checker_of(scene: Scene, problem: DesignProblem, values: tuple[float, ...]) -> Checker:
@@ -204,7 +206,9 @@ def from_several(scene: Scene, problem: DesignProblem, starts: StartPortfolio, t
     """Of the unscaled robot, from every start of a portfolio."""
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     values = problem.space.unscaled(scene.robot.tree)
-    postures = PostureProblem(setting, Symmetry.ON, Precomputed(postures={task: starts}))
+    postures = PostureProblem(
+        setting, Symmetry.ON, Precomputed(postures={Case(person="", payload="", task=task): starts})
+    )
     return postures.solve(values, task, checker_of(scene, problem, values))
 
 

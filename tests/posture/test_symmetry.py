@@ -20,7 +20,7 @@ from evodesign.posture.results import CaseSolution
 from evodesign.posture.starts import PEOPLE, different_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
-from evodesign.records import Hold, Status
+from evodesign.records import Case, Hold, Status
 
 
 def solve(
@@ -91,7 +91,11 @@ def test_a_whole_posture_that_no_known_start_leads_to_is_sought_from_the_fixed_s
     hurried = replace(problem, options=replace(problem.options, iterations=2))
     joints = {"robot.joints": np.zeros(len(problem.scene.robot.joints))}
     portfolio = StartPortfolio((joints,), Coverage(0, 0, 0.0))
-    solution = solve(hurried, Symmetry.OFF, known=Precomputed(postures={Hold(height_m=1.0): portfolio}))
+    solution = solve(
+        hurried,
+        Symmetry.OFF,
+        known=Precomputed(postures={Case(person="", payload="", task=Hold(height_m=1.0)): portfolio}),
+    )
     starts = ["whole: start 1", "whole: fixed start 1", "whole: fixed start 2"]
     assert [attempt.name for attempt in solution.attempts] == starts
 
@@ -103,7 +107,16 @@ def test_the_people_of_all_starts_are_tried_beside_the_best_robot(problem: Desig
     ).landscape(task)
     ends = [landscape.solve(space.unscaled(problem.scene.robot.tree), start) for start in landscape.starts]
     first, second = (StartPortfolio((end.values,), Coverage(0, 0, 0.0)) for end in ends)
-    solution = solve(problem, Symmetry.OFF, known=Precomputed(postures={task: first, other: second}))
+    solution = solve(
+        problem,
+        Symmetry.OFF,
+        known=Precomputed(
+            postures={
+                Case(person="", payload="", task=each): portfolio
+                for each, portfolio in ((task, first), (other, second))
+            }
+        ),
+    )
     names = ["whole: start 1", "whole: start 1, person 1", "whole: start 1, person 2"]
     assert [attempt.name for attempt in solution.attempts] == names
     assert solution.attempt is not None

@@ -94,5 +94,8 @@ def test_a_posture_near_the_end_of_reach_is_found_from_there(
     nearly = replace(problem, tasks=(Hold(height_m=highest - 0.004),))
     astray = {"robot.base_position": [-3.0, 0.0, 0.2]}
     portfolio = StartPortfolio((astray,), Coverage(0, 0, 0.0))
-    result = Evaluator(nearly, replace(known, values={}, postures={nearly.tasks[0]: portfolio})).solve(values)
+    result = Evaluator(
+        nearly,
+        replace(known, values={}, postures={Case(person="", payload="", task=nearly.tasks[0]): portfolio}),
+    ).solve(values)
     assert result.cases[0].solved, result.cases[0].reason
