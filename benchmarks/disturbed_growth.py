@@ -29,7 +29,7 @@ from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import DesignProblem
-from evodesign.records import Hold
+from evodesign.records import Case, Hold
 
 HEIGHT = 1.0
 HOLD = Hold(height_m=HEIGHT)
@@ -71,7 +71,9 @@ class Bench:
                 self._landscape.solver.program, symmetric_forms(self._scene), [Instant(0.0, like)]
             )
             starts = (like_known, *starts)
-        known = Precomputed(postures={HOLD: StartPortfolio(starts, Coverage(0, 0, 0.0))})
+        known = Precomputed(
+            postures={Case(person="", payload="", task=HOLD): StartPortfolio(starts, Coverage(0, 0, 0.0))}
+        )
         postures = PostureProblem(self._setting, self._problem.symmetry, known, self._solvers)
         return postures.solve(
             design, HOLD, Checker(self._scene, AgentModel.of(self._scene.robot, tree), self._human)
