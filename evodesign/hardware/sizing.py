@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from evodesign.records import Status
 
-__all__ = ["ROUNDS", "TOLERANCE", "Sizing", "met", "sized"]
+__all__ = ["ROUNDS", "TOLERANCE", "Sizing", "sized", "sizes_met"]
 
 TOLERANCE = 1e-4
 """Largest change of a size, as a share of it, that ends the rounds."""
@@ -101,8 +101,8 @@ def sized(
         if _change(sizes, wanted) <= tolerance:
             return Sizing(Status.SOLVED, "solved", sizes, wanted, number)
         if number < rounds:
-            meeting = wanted if predict is None else met(predict, wanted, margins, bounds)
-            met_before.append((np.log([*sizes.values()]), np.log([meeting[name] for name in sizes])))
+            met = wanted if predict is None else sizes_met(predict, wanted, margins, bounds)
+            met_before.append((np.log([*sizes.values()]), np.log([met[name] for name in sizes])))
             following = zip(sizes, np.exp(_mixed(met_before)).tolist(), strict=True)
             sizes = {name: _inside(size, bounds[name]) for name, size in following}
     change = _change(sizes, wanted)
@@ -110,7 +110,7 @@ def sized(
     return Sizing(Status.ITERATION_LIMIT, reason, sizes, wanted, rounds)
 
 
-def met(
+def sizes_met(
     predict: Callable[[Sizes], Sizes], start: Sizes, margins: Sizes, bounds: Mapping[str, tuple[float, float]]
 ) -> Sizes:
     """The sizes that are their margins times the predicted demand on them."""

@@ -17,7 +17,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from evodesign.design.space import TYPICAL, DesignSpace
-from evodesign.hardware.sizing import TOLERANCE, Sizing, met, sized
+from evodesign.hardware.sizing import TOLERANCE, Sizing, sized, sizes_met
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.demand import Demand, SizedRobot, demand_of
 from evodesign.problem.design_result import DesignResult
@@ -94,7 +94,7 @@ def sized_result(
     sketch = rounds.sketched(given(start))
     told = demand_of(space, given(start), robot, sketch) if sketch else ""
     if isinstance(told, Demand):
-        start = met(told.at, start, margins, bounds)
+        start = sizes_met(told.at, start, margins, bounds)
     for _ in range(BEGINNINGS):
         sizing = sized(demand, start, margins, bounds, predict)
         ended, latest = given(sizing.sizes), asked[-1]

@@ -6,7 +6,8 @@
 for any design (a parameter of one program built once).
 
 A program with disturbances has several times as many unknowns as the one without, and nearly the same
-optima. So all starts are solved without disturbances first, and the best few of their optima with them.
+optima. So where there are many starts, all are solved without disturbances first, and the best few of their
+optima with them.
 
 Source: Sartore et al. 2022, Eq. 14 with pi fixed.
 """

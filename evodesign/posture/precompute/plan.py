@@ -178,6 +178,6 @@ def _push_alone(scene: Scene, space: DesignSpace) -> bool:
 
 
 def all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
-    """Without disturbances: portfolios are made so, as postures are solved so first."""
+    """Without disturbances: starts are found so, and chosen with them."""
     scenes = tuple(scene.undisturbed for scene in setting.scenes)
     return replace(setting, scenes=scenes, middle=setting.middle.undisturbed)
