@@ -272,7 +272,7 @@ def _cover(good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
     found: list[int] = []
     while len(found) < most and good.size:
         served = good[~good[:, found].any(axis=1)].sum(axis=0)
-        place = int(np.argmax(served / work))
+        place = int(np.argmax(served / np.maximum(work, 1.0)))
         if not served[place]:
             break
         found.append(place)

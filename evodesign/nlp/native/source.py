@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.native.elimination import Elimination, Entries, determined, elimination
-from evodesign.nlp.native.switched import SwitchedRow, Symbols, switched_rows
+from evodesign.nlp.native.switched import FunctionSymbols, SwitchedRow, switched_rows
 from evodesign.nlp.program import Array, Program
 
 __all__ = ["METHOD_FILES", "PROBLEM", "fixed_variables", "program_text"]
@@ -50,7 +50,7 @@ def program_text(program: Program) -> str:
     cost, rows, by_fixed, by_given = ca.substitute(
         [program.cost, program.rows, by_fixed, ca.gradient(lagrangian, given)], [fixed], [ca.SX(lower[held])]
     )
-    symbols = Symbols(free, given, multipliers)
+    symbols = FunctionSymbols(free, given, multipliers)
     hessian, jacobian = symbols.hessian(cost + ca.dot(multipliers, rows)), ca.jacobian(rows, free)
     sparsities = hessian.sparsity(), jacobian.sparsity()
     switched = switched_rows(program, rows, symbols, *sparsities)

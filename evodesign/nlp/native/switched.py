@@ -9,11 +9,11 @@ import casadi as ca
 
 from evodesign.nlp.program import Program
 
-__all__ = ["SwitchedRow", "Symbols", "switched_rows"]
+__all__ = ["FunctionSymbols", "SwitchedRow", "switched_rows"]
 
 
 @dataclass(frozen=True, slots=True)
-class Symbols:
+class FunctionSymbols:
     """What functions are of: variables, parameters and multipliers of all rows."""
 
     free: Any
@@ -55,7 +55,7 @@ class SwitchedRow:
 
 
 def switched_rows(
-    program: Program, rows: Any, symbols: Symbols, hessian: Any, jacobian: Any
+    program: Program, rows: Any, symbols: FunctionSymbols, hessian: Any, jacobian: Any
 ) -> list[SwitchedRow]:
     """The rows that may be off: most are, and functions of their own are called for those that are on.
 

@@ -127,16 +127,14 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
         found = msgspec.json.decode(content, type=StartPortfolio)
     except msgspec.DecodeError:
         return None
-    if piece.subject is Subject.LIFT and piece.task is not None:
-        person, payload = piece.pair
-        case = Case(person=person, payload=payload, task=piece.task)
-        return replace(known, lifts={**known.lifts, case: found})
     if piece.task is not None:
         person, payload = piece.pair
-        case = Case(person=person, payload=payload, task=piece.task)
+        own = {Case(person=person, payload=payload, task=piece.task): found}
+        if piece.subject is Subject.LIFT:
+            return replace(known, lifts={**known.lifts, **own})
         if piece.subject is Subject.CHOSEN:
-            return replace(known, chosen={**known.chosen, case: found})
-        return replace(known, postures={**known.postures, case: found})
+            return replace(known, chosen={**known.chosen, **own})
+        return replace(known, postures={**known.postures, **own})
     highest = piece.subject is Subject.HIGHEST
     return replace(known, highest=found) if highest else replace(known, lowest=found)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.method import MethodName, SolverOptions
-from evodesign.nlp.native.switched import Symbols, switched_rows
+from evodesign.nlp.native.switched import FunctionSymbols, switched_rows
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import Solver
 from evodesign.records import Status
@@ -21,7 +21,7 @@ ROWS, OFF, LEAST = 4, 10.0, 0.3
 NATIVE = SolverOptions(compiled=True, method=MethodName.NATIVE)
 
 
-class Numbers:
+class ByNumbers:
     """Switches of a program with all rows: one number for each; which are on is told by starts alone."""
 
     def __init__(self, program: Program | None = None) -> None:
@@ -68,7 +68,7 @@ def program(seed: int, kept: Sequence[bool] | None = None) -> Program:
     blocks = [ConstraintBlock("plane", ca.sum1(x) + 0.1 * ca.sumsqr(x), 0.0, 0.0)]
     blocks += [ConstraintBlock("walls", ca.vertcat(*walls), LEAST, np.inf)] if walls else []
     variable = Variable("x", x, 1.0, np.full(5, -4.0), np.full(5, 4.0), np.full(5, 0.5))
-    switches = Numbers()
+    switches = ByNumbers()
     given = {"target": target, **({"on": on} if kept is None else {})}
     found = Program("walls", (variable,), tuple(blocks), ca.sumsqr(x - target), given, None)
     return replace(found, switches=switches) if kept is None else found
@@ -96,7 +96,7 @@ def test_entries_are_at_their_places_among_those_of_the_program() -> None:
     """The sum of all rows' own derivatives, put where they belong, against CasADi's of the whole."""
     whole = program(1)
     multipliers = ca.SX.sym("multipliers", whole.rows.numel())
-    symbols = Symbols(whole.symbols, whole.given, multipliers)
+    symbols = FunctionSymbols(whole.symbols, whole.given, multipliers)
     jacobian = ca.jacobian(whole.rows, whole.symbols)
     hessian = symbols.hessian(ca.dot(multipliers, whole.rows))
     rng = np.random.default_rng(0)
