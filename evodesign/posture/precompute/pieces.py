@@ -53,7 +53,7 @@ STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
 
 Whole postures have many optima that lie close to each other; from random starts the best one is rarely found,
-but the optima of other designs lead there. So have extreme heights where bodies are kept apart.
+but the optima of other designs lead there. So do those of the highest load where bodies are kept apart.
 """
 
 CHOOSING, MOST_CHOSEN = 64, 8
@@ -181,7 +181,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
         training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
     parted = scene.robot.collisions is not None
-    if not setting.symmetric or (parted and task is None):
+    if not setting.symmetric or (parted and piece.subject is Subject.HIGHEST):
         near = STRICTER * landscape.relative, STRICTER * landscape.absolute
         landscape = replace(landscape, relative=near[0], absolute=near[1])
 
