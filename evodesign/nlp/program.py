@@ -214,15 +214,20 @@ class Program:
             v.name: v.scale * symbols[place] for v, place in zip(self.variables, self._places, strict=True)
         }
 
-    @property
+    @cached_property
     def switched(self) -> bool:
         """Whether it has all rows, and its switches among its parameters."""
         return self.switches is not None and set(self.switches.names) <= self.parameters.keys()
 
     def held(self, start: Start) -> dict[str, Array]:
         """The parameters that a solve takes from its start; zero where that says nothing."""
+        return {name: np.asarray(start.get(name, off)) for name, off in self._off.items()}
+
+    @cached_property
+    def _off(self) -> Mapping[str, Array]:
+        """The parameters of switches when all rows are off."""
         names = self.switches.names if self.switches is not None and self.switched else ()
-        return {name: np.asarray(start.get(name, np.zeros(self.parameters[name].numel()))) for name in names}
+        return {name: np.zeros(self.parameters[name].numel()) for name in names}
 
     @cached_property
     def _scales(self) -> Array:

@@ -184,7 +184,7 @@ class Solver:
             found = self._without_violations(
                 parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
             )
-        return self._bettered(parameters, found, gain)
+        return self.bettered(parameters, found, gain)
 
     def needed(self, raw: RawSolution) -> Start:
         """A solution's values without the rows on that do not hold it: for solves that begin close to it."""
@@ -201,8 +201,8 @@ class Solver:
             return start
         return {**start, **switches.begun(start, parameters)}
 
-    def _bettered(self, parameters: Mapping[str, Any], found: RawSolution, gain: float) -> RawSolution:
-        """Rows that hold a solution are kept in better ways, as long as it gains by them."""
+    def bettered(self, parameters: Mapping[str, Any], found: RawSolution, gain: float) -> RawSolution:
+        """A solution whose rows are kept in better ways, as long as it gains more by them than `gain`."""
         switches = self.program.switches
         for _ in range(ROUNDS):
             if switches is None or found.status is not Status.SOLVED or gain == np.inf:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 from evodesign.nlp.solver import RawSolution
@@ -12,7 +12,14 @@ from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.terms.base import Residual
 from evodesign.records import Case, Status, worst_status
 
-__all__ = ["Candidate", "Trial", "case_solution", "cheapest", "checked"]
+__all__ = ["DISTINCT", "Candidate", "Finishing", "Trial", "case_solution", "cheapest", "checked"]
+
+
+DISTINCT = 1e-5
+"""Share of its cost by which one optimum must exceed another not to be the same."""
+
+MAY_GAIN = 0.15
+"""By how much of the best one's cost others may cost more and are looked at for ways to cost less."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,41 +76,67 @@ def checked(formulation: str, start: str, raw: RawSolution, residuals: Sequence[
     return Attempt(formulation, start, status, reason, raw.iterations, raw.seconds, raw.cost, raw.method)
 
 
-def cheapest(
-    formulation: str,
-    ends: Sequence[tuple[str, RawSolution]],
-    settle: Callable[[RawSolution], RawSolution],
-    finish: Callable[[str, RawSolution], Candidate],
-) -> Trial:
-    """Settle, finish and check solves from the cheapest on, until one holds.
+@dataclass(frozen=True, slots=True)
+class Finishing:
+    """How solves become candidates.
+
+    Args:
+        settle: goes on from a solution that violates rows which were switched off; what it gives costs more.
+        better: what a solution leads to that may cost less by more than so much.
+        finish: makes a candidate of a named solve that succeeded.
+    """
+
+    settle: Callable[[RawSolution], RawSolution]
+    better: Callable[[RawSolution, float], RawSolution]
+    finish: Callable[[str, RawSolution], Candidate]
+
+
+def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishing: Finishing) -> Trial:
+    """Settle, finish and check solves from the cheapest on, until one holds; others may yet cost less.
 
     Args:
         formulation: its name.
         ends: the name of each start, and where it led.
-        settle: goes on from a solution that violates rows which were switched off; what it gives costs more.
-        finish: makes a candidate of a solve that succeeded.
+        finishing: how solves become candidates.
     """
     starts, raws = [start for start, _ in ends], [raw for _, raw in ends]
     attempts = [checked(formulation, start, raw, ()) for start, raw in ends]
     left = {place for place, raw in enumerate(raws) if raw.status is Status.SOLVED}
     settled: set[int] = set()
-    overlaps = False
-    while left:
+    overlaps, best = False, None
+    while left and best is None:
         place = min(left, key=lambda place: (raws[place].cost, place))
         if place not in settled:
             settled.add(place)
-            raws[place] = settle(raws[place])
+            raws[place] = finishing.settle(raws[place])
             attempts[place] = checked(formulation, starts[place], raws[place], ())
         else:
-            candidate = finish(starts[place], raws[place])
+            candidate = finishing.finish(starts[place], raws[place])
             attempts[place] = candidate.attempt
-            if candidate.solved:
-                return Trial(tuple(attempts), candidate)
             overlaps = overlaps or candidate.overlaps
             left.remove(place)
+            best = candidate if candidate.solved else None
         if raws[place].status is not Status.SOLVED:
             left.discard(place)
-    return Trial(tuple(attempts), None, overlaps)
+    if best is None:
+        return Trial(tuple(attempts), None, overlaps)
+    for place in _runners_up(best.raw, raws, left - settled):
+        found = finishing.better(raws[place], raws[place].cost - best.raw.cost)
+        if found.status is Status.SOLVED and found.cost < best.raw.cost:
+            candidate = finishing.finish(starts[place], found)
+            attempts[place] = candidate.attempt
+            best = candidate if candidate.solved else best
+    return Trial(tuple(attempts), best)
+
+
+def _runners_up(best: RawSolution, raws: Sequence[RawSolution], places: Collection[int]) -> list[int]:
+    """Those of some solves that cost little more than the best one, the cheapest first, each optimum once."""
+    found: list[int] = []
+    for place in sorted(places, key=lambda each: raws[each].cost):
+        last = raws[found[-1]].cost if found else best.cost
+        if last * (1.0 + DISTINCT) < raws[place].cost <= (1.0 + MAY_GAIN) * best.cost:
+            found.append(place)
+    return found
 
 
 def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:

@@ -58,12 +58,15 @@ int factorise(Solver *s, const double *hessian, double dual_shift) {
         for (int k = p->pattern_starts[i]; k < p->pattern_starts[i + 1]; k++) {
             int column = p->pattern[k], last = filled[column];
             double value = row[column];
+            filled[column] = last + 1;
+            factor[last] = 0;
+            if (value == 0) /* as for a row that is off */
+                continue;
             row[column] = 0;
             subtract(factor, below, starts[column], last, value, row);
             double entry = value * inverse[column];
             pivot -= value * entry;
             factor[last] = entry;
-            filled[column] = last + 1;
         }
         if (!(fabs(pivot) > LEAST_PIVOT)) {
             regular = 0;
@@ -84,7 +87,8 @@ static void solve_factored(Solver *s, const double *right, double *solution) {
         z[i] = right[p->order[i]];
     for (int i = 0; i < s->unknowns; i++) {
         double value = z[i];
-        subtract(factor, below, starts[i], starts[i + 1], value, z);
+        if (value != 0)
+            subtract(factor, below, starts[i], starts[i + 1], value, z);
     }
     for (int i = s->unknowns - 1; i >= 0; i--) {
         double value = z[i] * s->inverse_pivots[i];

@@ -31,7 +31,7 @@ from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity, no_limits
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
-from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
+from evodesign.posture.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.check import Checker, Unchecked
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.formulations.human_value import (
@@ -186,7 +186,12 @@ class DecoupledPostures:
             residuals = checker.task_residuals(instants, task.heights)
             return Candidate(checked(self.name, start, both, residuals), instants, residuals, robot)
 
-        return cheapest(self.name, ends, lambda raw: self._robot.settled(parameters, raw), finish)
+        finishing = Finishing(
+            lambda raw: self._robot.settled(parameters, raw),
+            lambda raw, least: self._robot.bettered(parameters, raw, least),
+            finish,
+        )
+        return cheapest(self.name, ends, finishing)
 
     def _internal_force(self, robot: RawSolution) -> float:
         hand = robot.values[_left_hand(self._robot.program)]

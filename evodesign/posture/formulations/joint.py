@@ -30,8 +30,9 @@ from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
-from evodesign.posture.candidate import Candidate, Trial, cheapest, checked
+from evodesign.posture.candidate import DISTINCT, Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.check import Checker
+from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.parting import parted
@@ -58,9 +59,6 @@ MOST_OPTIMA = 3
 
 FEW = 8
 """Starts that are solved with disturbances at once."""
-
-DISTINCT = 1e-5
-"""Share of its cost by which one optimum must exceed another not to be the same."""
 
 
 class JointPostures:
@@ -115,6 +113,10 @@ class JointPostures:
         return different_people(self._solver.program, self._others)
 
     @cached_property
+    def _exchange(self) -> Exchange:
+        return Exchange(self._solver.program, self._forms)
+
+    @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
         return SolutionSensitivity(self._solver)
 
@@ -145,9 +147,12 @@ class JointPostures:
         return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
     def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
-        """What the first start leads to without disturbances, bodies passing through each other or not."""
+        """What the first start leads to without disturbances and with no rows on that part bodies."""
         simple = self._undisturbed or self
         name, start = named_starts(simple._solver, portfolio, simple._fixed)[0]
+        switches = simple._solver.program.switches
+        if switches is not None:
+            start = {key: value for key, value in start.items() if key not in switches.names}
         parameters = {"design": design, **simple._beside(task)}
         raw = simple._solver.solve(parameters, simple._begun(start, parameters))
         attempt = checked(self.name, name, raw, ())
@@ -240,6 +245,7 @@ class JointPostures:
         parameters = {"design": design, **self._beside(task)}
         ends = self._ends(parameters, starts)
         solved = [end for end in ends if end[1].status is Status.SOLVED]
+        ends += self._exchanged(parameters, solved)
         if solved:
             name, best = min(solved, key=lambda end: end[1].cost)
             ends += [
@@ -247,6 +253,20 @@ class JointPostures:
                 for number, person in enumerate(people, 1)
             ]
         return self._cheapest(parameters, task, ends, checker)
+
+    def _exchanged(
+        self, parameters: Mapping[str, Any], solved: Sequence[tuple[str, RawSolution]]
+    ) -> list[tuple[str, RawSolution]]:
+        """Where the most promising robot leads beside the most promising person, if they are of two ends."""
+        weights = shared_weights(self._setting.weights, self._setting.space, parameters["design"])
+        pair = self._exchange.best([raw.values for _, raw in solved], weights)
+        if pair is None:
+            return []
+        (name, robot), (other, person) = (solved[place] for place in pair)
+        start = {**robot.values, **{key: person.values[key] for key in self.person & person.values.keys()}}
+        return [
+            (f"{name}, person of {other}", self._solver.solve(parameters, self._begun(start, parameters)))
+        ]
 
     def _cheapest(
         self,
@@ -257,12 +277,12 @@ class JointPostures:
         gain: float = 0.0,
     ) -> Trial:
         """The best of where starts led, settled with a gain and checked."""
-        return cheapest(
-            self.name,
-            ends,
+        finishing = Finishing(
             lambda raw: self._solver.settled(parameters, raw, gain),
+            lambda raw, least: self._solver.bettered(parameters, raw, max(gain, least)),
             lambda start, raw: self._candidate(start, raw, task, checker),
         )
+        return cheapest(self.name, ends, finishing)
 
     def _candidate(self, start: str, raw: RawSolution, task: Task, checker: Checker) -> Candidate:
         """A solve that succeeded, after the check."""
