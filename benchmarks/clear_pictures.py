@@ -4,8 +4,8 @@
 
 Of docs/model.md: the unscaled robot of point-grasp with a `[collisions]` table, and the person, at the lowest
 and the highest load height of the task: from the front, where each is drawn without the other, and from the
-side. Of docs/default.md, with a run of a problem with such a table: the designs of least robot torque and of
-least human torque with every person, likewise.
+side. Of docs/default.md and docs/sharing.md, with a run of the default problem, or of the shared one with the
+table: the designs of least robot torque and of least human torque with up to three people, likewise.
 """
 
 from __future__ import annotations
@@ -33,10 +33,12 @@ from evodesign.records import CaseDetail
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.scene_models import ContactWrench, PlacedScene, SceneModels, placed_scene
+from evodesign.report.subset import subsample
 from evodesign.runlog.run import read_run
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 FRONT, SIDE = Camera(0.0, math.radians(6.0)), Camera(-math.pi / 2.0, math.radians(6.0))
+PEOPLE = 3
 LARGEST = 150_000
 """Size of a picture's file [byte]."""
 
@@ -73,7 +75,7 @@ def draw(problem: DesignProblem, result: DesignResult, words: str, stem: str) ->
     """A design at the lowest and the highest height, with every person, from the side and from the front."""
     sides: list[PlacedScene] = []
     fronts: dict[str, list[PlacedScene]] = {ROBOT: [], HUMAN: []}
-    for scene in problem.scenes:
+    for scene in subsample(problem.scenes, PEOPLE):
         own = [detail_of(case) for case in result.cases if case.case.pair == scene.pair]
         ends = sorted((own[0], own[-1]), key=lambda detail: detail.case.task.height_m)
         models = SceneModels.of(scene, result.tree)
@@ -90,14 +92,14 @@ def draw_ends(run: Path) -> None:
     """The designs at both ends of a front."""
     log = read_run(run)
     problem = build_problem(log.header.problem)
-    evaluator = evaluator_of(problem, 1)
+    evaluator, stem = evaluator_of(problem, 1), "shared" if "shared" in problem.name else "default"
     for agent in (ROBOT, HUMAN):
         name = f"{agent}_torque"
         best = min(
             front(log.header.objectives, log.evaluations), key=lambda each: each.assessment.objectives[name]
         )
         result = evaluator.solve(problem.space.values(best.genome))
-        draw(problem, result, f"least {agent} torque", f"default_{agent}")
+        draw(problem, result, f"least {agent} torque", f"{stem}_{agent}")
 
 
 def main() -> None:

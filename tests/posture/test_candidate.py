@@ -1,0 +1,85 @@
+"""Which of several solves becomes the posture: the cheapest that holds, or one that gets better than it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from evodesign.nlp.solver import Multipliers, RawSolution
+from evodesign.posture.candidate import MAY_GAIN, Candidate, Finishing, Trial, cheapest, checked
+from evodesign.records import Status
+
+NOTHING = np.zeros(0)
+
+
+def ended(cost: float, status: Status = Status.SOLVED) -> RawSolution:
+    multipliers = Multipliers(NOTHING, NOTHING)
+    return RawSolution({}, status, "", 1, 0.0, cost, NOTHING, multipliers)
+
+
+class Asked:
+    """Solves that get better as a table has it, and how they were asked to.
+
+    Args:
+        costs: of the better solves, by cost.
+        refused: costs of what the check refuses.
+    """
+
+    def __init__(self, costs: dict[float, float], refused: tuple[float, ...] = ()) -> None:
+        self.asked: list[tuple[float, float]] = []
+        self._costs, self._refused = costs, refused
+
+    def trial(self, *costs: float) -> Trial:
+        ends = [(f"start {number}", ended(cost)) for number, cost in enumerate(costs, 1)]
+        return cheapest("joint", ends, Finishing(lambda raw: raw, self.better, self.finish))
+
+    def better(self, raw: RawSolution, least: float) -> RawSolution:
+        self.asked.append((raw.cost, round(least, 9)))
+        return replace(raw, cost=self._costs.get(raw.cost, raw.cost))
+
+    def finish(self, start: str, raw: RawSolution) -> Candidate:
+        attempt = checked("joint", start, raw, ())
+        if raw.cost in self._refused:
+            attempt = replace(attempt, status=Status.NUMERICAL_FAILURE)
+        return Candidate(attempt, (), (), raw)
+
+
+def best_of(trial: Trial) -> tuple[str, float]:
+    assert trial.best is not None
+    return trial.best.attempt.start, trial.best.raw.cost
+
+
+def test_a_runner_up_that_gets_better_than_the_cheapest_takes_its_place() -> None:
+    asked = Asked({10.5: 9.0})
+    trial = asked.trial(10.0, 10.5, 10.2)
+    assert best_of(trial) == ("start 2", 9.0)
+    assert asked.asked == [(10.2, 0.2), (10.5, 0.5)], "by more than what they cost more"
+    assert [attempt.cost for attempt in trial.attempts] == [10.0, 9.0, 10.2]
+
+
+def test_later_runners_up_must_get_better_than_earlier_ones() -> None:
+    asked = Asked({10.2: 9.5, 10.5: 9.7})
+    assert best_of(asked.trial(10.0, 10.2, 10.5)) == ("start 2", 9.5)
+    assert asked.asked == [(10.2, 0.2), (10.5, 1.0)]
+
+
+def test_the_same_optimum_and_ones_that_cost_much_more_are_not_asked() -> None:
+    asked = Asked({})
+    assert best_of(asked.trial(10.0, 10.0, 10.3, 10.3, 10.0 * (1.0 + MAY_GAIN) + 0.1)) == ("start 1", 10.0)
+    assert asked.asked == [(10.3, 0.3)]
+
+
+def test_a_better_solve_that_the_check_refuses_is_not_taken() -> None:
+    asked = Asked({10.2: 9.0}, refused=(9.0,))
+    trial = asked.trial(10.0, 10.2)
+    assert best_of(trial) == ("start 1", 10.0)
+    assert trial.attempts[1].status is Status.NUMERICAL_FAILURE
+
+
+def test_what_the_check_refuses_makes_room_for_the_next() -> None:
+    asked = Asked({}, refused=(10.0, 10.1))
+    assert best_of(asked.trial(10.0, 10.1, 10.2)) == ("start 3", 10.2)
+    refused = Asked({}, refused=(10.0,)).trial(10.0)
+    assert refused.best is None
+    assert not refused.overlaps
