@@ -118,7 +118,7 @@ def of_front(run: Path, designs: int) -> list[dict[str, Any]]:
         key=lambda each: each.assessment.objectives["robot_torque"],
     )
     chosen = subsample(on_front, designs)
-    problems = (build_problem(log.header.problem), build_problem(with_table(log.header.problem)))
+    problems = [build_problem(way(log.header.problem)) for way in (without_table, with_table)]
     evaluators = [evaluator_of(problem, 1) for problem in problems]
     rows = []
     for each in chosen:
