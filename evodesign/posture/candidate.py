@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from evodesign.nlp.solver import RawSolution
 from evodesign.posture.check import TOLERANCE, sizes
 from evodesign.posture.limit_groups import LimitGroup
@@ -20,6 +22,12 @@ DISTINCT = 1e-5
 
 MAY_GAIN = 0.15
 """By how much of the best one's cost others may cost more and are looked at for ways to cost less."""
+
+FAR = 1.5
+"""How many times the cheapest end of all the best posture may cost before all other ends are settled, too.
+
+Rows that are switched on may lead far away from what a start promised, and others less far.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +102,9 @@ class Finishing:
 def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishing: Finishing) -> Trial:
     """Settle, finish and check solves from the cheapest on, until one holds; others may yet cost less.
 
+    Others are looked at for ways to get better than it, and settled where it costs far more than the cheapest
+    end promised.
+
     Args:
         formulation: its name.
         ends: the name of each start, and where it led.
@@ -102,6 +113,7 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
     starts, raws = [start for start, _ in ends], [raw for _, raw in ends]
     attempts = [checked(formulation, start, raw, ()) for start, raw in ends]
     left = {place for place, raw in enumerate(raws) if raw.status is Status.SOLVED}
+    bound = min((raws[place].cost for place in left), default=np.inf)
     settled: set[int] = set()
     overlaps, best = False, None
     while left and best is None:
@@ -120,8 +132,12 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
             left.discard(place)
     if best is None:
         return Trial(tuple(attempts), None, overlaps)
-    for place in _runners_up(best.raw, raws, left - settled):
-        found = finishing.better(raws[place], raws[place].cost - best.raw.cost)
+    for place in _each_once([raw.cost for raw in raws], left - settled):
+        raw, found = raws[place], raws[place]
+        if best.raw.cost > FAR * bound:
+            found = finishing.settle(raw)
+        elif DISTINCT * best.raw.cost < raw.cost - best.raw.cost <= MAY_GAIN * best.raw.cost:
+            found = finishing.better(raw, raw.cost - best.raw.cost)
         if found.status is Status.SOLVED and found.cost < best.raw.cost:
             candidate = finishing.finish(starts[place], found)
             attempts[place] = candidate.attempt
@@ -129,12 +145,11 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
     return Trial(tuple(attempts), best)
 
 
-def _runners_up(best: RawSolution, raws: Sequence[RawSolution], places: Collection[int]) -> list[int]:
-    """Those of some solves that cost little more than the best one, the cheapest first, each optimum once."""
+def _each_once(costs: Sequence[float], places: Collection[int]) -> list[int]:
+    """Those of some solves that are different optima, the cheapest first."""
     found: list[int] = []
-    for place in sorted(places, key=lambda each: raws[each].cost):
-        last = raws[found[-1]].cost if found else best.cost
-        if last * (1.0 + DISTINCT) < raws[place].cost <= (1.0 + MAY_GAIN) * best.cost:
+    for place in sorted(places, key=lambda each: costs[each]):
+        if not found or costs[place] > costs[found[-1]] * (1.0 + DISTINCT):
             found.append(place)
     return found
 

@@ -24,15 +24,26 @@ class Asked:
     Args:
         costs: of the better solves, by cost.
         refused: costs of what the check refuses.
+        settled: what solves cost that are settled, by cost.
     """
 
-    def __init__(self, costs: dict[float, float], refused: tuple[float, ...] = ()) -> None:
+    def __init__(
+        self,
+        costs: dict[float, float],
+        refused: tuple[float, ...] = (),
+        settled: dict[float, float] | None = None,
+    ) -> None:
         self.asked: list[tuple[float, float]] = []
-        self._costs, self._refused = costs, refused
+        self.settled: list[float] = []
+        self._costs, self._refused, self._settled = costs, refused, settled or {}
 
     def trial(self, *costs: float) -> Trial:
         ends = [(f"start {number}", ended(cost)) for number, cost in enumerate(costs, 1)]
-        return cheapest("joint", ends, Finishing(lambda raw: raw, self.better, self.finish))
+        return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish))
+
+    def settle(self, raw: RawSolution) -> RawSolution:
+        self.settled.append(raw.cost)
+        return replace(raw, cost=self._settled.get(raw.cost, raw.cost))
 
     def better(self, raw: RawSolution, least: float) -> RawSolution:
         self.asked.append((raw.cost, round(least, 9)))
@@ -83,3 +94,12 @@ def test_what_the_check_refuses_makes_room_for_the_next() -> None:
     refused = Asked({}, refused=(10.0,)).trial(10.0)
     assert refused.best is None
     assert not refused.overlaps
+
+
+def test_all_are_settled_where_the_best_costs_far_more_than_the_cheapest_end_promised() -> None:
+    asked = Asked({}, settled={1.0: 5.0, 6.0: 2.0, 7.0: 8.0})
+    assert best_of(asked.trial(1.0, 6.0, 7.0)) == ("start 2", 2.0)
+    assert sorted(asked.settled) == [1.0, 6.0, 7.0]
+    near = Asked({}, settled={1.0: 1.4, 6.0: 0.5})
+    assert best_of(near.trial(1.0, 6.0)) == ("start 1", 1.4)
+    assert near.settled == [1.0]
