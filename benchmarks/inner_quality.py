@@ -23,7 +23,7 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
-from evodesign.nlp.start_portfolio import Landscape
+from evodesign.nlp.landscape import Landscape
 from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem

@@ -25,9 +25,9 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, known_at, problem_at, random_designs
 from benchmarks.paper_formulation import measure, measure_ours, reaching_designs
+from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.nlp.start_portfolio import Landscape
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem

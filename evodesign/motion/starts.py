@@ -3,7 +3,7 @@
 Where the load's path is given, robot and person are coupled by little, with point grasps by the push alone:
 the best motion of one is the best one beside nearly every other. A person has many ways to lift a load, and
 holds at both ends lead to few of them: from 0.6 m the best of 24 random starts had half the squared torques
-of the others. So starts are chosen once per problem, as those of postures are (`nlp.start_portfolio`): each
+of the others. So starts are chosen once per problem, as those of postures are (`nlp.start_training`): each
 has a motion of the person, and some move the robot's hold.
 """
 
@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 from evodesign.mechanics.scene import HUMAN, ROBOT, scene_of
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts, moved_posture
 from evodesign.motion.program import LiftProgram
+from evodesign.nlp.landscape import NEAR, spread_designs
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import status_of
-from evodesign.nlp.start_portfolio import NEAR, StartPortfolio, Training, spread_designs, start_portfolio
+from evodesign.nlp.start_portfolio import StartPortfolio
+from evodesign.nlp.start_training import Training, start_portfolio
 from evodesign.posture.check import Unchecked
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem

@@ -13,11 +13,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
+from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, SolverCache
-from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.candidate import Trial, case_solution
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.base import Formulation, Setting

@@ -14,7 +14,8 @@ from evodesign.motion.lifting import MOVED, lift_program, lift_starts
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import LiftSolution
 from evodesign.motion.starts import lift_portfolio
-from evodesign.nlp.start_portfolio import StartPortfolio, Training
+from evodesign.nlp.start_portfolio import StartPortfolio
+from evodesign.nlp.start_training import Training
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import encoded_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, Subject, lift_pieces

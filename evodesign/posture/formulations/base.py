@@ -14,10 +14,10 @@ from typing import Protocol
 from evodesign.design.space import DesignSpace
 from evodesign.identity import Exceptions, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene
+from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, SolverOptions
-from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.candidate import Trial
 from evodesign.posture.check import Checker

@@ -25,11 +25,11 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
+from evodesign.nlp.landscape import NEAR, Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Array, Program, Start
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity, no_limits
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
-from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
 from evodesign.posture.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.check import Checker, Unchecked

@@ -23,11 +23,11 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.nlp.landscape import NEAR, Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
-from evodesign.nlp.start_portfolio import NEAR, Landscape
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
 from evodesign.posture.candidate import DISTINCT, Candidate, Finishing, Trial, cheapest, checked

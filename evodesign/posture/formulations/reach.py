@@ -22,11 +22,11 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.scene import ROBOT, Scene
+from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
-from evodesign.nlp.start_portfolio import Landscape
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import Setting, program_key

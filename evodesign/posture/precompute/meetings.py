@@ -14,9 +14,9 @@ from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
 from evodesign.collision.scene_bodies import SceneBodies
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
-from evodesign.nlp.start_portfolio import spread_designs
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures

@@ -15,8 +15,10 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
+from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_portfolio import StartPortfolio, Training, chosen, spread_designs, start_portfolio
+from evodesign.nlp.start_portfolio import StartPortfolio
+from evodesign.nlp.start_training import Training, chosen, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue

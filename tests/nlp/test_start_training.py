@@ -10,16 +10,11 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.nlp.landscape import Landscape, spread_designs
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import Solver, SolverOptions
-from evodesign.nlp.start_portfolio import (
-    Coverage,
-    Landscape,
-    Training,
-    chosen,
-    spread_designs,
-    start_portfolio,
-)
+from evodesign.nlp.start_portfolio import Coverage
+from evodesign.nlp.start_training import Training, chosen, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator

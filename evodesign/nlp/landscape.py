@@ -1,0 +1,145 @@
+"""A cost to be minimised from one start or another, whatever the design."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evodesign.nlp.program import Start
+from evodesign.nlp.solver import RawSolution, Solver, has_any
+from evodesign.records import Status
+
+__all__ = ["NEAR", "Costs", "Design", "Landscape", "Searched", "StartResult", "cost_of", "spread_designs"]
+
+NEAR = (0.01, 1e-4)
+"""How far above the best optimum of a posture another one is still good: 1 %; near zero 0.1 N m."""
+
+REFUSED = "the check refuses it"
+
+Costs = NDArray[np.float64]
+Design = tuple[float, ...]
+
+
+class StartResult(Protocol):
+    """Where a solve from a start ended."""
+
+    @property
+    def cost(self) -> float:
+        """Of the last iterate."""
+        ...
+
+    @property
+    def status(self) -> Status:
+        """Solved, or why not."""
+        ...
+
+    @property
+    def values(self) -> Start:
+        """Where another solve can begin."""
+        ...
+
+
+class Searched(Protocol):
+    """A cost to be minimised, whatever the design, from one start or another."""
+
+    @property
+    def starts(self) -> tuple[Start, ...]:
+        """Fixed ones, for any design."""
+        ...
+
+    def solve(self, design: Design, start: Start) -> StartResult:
+        """The optimum that is found from a start."""
+        ...
+
+    def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
+        """Which costs are close enough to the best ones."""
+        ...
+
+    def random_start(self, rng: np.random.Generator) -> Start:
+        """Another start, drawn."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Landscape:
+    """A cost to be minimised, whatever the design.
+
+    Args:
+        solver: of a program with a parameter `design`.
+        beside: its other parameters, by name.
+        starts: fixed ones, for any design.
+        relative, absolute: how far above the best optimum another one is still good, as a share of its cost
+            and in the cost's unit.
+        parted: whether rows that are switched off at first elsewhere are on from the beginning.
+        begun: where a solve begins for a start and the parameters; left out, at the start as it is.
+        accepted: whether a solution of a design counts; left out, each does.
+        party: names of the variables of one of two that hardly depend on each other: those of one optimum are
+            tried with the others of another one.
+    """
+
+    solver: Solver
+    beside: Mapping[str, Any]
+    starts: tuple[Start, ...]
+    relative: float
+    absolute: float
+    parted: bool = False
+    begun: Callable[[Start, Mapping[str, Any]], Start] | None = None
+    accepted: Callable[[Design, RawSolution], bool] | None = None
+    party: Collection[str] = ()
+
+    def solve(self, design: Design, start: Start) -> RawSolution:
+        """The optimum that the solver finds from a start."""
+        parameters = {"design": design, **self.beside}
+        if self.begun is not None:
+            start = self.begun(start, parameters)
+        if self.parted:
+            start = self.solver.parted_start(parameters, start)
+        found = self.solver.settled(parameters, self.solver.solve(parameters, start))
+        if found.status is Status.SOLVED and self.accepted is not None and not self.accepted(design, found):
+            return replace(found, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
+        return found
+
+    def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
+        """Which costs are close enough to the best ones."""
+        return costs <= best + self.relative * np.abs(best) + self.absolute
+
+    def size(self, start: Start) -> int:
+        """Variables and rows of the program that is solved from a start."""
+        switches, program = self.solver.program.switches, self.solver.program
+        if switches is not None and (self.parted or has_any(switches.names, start)):
+            program = switches.program
+        return int(program.symbols.numel() + program.rows.numel())
+
+    def random_start(self, rng: np.random.Generator) -> Start:
+        """One of the fixed starts, with all that is drawn anywhere between its bounds."""
+        start = dict(self.starts[int(rng.integers(len(self.starts)))])
+        for variable in self.solver.program.variables:
+            if variable.drawn:
+                start[variable.name] = rng.uniform(variable.lower, variable.upper)
+        return start
+
+
+def spread_designs(
+    dimension: int, values: Callable[[tuple[float, ...]], Design], keep: Callable[[Design], bool], most: int
+) -> Iterator[Design]:
+    """Designs spread evenly over the unit cube: those that are to be kept among the first `most`.
+
+    Args:
+        dimension: of the cube.
+        values: the design at a point of the cube.
+        keep: which designs to give.
+        most: how many to look at.
+    """
+    from scipy.stats import qmc  # takes half a second to load, which workers need not wait for
+
+    points = qmc.Halton(dimension, scramble=True, rng=np.random.default_rng(0)).random(most)
+    return (design for design in (values(tuple(point)) for point in points.tolist()) if keep(design))
+
+
+def cost_of(end: StartResult) -> float:
+    """Cost of a solve that converged; infinite for one that did not."""
+    return end.cost if end.status is Status.SOLVED else np.inf
