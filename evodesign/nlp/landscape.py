@@ -93,12 +93,20 @@ class Landscape:
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
+        return self.finished(design, self.rough(design, start))
+
+    def rough(self, design: Design, start: Start) -> RawSolution:
+        """The optimum from a start, with bodies parted somehow, whether it counts or not."""
         parameters = {"design": design, **self.beside}
         if self.begun is not None:
             start = self.begun(start, parameters)
         if self.parted:
             start = self.solver.parted_start(parameters, start)
-        found = self.solver.settled(parameters, self.solver.solve(parameters, start))
+        return self.solver.settled(parameters, self.solver.solve(parameters, start), gain=np.inf)
+
+    def finished(self, design: Design, end: RawSolution) -> RawSolution:
+        """What a rough one leads to with bodies parted in better ways; one that does not count has failed."""
+        found = self.solver.bettered({"design": design, **self.beside}, end, 0.0)
         if found.status is Status.SOLVED and self.accepted is not None and not self.accepted(design, found):
             return replace(found, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
         return found

@@ -17,6 +17,7 @@ from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.program import Start
+from evodesign.nlp.start_library import Gathering, start_library
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training, chosen, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers
@@ -47,9 +48,8 @@ WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, 
 PARTED_SHARE = 0.5
 """Of the usual designs so many are trained with where bodies are kept apart: solves take twice as long."""
 
-PARTED_PORTFOLIO, PARTED_ROUNDS = 12, 4
-"""Starts that a portfolio may hold there before some are chosen, and rounds of fresh designs: a bend around a
-load has many optima."""
+GATHERING = Gathering()
+"""Of optima where bodies are kept apart: a bend around a load has many."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -193,12 +193,13 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})
 
-    if parted and setting.symmetric:
-        training = replace(training, portfolio=PARTED_PORTFOLIO, rounds=PARTED_ROUNDS)
     if parted:
         training = replace(training, designs=int(PARTED_SHARE * training.designs))
     looked_at = LOOKED_AT * max(training.designs, CHOOSING)
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
+    if parted and setting.symmetric:
+        similar = _similar(piece.pair, task, known) if task and piece.subject is Subject.CHOSEN else []
+        return start_library(landscape, designs, GATHERING, similar)
     if task is not None and piece.subject is Subject.CHOSEN:
         offers = _offers(setting, piece.pair, task, known)
         return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
@@ -206,6 +207,13 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     if landscape.parted and parted:
         return chosen(landscape, found.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
     return found
+
+
+def _similar(pair: tuple[str, str], task: Task, known: Precomputed) -> list[StartPortfolio]:
+    """What a case's own library is without disturbances, and those of other people or tasks."""
+    near = [case for case in known.postures if case.pair == pair or case.task == task]
+    near.sort(key=lambda case: (case.pair != pair, case.task != task, case.name))
+    return [known.postures[case] for case in near]
 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:
