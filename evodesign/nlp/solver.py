@@ -85,6 +85,9 @@ GAIN = 1e-4
 FREE = 1e-4
 """Share of its cost that a solution must save per metre [1/m] by a row's yielding, for the row to hold it."""
 
+BRIEF = 80
+"""Iterations after which one of several solves is given up: 9 of 10 that succeed take less than 50."""
+
 UNSETTLED = "rows remain that are to be switched on"
 
 _STATUS = {
@@ -119,6 +122,13 @@ class Solver:
         return other
 
     @cached_property
+    def brief(self) -> Solver:
+        """The same for solves that are given up early, as others take their place."""
+        other = copy(self)
+        other.options = replace(self.options, iterations=min(BRIEF, self.options.iterations))
+        return other
+
+    @cached_property
     def by_ipopt(self) -> Solver:
         """The same program for what the native method does not solve; too seldom to compile for."""
         return Solver(self.program, replace(self.options, compiled=False))
@@ -136,7 +146,7 @@ class Solver:
     def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Array]) -> RawSolution:
         """Solve for parameters, by name, from a start (variables left out begin at the program's own)."""
         if self._is_parted(start):
-            return (self.parted.near if self.options.near else self.parted).solve(parameters, start)
+            return self._parted_alike.solve(parameters, start)
         began = time.perf_counter()
         ending = self._method.solve(
             self.options, self.program.packed(start), self.program.packed_parameters(parameters, start)
@@ -159,6 +169,13 @@ class Solver:
         """The same with all rows, for starts that switch some on."""
         switches = self.program.switches
         return self if switches is None else Solver(switches.program, self.options)
+
+    @property
+    def _parted_alike(self) -> Solver:
+        """With all rows, and the options of these solves."""
+        other = copy(self.parted)
+        other.options = self.options
+        return other
 
     def _is_parted(self, start: Start) -> bool:
         switches = self.program.switches

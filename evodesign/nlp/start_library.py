@@ -43,23 +43,23 @@ class Gathering:
 
     Args:
         designs: whose optima are kept.
-        begun: how many of them begin at random starts alone, where there is no similar landscape.
+        begun: how many of them begin at random starts; the others at the optima of those before.
         random: starts of each of these; the others have one.
         neighbours: that a design is solved from in each round.
         rounds: at most.
         enough: share of the designs; where fewer get better in a round, it was the last.
         tried: most neighbours that other designs are solved from.
-        served: share of the designs left out that these must serve, with as few as will do.
+        spared: share of the designs left out that need not be served, for fewer neighbours to do.
     """
 
     designs: int = 64
-    begun: int = 10
+    begun: int = 16
     random: int = 8
     neighbours: int = 5
     rounds: int = 5
     enough: float = 0.02
     tried: int = 8
-    served: float = 0.97
+    spared: float = 0.03
 
 
 def start_library(
@@ -79,12 +79,11 @@ def start_library(
     work = _Library(landscape, [*islice(designs, gathering.designs)])
     rng = np.random.default_rng(0)
     for place, design in enumerate(work.designs):
-        if similar:
-            starts = [start for other in similar for start in other.near(design)[:1]]
-        elif place < gathering.begun:
-            starts = [*landscape.starts, *(landscape.random_start(rng) for _ in range(gathering.random))]
+        starts = [start for other in similar for start in other.near(design)[:1]]
+        if place < gathering.begun:
+            starts += [*landscape.starts, *(landscape.random_start(rng) for _ in range(gathering.random))]
         else:
-            starts = [*work.beside(place, gathering.neighbours), landscape.random_start(rng)]
+            starts += [*work.beside(place, gathering.neighbours), landscape.random_start(rng)]
         work.solve(place, starts)
     for _ in range(gathering.rounds):
         before = work.costs
@@ -155,8 +154,8 @@ class _Library:
             return StartPortfolio(starts, Coverage(0, 0, 0.0))
         ranks, short = np.array([self._rank(place, gathering.tried) for place in sorted(self._optima)]).T
         shares = [float(np.mean(ranks <= many)) for many in range(1, gathering.tried + 1)]
-        enough = (many for many, share in enumerate(shares, 1) if share >= gathering.served)
-        tried = min(next(enough, gathering.tried), len(ranks) - 1)
+        enough = (many for many, share in enumerate(shares, 1) if share >= shares[-1] - gathering.spared)
+        tried = min(next(enough), len(ranks) - 1)
         good = int(np.sum(ranks <= tried))
         metric, places = self._metric(), sorted(self._optima)
         return StartPortfolio(

@@ -61,19 +61,25 @@ def test_it_tells_how_many_designs_their_neighbours_serve(library: StartPortfoli
     assert library.coverage.good == served
 
 
-def test_a_rough_landscape_is_solved_from_where_a_similar_one_is() -> None:
-    """From the similar one's library alone: nothing is drawn."""
+def test_a_design_is_solved_from_where_a_similar_landscape_is() -> None:
+    """From the similar one's library alone: what is drawn leads nowhere."""
     rich = start_library(landscape(), designs(), GATHERING)
 
     class Undrawn(Landscape):
         def random_start(self, rng: np.random.Generator) -> Start:
-            raise AssertionError
+            return {"robot.joints": np.array([-3.0])}
 
     ground = landscape()
     undrawn = Undrawn(ground.solver, ground.beside, (), ground.relative, ground.absolute)
-    found = start_library(undrawn, designs(), replace(GATHERING, rounds=0), [rich])
-    for (design,), one, other in zip(designs(), found.starts, rich.starts, strict=False):
-        assert depth(design, one) == pytest.approx(depth(design, other), abs=1e-3)
+    alone, beside = (
+        start_library(undrawn, designs(), replace(GATHERING, rounds=0), similar) for similar in ([], [rich])
+    )
+    depths = [
+        sum(depth(design, start) for (design,), start in zip(designs(), found.starts, strict=False))
+        for found in (alone, beside, rich)
+    ]
+    assert depths[0] > depths[1] + 1.0
+    assert depths[1] == pytest.approx(depths[2], abs=1e-3)
 
 
 def test_the_same_landscape_gets_the_same_library(library: StartPortfolio) -> None:

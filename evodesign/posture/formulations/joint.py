@@ -310,7 +310,16 @@ class JointPostures:
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
-        return [(name, solver.solve(parameters, self._begun(start, parameters))) for name, start in starts]
+        begun = [(name, self._begun(start, parameters)) for name, start in starts]
+        if solver.program.switches is None:
+            return [(name, solver.solve(parameters, start)) for name, start in begun]
+        ends = [(name, solver.brief.solve(parameters, start)) for name, start in begun]
+        if any(raw.status is Status.SOLVED for _, raw in ends):
+            return ends
+        return [
+            (name, solver.solve(parameters, start) if raw.status is Status.ITERATION_LIMIT else raw)
+            for (name, start), (_, raw) in zip(begun, ends, strict=True)
+        ]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:
         """A start in which disturbed load cases begin as the undisturbed one, and s with them."""
