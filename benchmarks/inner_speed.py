@@ -77,11 +77,7 @@ def _landscapes(
     yield "highest load", reach.landscape(HIGHEST), known.highest.starts
     yield "lowest load", reach.landscape(LOWEST), known.lowest.starts
     decoupled = PostureProblem(setting, Symmetry.ON, known)
-    yield (
-        "robot against V(X), 1.0 m",
-        decoupled.landscape(HOLD),
-        known.starts(problem.scene.pair, HOLD).starts,
-    )
+    yield "robot against V(X), 1.0 m", decoupled.landscape(HOLD), known.starts(problem.scene.pair, HOLD)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
         joint = PostureProblem(setting, symmetry).landscape(HOLD)
         yield name, joint, joint.starts

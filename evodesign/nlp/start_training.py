@@ -85,7 +85,7 @@ def start_portfolio(landscape: Searched, designs: Iterator[Design], training: Tr
 
 
 def chosen(
-    landscape: Landscape, offers: Sequence[Start], designs: Sequence[Design], most: int
+    landscape: Landscape, offers: Sequence[Start], designs: Sequence[Design], most: int, enough: float = 1.0
 ) -> StartPortfolio:
     """Those of some starts that serve designs as well as all of them do, with little work.
 
@@ -96,8 +96,9 @@ def chosen(
         offers: starts of this landscape and of similar ones.
         designs: to choose and examine with.
         most: starts that the portfolio may hold.
+        enough: share of the designs that all of them serve, for the portfolio to serve.
     """
-    ends = [[landscape.solve(design, start) for start in offers] for design in designs]
+    ends = [[landscape.rough(design, start) for start in offers] for design in designs]
     shape = len(designs), len(offers)
     costs = np.array([[cost_of(end) for end in row] for row in ends]).reshape(shape)
     iterations = np.array([[end.iterations for end in row] for row in ends]).reshape(shape)
@@ -107,24 +108,26 @@ def chosen(
     costs, best = costs[held], best[held]
     good = np.isfinite(costs) & landscape.good(costs, best[:, None])
     half = len(good) // 2
-    few = _cover(good[:half], work, most)
+    few = _cover(good[:half], work, most, enough)
     served = good[half:][:, few].any(axis=1)
     short = costs[half:][:, few].min(axis=1, initial=np.inf) - best[half:]
     coverage = Coverage(len(served), int(served.sum()), float(np.max(short[np.isfinite(short)], initial=0.0)))
-    every = _cover(good, work, most)
+    every = _cover(good, work, most, enough)
     return StartPortfolio(tuple(offers[place] for place in every), coverage)
 
 
-def _cover(good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
-    """Starts that together serve all designs that any serves, with little work: those that serve most first.
+def _cover(good: NDArray[np.bool_], work: Costs, most: int, enough: float) -> list[int]:
+    """Starts that together serve the designs that any serves, with little work: those that serve most first.
 
     Args:
         good: whether a start (column) serves a design (row).
         work: of each start.
         most: starts at most.
+        enough: share of these designs that are to be served.
     """
     found: list[int] = []
-    while len(found) < most and good.size:
+    wanted = enough * good.any(axis=1).sum()
+    while len(found) < most and good[:, found].any(axis=1).sum() < wanted:
         served = good[~good[:, found].any(axis=1)].sum(axis=0)
         place = int(np.argmax(served / np.maximum(work, 1.0)))
         if not served[place]:

@@ -127,7 +127,7 @@ class PostureProblem:
 
     def sketched(self, design: Sequence[float], task: Task) -> CaseSolution:
         """What the first start leads to about, not checked; arguments as in `solve`."""
-        name, portfolio = next(self._in_turn(design, task))
+        name, portfolio = next(self._in_turn(task))
         formulation = self._formulation(name, task, self._methods(name)[0])
         trial = formulation.sketched(design, task, portfolio)
         return case_solution(self._setting.scene.case(task), [trial])
@@ -197,7 +197,7 @@ class PostureProblem:
                 person of one is tried beside the robot of another; left out, or where the person is not in
                 the program, all count as they are.
         """
-        name = self._first(task)
+        name, _ = next(self._in_turn(task))
         formulation = self._formulation(name, task, self._methods(name)[0])
         found = formulation.landscape(task)
         if checker_of is None or not isinstance(formulation, JointPostures):
@@ -227,7 +227,7 @@ class PostureProblem:
         known, pair = self._known, self._setting.scene.pair
         if neighbour is not None and not neighbour.unchecked and known.is_chosen(pair, task):
             others, neighbour = (neighbour, *others), None
-        for name, portfolio in self._in_turn(design, task):
+        for name, portfolio in self._in_turn(task):
             for method in self._methods(name):
                 formulation = self._formulation(name, task, method)
                 if neighbour is not None:
@@ -247,20 +247,20 @@ class PostureProblem:
                 if all(each.status is Status.INFEASIBLE for each in trial.attempts):
                     break
 
-    def _first(self, task: Task) -> str:
-        """The formulation that is tried first."""
-        if self._symmetry is Symmetry.OFF:
-            return WHOLE
-        return DECOUPLED if task in self._values else SYMMETRIC
-
-    def _in_turn(self, design: Sequence[float], task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
+    def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""
-        first, portfolio = self._first(task), self._known.starts(self._setting.scene.pair, task).near(design)
-        yield first, portfolio
-        if first is DECOUPLED:
+        portfolio = self._known.starts(self._setting.scene.pair, task)
+        if self._symmetry is Symmetry.OFF:
+            yield WHOLE, portfolio
+            if portfolio:
+                yield WHOLE, ()
+            return
+        if task in self._values:
+            yield DECOUPLED, portfolio
             yield SYMMETRIC, ()
-        if first is not WHOLE or portfolio:
-            yield WHOLE, ()
+        else:
+            yield SYMMETRIC, portfolio
+        yield WHOLE, ()
 
     def _formulation(self, name: str, task: Task, method: MethodName) -> Formulation:
         key = (name, type(task), method)

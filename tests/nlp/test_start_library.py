@@ -1,4 +1,4 @@
-"""Libraries of optima: does a design begin at those of the designs most like it, and is what is told true?"""
+"""The best optima of designs: are they found from random starts, known ones and each other?"""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ import pytest
 
 from evodesign.nlp.landscape import Landscape, cost_of, spread_designs
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_library import Gathering, start_library
-from evodesign.nlp.start_portfolio import Coverage, Neighbourhood, StartPortfolio
+from evodesign.nlp.start_library import Gathering, gathered
+from evodesign.nlp.start_training import chosen
 from tests.nlp.test_start_training import WELLS, best, landscape
 
-GATHERING = Gathering(designs=32, begun=8, random=12, neighbours=8, rounds=4, tried=8)
+GATHERING = Gathering(designs=32, begun=8, random=12, neighbours=8, rounds=4)
+
+Found = list[tuple[tuple[float, ...], Start]]
 
 
 def designs(count: int = 200) -> Iterator[tuple[float, ...]]:
@@ -23,87 +25,73 @@ def designs(count: int = 200) -> Iterator[tuple[float, ...]]:
 
 
 @pytest.fixture(scope="module")
-def library() -> StartPortfolio:
+def found() -> Found:
     """Of the landscape of four wells."""
-    return start_library(landscape(), designs(), GATHERING)
+    return gathered(landscape(), designs(), GATHERING)
 
 
-def depth(design: float, start: Start) -> float:
-    """Of the well that a start is in."""
-    well = min(WELLS, key=lambda well: abs(well - start["robot.joints"][0]))
-    return -1.0 - float(np.cos(2.0 * np.pi * (well - design) / 6.0))
-
-
-def test_nearly_every_design_keeps_the_deepest_of_all_wells(library: StartPortfolio) -> None:
-    pairs = zip(designs(), library.starts, strict=False)
-    missed = [depth(design, start) - best(design) for (design,), start in pairs]
-    assert np.mean(np.array(missed) < 0.02) >= 0.9
-
-
-def test_few_neighbours_lead_other_designs_to_their_deepest_well(library: StartPortfolio) -> None:
-    assert library.neighbourhood is not None
-    assert library.count == library.neighbourhood.tried < len(library.starts)
-    others = [design for (design,) in list(designs(80))[40:]]
-    found = [min(cost_of(landscape().solve((d,), s)) for s in library.near((d,))) for d in others]
-    assert np.mean([cost <= best(d) + 0.02 for cost, d in zip(found, others, strict=True)]) >= 0.9
-
-
-def test_it_tells_how_many_designs_their_neighbours_serve(library: StartPortfolio) -> None:
-    """Solved again, each design from the optima of the others."""
-    assert library.neighbourhood is not None
-    served, places = 0, np.array(library.neighbourhood.places)
-    for place, (design, own) in enumerate(zip(designs(), library.starts, strict=False)):
-        apart = np.abs(places - places[place])[:, 0]
-        nearest = [other for other in np.argsort(apart, kind="stable") if other != place][: library.count]
-        ends = [cost_of(landscape().solve(design, library.starts[other])) for other in nearest]
-        served += min(ends) <= 0.99 * depth(*design, own)
-    assert library.coverage.designs == len(places)
-    assert library.coverage.good == served
-
-
-def test_a_design_is_solved_from_where_a_similar_landscape_is() -> None:
-    """From the similar one's library alone: what is drawn leads nowhere."""
-    rich = start_library(landscape(), designs(), GATHERING)
-
-    class Undrawn(Landscape):
-        def random_start(self, rng: np.random.Generator) -> Start:
-            return {"robot.joints": np.array([-3.0])}
-
-    ground = landscape()
-    undrawn = Undrawn(ground.solver, ground.beside, (), ground.relative, ground.absolute)
-    alone, beside = (
-        start_library(undrawn, designs(), replace(GATHERING, rounds=0), similar) for similar in ([], [rich])
+def depths(found: Found) -> np.ndarray:
+    """Of the wells that the designs' optima are in."""
+    wells = [min(WELLS, key=lambda well: abs(well - start["robot.joints"][0])) for _, start in found]
+    return np.array(
+        [-1.0 - np.cos(2.0 * np.pi * (w - d) / 6.0) for ((d,), _), w in zip(found, wells, strict=True)]
     )
-    depths = [
-        sum(depth(design, start) for (design,), start in zip(designs(), found.starts, strict=False))
-        for found in (alone, beside, rich)
+
+
+class Undrawn(Landscape):
+    """What is drawn leads nowhere, and nothing is fixed."""
+
+    def random_start(self, rng: np.random.Generator) -> Start:
+        """Always the same."""
+        return {"robot.joints": np.array([-3.0])}
+
+
+def undrawn() -> Undrawn:
+    ground = landscape()
+    return Undrawn(ground.solver, ground.beside, (), ground.relative, ground.absolute)
+
+
+def test_nearly_every_design_keeps_the_deepest_of_all_wells(found: Found) -> None:
+    assert [design for design, _ in found] == [*designs(32)]
+    deepest = np.array([best(design) for (design,), _ in found])
+    assert np.mean(depths(found) < deepest + 0.02) >= 0.9
+
+
+def test_rounds_make_optima_better(found: Found) -> None:
+    """Designs that began in a shallow well are led to a deep one by their neighbours."""
+    before = gathered(landscape(), designs(), replace(GATHERING, rounds=0, neighbours=1))
+    assert depths(found).sum() < depths(before).sum() - 0.1
+
+
+def test_each_design_is_solved_from_the_starts_that_are_its_own_and_a_few_from_all() -> None:
+    wells = [{"robot.joints": np.array([well])} for well in WELLS]
+    alone = replace(GATHERING, rounds=0, neighbours=0)
+    every = gathered(undrawn(), designs(), alone, wells)
+    few = gathered(undrawn(), designs(), alone, (), wells)
+    deepest = np.array([best(design) for (design,), _ in every])
+    np.testing.assert_allclose(depths(every), deepest, atol=0.02)
+    np.testing.assert_allclose(depths(few)[: GATHERING.begun], deepest[: GATHERING.begun], atol=0.02)
+    assert np.all(depths(few)[GATHERING.begun :] >= depths(every)[GATHERING.begun :] - 1e-3)
+    assert np.any(depths(few)[GATHERING.begun :] > depths(every)[GATHERING.begun :] + 0.1)
+
+
+def test_few_of_them_serve_other_designs(found: Found) -> None:
+    """One in each well; a share that need not be served takes fewer."""
+    starts, solved = [start for _, start in found], [design for design, _ in found]
+    all_served = chosen(landscape(), starts, solved, 8)
+    most_served = chosen(landscape(), starts, solved, 8, 0.7)
+    assert len(most_served.starts) < len(all_served.starts) == len(WELLS)
+    for (design,) in list(designs(80))[40:]:
+        ends = [cost_of(landscape().solve((design,), start)) for start in all_served.starts]
+        assert min(ends) == pytest.approx(best(design), abs=0.02)
+
+
+def test_the_same_landscape_gets_the_same_optima(found: Found) -> None:
+    again = gathered(landscape(), designs(), GATHERING)
+    assert [(d, s["robot.joints"].tolist()) for d, s in again] == [
+        (d, s["robot.joints"].tolist()) for d, s in found
     ]
-    assert depths[0] > depths[1] + 1.0
-    assert depths[1] == pytest.approx(depths[2], abs=1e-3)
 
 
-def test_the_same_landscape_gets_the_same_library(library: StartPortfolio) -> None:
-    again = start_library(landscape(), designs(), GATHERING)
-    assert again.neighbourhood == library.neighbourhood
-    assert [start["robot.joints"].tolist() for start in again.starts] == [
-        start["robot.joints"].tolist() for start in library.starts
-    ]
-
-
-def test_a_landscape_without_optima_has_no_library() -> None:
-    found = start_library(landscape(limit=1.0, least=2.5), designs(), replace(GATHERING, designs=3))
-    assert found == StartPortfolio((), Coverage(0, 0, 0.0))
-
-
-def test_the_nearest_come_first_by_the_metric() -> None:
-    """A parameter that moves no joint does not count, however large its numbers are."""
-    near = Neighbourhood(metric=((1.0,), (0.0,)), places=((0.0,), (1.0,), (3.0,)), tried=2)
-    starts = tuple({"robot.joints": np.array([place])} for (place,) in near.places)
-    portfolio = StartPortfolio(starts, Coverage(0, 0, 0.0), near)
-    assert [start["robot.joints"][0] for start in portfolio.near((2.8, 1e6))] == [3.0, 1.0]
-    assert replace_neighbourhood(portfolio).near((2.8, 1e6)) == starts
-
-
-def replace_neighbourhood(portfolio: StartPortfolio) -> StartPortfolio:
-    """The same without: all starts serve all designs."""
-    return StartPortfolio(portfolio.starts, portfolio.coverage)
+def test_a_landscape_without_optima_has_none() -> None:
+    assert gathered(landscape(limit=1.0, least=2.5), designs(), replace(GATHERING, designs=3)) == []

@@ -47,7 +47,7 @@ def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
         miss = f"{rounded(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
-        table.add_row(name, str(found.count), str(coverage.designs), share, miss)
+        table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
     return table
 
 
@@ -75,7 +75,7 @@ def starts_json(problem: DesignProblem, known: Precomputed) -> dict[str, Any]:
         "portfolios": [
             {
                 "for": name,
-                "starts": found.count,
+                "starts": len(found.starts),
                 "designs_tried": found.coverage.designs,
                 "designs_good": found.coverage.good,
                 "worst_miss": found.coverage.worst,

@@ -295,7 +295,8 @@ class JointPostures:
     ) -> list[tuple[str, RawSolution]]:
         """Where starts lead to, by way of the best undisturbed optima where there are disturbances.
 
-        What cannot be held without disturbances cannot be held with them.
+        What cannot be held without disturbances cannot be held with them. Where bodies are kept apart, solves
+        that take long are given up where others do not.
         """
         solver, simple = self._solver, self._undisturbed if len(starts) > FEW else None
         if simple is not None:
@@ -310,15 +311,15 @@ class JointPostures:
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
-        begun = [(name, self._begun(start, parameters)) for name, start in starts]
+        filled_ones = [(name, self._begun(start, parameters)) for name, start in starts]
         if solver.program.switches is None:
-            return [(name, solver.solve(parameters, start)) for name, start in begun]
-        ends = [(name, solver.brief.solve(parameters, start)) for name, start in begun]
+            return [(name, solver.solve(parameters, start)) for name, start in filled_ones]
+        ends = [(name, solver.brief.solve(parameters, start)) for name, start in filled_ones]
         if any(raw.status is Status.SOLVED for _, raw in ends):
             return ends
         return [
             (name, solver.solve(parameters, start) if raw.status is Status.ITERATION_LIMIT else raw)
-            for (name, start), (_, raw) in zip(begun, ends, strict=True)
+            for (name, start), (_, raw) in zip(filled_ones, ends, strict=True)
         ]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:

@@ -140,7 +140,7 @@ class ReachProblem:
         scene = setting.scene
         self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
         self._setting, self._solvers = setting, solvers or SolverCache()
-        self._known = {HIGHEST: known.highest, LOWEST: known.lowest}
+        self._starts = {HIGHEST: known.highest.starts, LOWEST: known.lowest.starts}
         self._latest: dict[float, tuple[tuple[float, ...], list[RawSolution]]] = {}
 
     @cached_property
@@ -189,12 +189,11 @@ class ReachProblem:
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on there."""
-        known = self._known[sense].near(design)
-        starts = [filled(start, self.program) for start in known or FIXED]
+        starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
         solver = self._solver
         if sense == LOWEST and self.program.switches is not None:
-            for begun in (starts, FIXED) if known else (FIXED,):
+            for begun in (starts, FIXED) if self._starts[sense] else (FIXED,):
                 parted = [solver.parted_start(parameters, start) for start in begun]
                 found = _best_settled(solver, parameters, parted, sense)
                 if any(raw.status is Status.SOLVED for raw in found):

@@ -17,7 +17,7 @@ from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_library import Gathering, start_library
+from evodesign.nlp.start_library import Gathering, gathered
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training, chosen, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers
@@ -51,6 +51,9 @@ PARTED_SHARE = 0.5
 GATHERING = Gathering()
 """Of optima where bodies are kept apart: a bend around a load has many."""
 
+SERVED = 0.98
+"""Share of the designs that starts chosen of these must serve: the last few designs would need one each."""
+
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
 
@@ -61,8 +64,9 @@ but the optima of other designs lead there. So do those of the highest load wher
 CHOOSING, MOST_CHOSEN = 64, 8
 """Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
-MOST_LOWEST = 2
-"""Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
+MOST_LOWEST, MOST_OF_REACH = 2, 4
+"""Starts of the lowest load where bodies are kept apart, whose program is twice as large; and of either end
+where they are chosen of the optima of many designs."""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -197,23 +201,19 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         training = replace(training, designs=int(PARTED_SHARE * training.designs))
     looked_at = LOOKED_AT * max(training.designs, CHOOSING)
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
+    choosing = task is not None and piece.subject is Subject.CHOSEN
+    offers = _offers(setting, piece.pair, task, known) if task is not None and choosing else []
     if parted and setting.symmetric:
-        similar = _similar(piece.pair, task, known) if task and piece.subject is Subject.CHOSEN else []
-        return start_library(landscape, designs, GATHERING, similar)
-    if task is not None and piece.subject is Subject.CHOSEN:
-        offers = _offers(setting, piece.pair, task, known)
+        familiar = known.starts(piece.pair, task) if task is not None and choosing else ()
+        found = gathered(landscape, designs, GATHERING, familiar, offers)
+        starts, solved = [start for _, start in found], [design for design, _ in found]
+        return chosen(landscape, starts, solved, MOST_CHOSEN if task else MOST_OF_REACH, SERVED)
+    if choosing:
         return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
-    found = start_portfolio(landscape, designs, training)
+    trained = start_portfolio(landscape, designs, training)
     if landscape.parted and parted:
-        return chosen(landscape, found.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
-    return found
-
-
-def _similar(pair: tuple[str, str], task: Task, known: Precomputed) -> list[StartPortfolio]:
-    """What a case's own library is without disturbances, and those of other people or tasks."""
-    near = [case for case in known.postures if case.pair == pair or case.task == task]
-    near.sort(key=lambda case: (case.pair != pair, case.task != task, case.name))
-    return [known.postures[case] for case in near]
+        return chosen(landscape, trained.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
+    return trained
 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:

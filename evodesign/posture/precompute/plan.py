@@ -42,6 +42,9 @@ class Subject(StrEnum):
     LIFT = "starts of lifts"
 
 
+TRAINED = 2
+"""Scenes that portfolios are made in where bodies are kept apart; the others choose of their starts."""
+
 OF_PEOPLE = (
     Subject.PERSON,
     Subject.PERSON_REACH,
@@ -137,7 +140,7 @@ def stages(
         return [meetings, people]
     middle = setting.middle.pair
     others = [scene.pair for scene in setting.scenes if scene.pair != middle]
-    own = [middle, *(others if parting and setting.symmetric else [])]
+    own = [middle, *(others[: TRAINED - 1] if parting and setting.symmetric else [])]
     around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
     longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
     starts = [Piece(Subject.POSTURE, pair, task) for task in longest for pair in own]

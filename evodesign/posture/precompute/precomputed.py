@@ -20,10 +20,7 @@ from evodesign.records import Case, Lift, Task
 
 __all__ = ["NOTHING_PRECOMPUTED", "NO_STARTS", "PersonReach", "Precomputed"]
 
-NO_COVERAGE = Coverage(0, 0, 0.0)
-"""Nothing was tried."""
-
-NO_STARTS = StartPortfolio((), NO_COVERAGE)
+NO_STARTS = StartPortfolio((), Coverage(0, 0, 0.0))
 """A portfolio of none: solves begin at the fixed starts."""
 
 
@@ -72,14 +69,15 @@ class Precomputed:
         """The value functions of a scene's person and load, by task."""
         return {case.task: value for case, value in self.values.items() if case.pair == scene.pair}
 
-    def starts(self, pair: tuple[str, str], task: Task) -> StartPortfolio:
+    def starts(self, pair: tuple[str, str], task: Task) -> tuple[Start, ...]:
         """The posture problem's starts for a person, a load and a task; none where none are known."""
         case = Case(person=pair[0], payload=pair[1], task=task)
         for own in (self.chosen, self.postures):
             if case in own:
-                return own[case]
-        others = [found for other, found in self.postures.items() if other.task == task]
-        return StartPortfolio(tuple(start for found in others for start in found.starts), NO_COVERAGE)
+                return own[case].starts
+        return tuple(
+            start for other, found in self.postures.items() if other.task == task for start in found.starts
+        )
 
     def is_chosen(self, pair: tuple[str, str], task: Task) -> bool:
         """Whether the posture problem's starts were chosen for this person, load and task."""
