@@ -79,13 +79,13 @@ class RawSolution:
 ROUNDS = 6
 """How often rows are switched on, one solve after the other."""
 
-GAIN = 1e-4
+GAIN = 1e-3
 """Share of its cost by which a solution must get better to be solved again."""
 
 FREE = 1e-4
 """Share of its cost that a solution must save per metre [1/m] by a row's yielding, for the row to hold it."""
 
-BRIEF = 80
+BRIEF = 60
 """Iterations after which one of several solves is given up: 9 of 10 that succeed take less than 50."""
 
 UNSETTLED = "rows remain that are to be switched on"

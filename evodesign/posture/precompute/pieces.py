@@ -51,8 +51,9 @@ PARTED_SHARE = 0.5
 GATHERING = Gathering()
 """Of optima where bodies are kept apart: a bend around a load has many."""
 
-SERVED = 0.98
-"""Share of the designs that starts chosen of these must serve: the last few designs would need one each."""
+SERVED, MOST_OPTIMA, MOST_ENDS = 0.98, 6, 4
+"""Share of the designs that starts chosen of these must serve, as the last few would need one each; and how
+many may be chosen for a case, and for the highest or lowest load."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -64,9 +65,8 @@ but the optima of other designs lead there. So do those of the highest load wher
 CHOOSING, MOST_CHOSEN = 64, 8
 """Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
-MOST_LOWEST, MOST_OF_REACH = 2, 4
-"""Starts of the lowest load where bodies are kept apart, whose program is twice as large; and of either end
-where they are chosen of the optima of many designs."""
+MOST_LOWEST = 2
+"""Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -207,7 +207,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         familiar = known.starts(piece.pair, task) if task is not None and choosing else ()
         found = gathered(landscape, designs, GATHERING, familiar, offers)
         starts, solved = [start for _, start in found], [design for design, _ in found]
-        return chosen(landscape, starts, solved, MOST_CHOSEN if task else MOST_OF_REACH, SERVED)
+        return chosen(landscape, starts, solved, MOST_OPTIMA if task else MOST_ENDS, SERVED)
     if choosing:
         return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
     trained = start_portfolio(landscape, designs, training)
