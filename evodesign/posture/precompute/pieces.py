@@ -51,9 +51,12 @@ PARTED_SHARE = 0.5
 GATHERING = Gathering()
 """Of optima where bodies are kept apart: a bend around a load has many."""
 
-SERVED, MOST_OPTIMA, MOST_ENDS = 0.98, 6, 4
-"""Share of the designs that starts chosen of these must serve, as the last few would need one each; and how
-many may be chosen for a case, and for the highest or lowest load."""
+MOST_OPTIMA, MOST_ENDS = 6, 4
+"""Starts that may be chosen of these for a case, and for the highest or lowest load."""
+
+SERVED = 0.98
+"""Share of the designs that they must serve: the last few would need a start each. Where no disturbances make
+solves ten times as long, starts that are chosen for a case serve all."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -207,7 +210,11 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         familiar = known.starts(piece.pair, task) if task is not None and choosing else ()
         found = gathered(landscape, designs, GATHERING, familiar, offers)
         starts, solved = [start for _, start in found], [design for design, _ in found]
-        return chosen(landscape, starts, solved, MOST_OPTIMA if task else MOST_ENDS, SERVED)
+        most, served = (
+            MOST_OPTIMA if task else MOST_ENDS,
+            1.0 if choosing and not scene.disturbances else SERVED,
+        )
+        return chosen(landscape, starts, solved, most, served)
     if choosing:
         return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
     trained = start_portfolio(landscape, designs, training)
