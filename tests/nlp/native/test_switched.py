@@ -92,6 +92,17 @@ def test_rows_count_where_they_are_on_and_nowhere_else(seed: int) -> None:
     assert held >= 2**ROWS / 2, "walls hold the solution"
 
 
+@pytest.mark.needs_compiler
+@pytest.mark.parametrize("on", [0.0, 1.0])
+def test_a_brief_solve_is_given_up_early(monkeypatch: pytest.MonkeyPatch, on: float) -> None:
+    monkeypatch.setattr("evodesign.nlp.solver.BRIEF", 3)
+    native, given, start = Solver(program(0), NATIVE), {"target": np.full(5, -1.0)}, {"on": np.full(ROWS, on)}
+    brief, whole = native.brief.solve(given, start), native.solve(given, start)
+    assert (brief.status, brief.iterations) == (Status.ITERATION_LIMIT, 3)
+    assert whole.status is Status.SOLVED
+    assert whole.iterations > 3
+
+
 def test_entries_are_at_their_places_among_those_of_the_program() -> None:
     """The sum of all rows' own derivatives, put where they belong, against CasADi's of the whole."""
     whole = program(1)

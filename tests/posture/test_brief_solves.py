@@ -1,0 +1,79 @@
+"""Where bodies are kept apart, solves that take long are given up, unless all of them would be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from evodesign.nlp.solver import RawSolution
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.joint import JointPostures
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.problem.build import DesignProblem
+from evodesign.records import Hold, Status
+
+NEEDED = {"quick": 10, "slow": 90, "hopeless": 999}
+"""Iterations of a solve by where it starts; hopeless ones find no posture."""
+
+
+class Counted:
+    """Solves that need some iterations, of a program with rows that part bodies or without."""
+
+    def __init__(self, parted: bool, limit: int = 300) -> None:
+        self.program, self.limit, self.parted = SimpleNamespace(switches=parted or None), limit, parted
+        self.asked: list[tuple[str, int]] = []
+
+    @property
+    def brief(self) -> Counted:
+        """Up to 60 of them."""
+        other = Counted(self.parted, 60)
+        other.asked = self.asked
+        return other
+
+    def solve(self, parameters: object, start: str) -> SimpleNamespace:
+        """What a start leads to."""
+        self.asked.append((start, self.limit))
+        status = Status.SOLVED if NEEDED[start] <= self.limit else Status.ITERATION_LIMIT
+        return SimpleNamespace(status=Status.INFEASIBLE if start == "hopeless" else status)
+
+
+@pytest.fixture
+def postures(problem: DesignProblem) -> JointPostures:
+    """Of the default problem, whose solver is to be taken for another one."""
+    setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
+    made = PostureProblem(replace(setting), Symmetry.ON)._formulation(
+        "symmetric", Hold(height_m=1.0), "ipopt"
+    )
+    assert isinstance(made, JointPostures)
+    return made
+
+
+def ends(postures: JointPostures, solver: Counted, *starts: str) -> list[tuple[str, RawSolution]]:
+    """Where starts lead to."""
+    postures.__dict__["_solver"] = solver
+    postures._begun = lambda start, parameters: start
+    return [(name, end.status) for name, end in postures._ends({}, [(start, start) for start in starts])]
+
+
+def test_slow_ones_are_given_up_where_another_one_succeeds(postures: JointPostures) -> None:
+    solver = Counted(parted=True)
+    found = ends(postures, solver, "slow", "quick")
+    assert found == [("slow", Status.ITERATION_LIMIT), ("quick", Status.SOLVED)]
+    assert solver.asked == [("slow", 60), ("quick", 60)]
+
+
+def test_all_are_solved_to_their_ends_where_none_succeeds_but_those_that_have_ended(
+    postures: JointPostures,
+) -> None:
+    solver = Counted(parted=True)
+    found = ends(postures, solver, "slow", "hopeless")
+    assert found == [("slow", Status.SOLVED), ("hopeless", Status.INFEASIBLE)]
+    assert solver.asked == [("slow", 60), ("hopeless", 60), ("slow", 300)]
+
+
+def test_no_solve_is_brief_where_bodies_are_not_kept_apart(postures: JointPostures) -> None:
+    solver = Counted(parted=False)
+    assert ends(postures, solver, "slow", "quick") == [("slow", Status.SOLVED), ("quick", Status.SOLVED)]
+    assert solver.asked == [("slow", 300), ("quick", 300)]
