@@ -58,6 +58,10 @@ SERVED = 0.98
 """Share of the designs that they must serve: the last few would need a start each. Where no disturbances make
 solves ten times as long, starts that are chosen for a case serve all."""
 
+TWICE = 0.9
+"""Share of other designs that a choice made with half of them must serve there; where it serves fewer, each
+is to be served by two starts."""
+
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
 
@@ -210,11 +214,11 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         familiar = known.starts(piece.pair, task) if task is not None and choosing else ()
         found = gathered(landscape, designs, GATHERING, familiar, offers)
         starts, solved = [start for _, start in found], [design for design, _ in found]
-        most, served = (
-            MOST_OPTIMA if task else MOST_ENDS,
-            1.0 if choosing and not scene.disturbances else SERVED,
-        )
-        return chosen(landscape, starts, solved, most, served)
+        if task is None:
+            return chosen(landscape, starts, solved, MOST_ENDS)
+        if choosing and not scene.disturbances:
+            return chosen(landscape, starts, solved, MOST_OPTIMA, twice=TWICE)
+        return chosen(landscape, starts, solved, MOST_OPTIMA, SERVED)
     if choosing:
         return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
     trained = start_portfolio(landscape, designs, training)
