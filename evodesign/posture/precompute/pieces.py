@@ -58,8 +58,8 @@ SERVED = 0.98
 """Share of the designs that they must serve: the last few would need a start each."""
 
 FEW_DISTURBANCES, TWICE = 1, 0.9
-"""With so few, a solve is cheap enough for starts that serve all designs; and where a choice made with half of
-them serves a smaller share of the others, for two starts that serve each."""
+"""With so few, a solve is cheap enough for starts that serve all designs; and where a choice made with half
+of them serves a smaller share of the others, for two starts that serve each."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -215,7 +215,7 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         starts, solved = [start for _, start in found], [design for design, _ in found]
         if task is None:
             return chosen(landscape, starts, solved, MOST_ENDS)
-        if choosing and len(scene.disturbances) <= FEW_DISTURBANCES:
+        if choosing and len(scene.disturbances.cases) <= FEW_DISTURBANCES:
             return chosen(landscape, starts, solved, MOST_OPTIMA, twice=TWICE)
         return chosen(landscape, starts, solved, MOST_OPTIMA, SERVED)
     if choosing:
