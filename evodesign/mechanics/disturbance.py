@@ -77,3 +77,8 @@ class Disturbances:
 
     def __bool__(self) -> bool:
         return bool(self.cases)
+
+    @property
+    def several(self) -> bool:
+        """Whether there is more than one."""
+        return len(self.cases) > 1

@@ -17,12 +17,15 @@ from numpy.typing import NDArray
 
 from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending
-from evodesign.nlp.solver import GAIN, ROUNDS, UNSETTLED, status_of
+from evodesign.nlp.solver import ROUNDS, UNSETTLED, status_of
 from evodesign.posture.parting import Meetings
 from evodesign.posture.terms.collisions import NUMBERS
 from evodesign.records import Lift, Status
 
 __all__ = ["LiftSolve", "PartedLift"]
+
+GAIN = 1e-4
+"""Share of its cost by which a motion must get better to be solved again."""
 
 Array = NDArray[np.float64]
 Chosen = dict[int, Array]

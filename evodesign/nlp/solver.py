@@ -79,9 +79,6 @@ class RawSolution:
 ROUNDS = 6
 """How often rows are switched on, one solve after the other."""
 
-GAIN = 1e-3
-"""Share of its cost by which a solution must get better to be solved again."""
-
 FREE = 1e-4
 """Share of its cost that a solution must save per metre [1/m] by a row's yielding, for the row to hold it."""
 
@@ -224,7 +221,7 @@ class Solver:
         for _ in range(ROUNDS):
             if switches is None or found.status is not Status.SOLVED or gain == np.inf:
                 break
-            least, rows = max(gain, GAIN * abs(found.cost)), found.multipliers.constraints
+            least, rows = max(gain, self.options.worth * abs(found.cost)), found.multipliers.constraints
             better = switches.better(found.values, parameters, rows, least)
             if not better:
                 break

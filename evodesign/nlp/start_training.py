@@ -90,7 +90,8 @@ def chosen(
     designs: Sequence[Design],
     most: int,
     enough: float = 1.0,
-    twice: float = 0.0,
+    *,
+    roughly: bool = False,
 ) -> StartPortfolio:
     """Those of some starts that serve designs as well as all of them do, with little work.
 
@@ -102,10 +103,10 @@ def chosen(
         designs: to choose and examine with.
         most: starts that the portfolio may hold.
         enough: share of the designs that all of them serve, for the portfolio to serve.
-        twice: share of the others that a choice made with half of the designs must serve; where it serves
-            fewer, designs are to be served by two starts each.
+        roughly: whether ends count as they are, as `Landscape.rough` has them.
     """
-    ends = [[landscape.rough(design, start) for start in offers] for design in designs]
+    solve = landscape.rough if roughly else landscape.solve
+    ends = [[solve(design, start) for start in offers] for design in designs]
     shape = len(designs), len(offers)
     costs = np.array([[cost_of(end) for end in row] for row in ends]).reshape(shape)
     iterations = np.array([[end.iterations for end in row] for row in ends]).reshape(shape)
@@ -115,24 +116,12 @@ def chosen(
     costs, best = costs[held], best[held]
     good = np.isfinite(costs) & landscape.good(costs, best[:, None])
     half = len(good) // 2
-
-    def covering(rows: NDArray[np.bool_], times: int) -> list[int]:
-        found: list[int] = []
-        for _ in range(times):
-            left = rows.copy()
-            left[:, found] = False
-            found += _cover(left, work, most - len(found), enough)
-        return found
-
-    def examined(few: list[int]) -> Coverage:
-        served = good[half:][:, few].any(axis=1)
-        short = costs[half:][:, few].min(axis=1, initial=np.inf) - best[half:]
-        return Coverage(len(served), int(served.sum()), float(np.max(short[np.isfinite(short)], initial=0.0)))
-
-    times, coverage = 1, examined(covering(good[:half], 1))
-    if coverage.share < twice:
-        times, coverage = 2, examined(covering(good[:half], 2))
-    return StartPortfolio(tuple(offers[place] for place in covering(good, times)), coverage)
+    few = _cover(good[:half], work, most, enough)
+    served = good[half:][:, few].any(axis=1)
+    short = costs[half:][:, few].min(axis=1, initial=np.inf) - best[half:]
+    coverage = Coverage(len(served), int(served.sum()), float(np.max(short[np.isfinite(short)], initial=0.0)))
+    every = _cover(good, work, most, enough)
+    return StartPortfolio(tuple(offers[place] for place in every), coverage)
 
 
 def _cover(good: NDArray[np.bool_], work: Costs, most: int, enough: float) -> list[int]:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
@@ -30,7 +31,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Status
 from evodesign.tasks import Task, TaskRecord
 
-__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
+__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "WORTH", "PostureProblem", "Symmetry", "is_dear"]
 
 DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
 """Names of the formulations in results."""
@@ -61,6 +62,15 @@ def _whole(
 
 
 FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
+
+
+WORTH = 1e-3
+"""Share of its cost that a dear posture must gain by parting bodies in other ways to be solved again."""
+
+
+def is_dear(scene: Scene) -> bool:
+    """Whether bodies are kept apart under several disturbances, so that solves take long and many fail."""
+    return scene.robot.collisions is not None and scene.disturbances.several
 
 
 class Symmetry(StrEnum):
@@ -291,6 +301,8 @@ class PostureProblem:
         native = method is MethodName.NATIVE
         compiled = options.compiled and method is options.method and (native or not refuge)
         changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
+        if is_dear(self._setting.scene):
+            changed = replace(changed, worth=WORTH)
         return replace(self._setting, options=changed)
 
 

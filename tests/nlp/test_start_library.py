@@ -87,21 +87,6 @@ def test_few_of_them_serve_other_designs(found: Found) -> None:
         assert min(ends) == pytest.approx(best(design), abs=0.02)
 
 
-def test_where_a_choice_made_with_half_serves_too_few_each_design_is_served_twice(found: Found) -> None:
-    starts, solved = [start for _, start in found], [design for design, _ in found]
-    once, twice = (chosen(landscape(), starts, solved, 8, twice=share) for share in (0.0, 1.1))
-    assert [start["robot.joints"].tolist() for start in twice.starts[: len(once.starts)]] == [
-        start["robot.joints"].tolist() for start in once.starts
-    ]
-    assert len(once.starts) < len(twice.starts) <= 8
-    for (design,), deepest in zip(solved, depths(found), strict=True):
-        ends = [cost_of(landscape().solve((design,), start)) for start in twice.starts]
-        assert sum(end < 0.99 * deepest for end in ends) >= min(
-            2, sum(depths([((design,), s)])[0] < 0.99 * deepest for s in starts)
-        )
-    assert chosen(landscape(), starts, solved, 8, twice=once.coverage.share).starts == once.starts
-
-
 def test_the_same_landscape_gets_the_same_optima(found: Found) -> None:
     again = gathered(landscape(), designs(), GATHERING)
     assert [(d, s["robot.joints"].tolist()) for d, s in again] == [

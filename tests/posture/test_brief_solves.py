@@ -1,4 +1,4 @@
-"""Where bodies are kept apart, solves that take long are given up, unless all of them would be."""
+"""Where bodies are kept apart under several disturbances, slow solves are given up, unless all of them are."""
 
 from __future__ import annotations
 
@@ -50,8 +50,12 @@ def postures(problem: DesignProblem) -> JointPostures:
     return made
 
 
-def ends(postures: JointPostures, solver: Counted, *starts: str) -> list[tuple[str, RawSolution]]:
-    """Where starts lead to."""
+def ends(
+    postures: JointPostures, solver: Counted, *starts: str, several: bool = True
+) -> list[tuple[str, RawSolution]]:
+    """Where starts lead to, under several disturbances or none."""
+    scene = SimpleNamespace(disturbances=SimpleNamespace(several=several))
+    postures._setting = SimpleNamespace(scene=scene)
     postures.__dict__["_solver"] = solver
     postures._begun = lambda start, parameters: start
     return [(name, end.status) for name, end in postures._ends({}, [(start, start) for start in starts])]
@@ -73,7 +77,11 @@ def test_all_are_solved_to_their_ends_where_none_succeeds_but_those_that_have_en
     assert solver.asked == [("slow", 60), ("hopeless", 60), ("slow", 300)]
 
 
-def test_no_solve_is_brief_where_bodies_are_not_kept_apart(postures: JointPostures) -> None:
-    solver = Counted(parted=False)
-    assert ends(postures, solver, "slow", "quick") == [("slow", Status.SOLVED), ("quick", Status.SOLVED)]
+@pytest.mark.parametrize(("parted", "several"), [(False, True), (True, False)])
+def test_no_solve_is_brief_where_solves_are_quick(
+    postures: JointPostures, *, parted: bool, several: bool
+) -> None:
+    solver = Counted(parted=parted)
+    found = ends(postures, solver, "slow", "quick", several=several)
+    assert found == [("slow", Status.SOLVED), ("quick", Status.SOLVED)]
     assert solver.asked == [("slow", 300), ("quick", 300)]

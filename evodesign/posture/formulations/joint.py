@@ -295,8 +295,8 @@ class JointPostures:
     ) -> list[tuple[str, RawSolution]]:
         """Where starts lead to, by way of the best undisturbed optima where there are disturbances.
 
-        What cannot be held without disturbances cannot be held with them. Where bodies are kept apart, solves
-        that take long are given up where others do not.
+        What cannot be held without disturbances cannot be held with them. Where bodies are kept apart under
+        several disturbances, solves that take long are given up where others do not.
         """
         solver, simple = self._solver, self._undisturbed if len(starts) > FEW else None
         if simple is not None:
@@ -312,7 +312,7 @@ class JointPostures:
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
         filled_ones = [(name, self._begun(start, parameters)) for name, start in starts]
-        if solver.program.switches is None:
+        if solver.program.switches is None or not self._setting.scene.disturbances.several:
             return [(name, solver.solve(parameters, start)) for name, start in filled_ones]
         ends = [(name, solver.brief.solve(parameters, start)) for name, start in filled_ones]
         if any(raw.status is Status.SOLVED for _, raw in ends):

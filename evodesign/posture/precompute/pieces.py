@@ -24,7 +24,7 @@ from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
-from evodesign.posture.postures import PostureProblem
+from evodesign.posture.postures import WORTH, PostureProblem, is_dear
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
     PROGRAMS,
@@ -48,18 +48,16 @@ WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, 
 PARTED_SHARE = 0.5
 """Of the usual designs so many are trained with where bodies are kept apart: solves take twice as long."""
 
+PARTED_PORTFOLIO, PARTED_ROUNDS = 12, 4
+"""Starts that a portfolio may hold there before some are chosen, and rounds of fresh designs: a bend around a
+load has many optima."""
+
 GATHERING = Gathering()
-"""Of optima where bodies are kept apart: a bend around a load has many."""
+"""Of optima where bodies are kept apart under several disturbances: solves take long there, many fail."""
 
-MOST_OPTIMA, MOST_ENDS = 6, 4
-"""Starts that may be chosen of these for a case, and for the highest or lowest load."""
-
-SERVED = 0.98
-"""Share of the designs that they must serve: the last few would need a start each."""
-
-FEW_DISTURBANCES, TWICE = 1, 0.9
-"""With so few, a solve is cheap enough for starts that serve all designs; and where a choice made with half
-of them serves a smaller share of the others, for two starts that serve each."""
+MOST_OPTIMA, MOST_ENDS, SERVED = 6, 4, 0.98
+"""Starts that may be chosen of these for a case, and for the highest or lowest load; and the share of the
+designs that those of a case must serve, as the last few would need a start each."""
 
 STRICTER = 0.4
 """Share of the usual distance from the best optimum that whole starts are chosen with.
@@ -99,6 +97,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
+    dear = setting.symmetric and is_dear(setting.middle)
     if piece.subject in UNDISTURBED:
         setting = all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)
@@ -110,7 +109,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         _compile(setting, piece.subject, scene)
         found = None
     else:
-        found = _portfolio(setting, piece, known)
+        found = _portfolio(setting, piece, known, dear=dear)
     return encoded_piece(found)
 
 
@@ -179,10 +178,10 @@ def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None
         _ = problem.landscape(task).solver.parted
 
 
-def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
+def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed, *, dear: bool) -> StartPortfolio:
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
-    own = Setting(scene, space, setting.weights, options)
+    own = Setting(scene, space, setting.weights, replace(options, worth=WORTH) if dear else options)
     beside = replace(known, highest=NO_STARTS, lowest=NO_STARTS)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=beside)
     if task is None:
@@ -203,27 +202,26 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})
 
+    if parted and setting.symmetric:
+        training = replace(training, portfolio=PARTED_PORTFOLIO, rounds=PARTED_ROUNDS)
     if parted:
         training = replace(training, designs=int(PARTED_SHARE * training.designs))
     looked_at = LOOKED_AT * max(training.designs, CHOOSING)
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
     choosing = task is not None and piece.subject is Subject.CHOSEN
     offers = _offers(setting, piece.pair, task, known) if task is not None and choosing else []
-    if parted and setting.symmetric:
+    if dear:
         familiar = known.starts(piece.pair, task) if task is not None and choosing else ()
-        found = gathered(landscape, designs, GATHERING, familiar, offers)
-        starts, solved = [start for _, start in found], [design for design, _ in found]
-        if task is None:
-            return chosen(landscape, starts, solved, MOST_ENDS)
-        if choosing and len(scene.disturbances.cases) <= FEW_DISTURBANCES:
-            return chosen(landscape, starts, solved, MOST_OPTIMA, twice=TWICE)
-        return chosen(landscape, starts, solved, MOST_OPTIMA, SERVED)
+        optima = gathered(landscape, designs, GATHERING, familiar, offers)
+        most, served = (MOST_OPTIMA, SERVED) if task else (MOST_ENDS, 1.0)
+        starts, solved = [start for _, start in optima], [design for design, _ in optima]
+        return chosen(landscape, starts, solved, most, served, roughly=True)
     if choosing:
         return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
-    trained = start_portfolio(landscape, designs, training)
+    found = start_portfolio(landscape, designs, training)
     if landscape.parted and parted:
-        return chosen(landscape, trained.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
-    return trained
+        return chosen(landscape, found.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
+    return found
 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:
