@@ -1,4 +1,4 @@
-"""Where bodies are kept apart under several disturbances, slow solves are given up, unless all of them are."""
+"""Under several disturbances with bodies kept apart slow solves are given up, unless all of them are."""
 
 from __future__ import annotations
 
