@@ -110,6 +110,7 @@ class Solver:
         self.program = program
         self.options = options
         self.functions, self._method = _made(program, options)
+        self._origin = self  # also of copies with other options
 
     @cached_property
     def near(self) -> Solver:
@@ -164,6 +165,8 @@ class Solver:
     @cached_property
     def parted(self) -> Solver:
         """The same with all rows, for starts that switch some on."""
+        if self._origin is not self:
+            return self._origin.parted
         switches = self.program.switches
         return self if switches is None else Solver(switches.program, self.options)
 

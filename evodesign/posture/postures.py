@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
-from evodesign.mechanics.scene import Scene
 from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
@@ -31,7 +30,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Status
 from evodesign.tasks import Task, TaskRecord
 
-__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "WORTH", "PostureProblem", "Symmetry", "is_dear"]
+__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "WORTH", "PostureProblem", "Symmetry"]
 
 DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
 """Names of the formulations in results."""
@@ -66,11 +65,6 @@ FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetri
 
 WORTH = 1e-3
 """Share of its cost that a dear posture must gain by parting bodies in other ways to be solved again."""
-
-
-def is_dear(scene: Scene) -> bool:
-    """Whether bodies are kept apart under several disturbances, so that solves take long and many fail."""
-    return scene.robot.collisions is not None and scene.disturbances.several
 
 
 class Symmetry(StrEnum):
@@ -301,7 +295,7 @@ class PostureProblem:
         native = method is MethodName.NATIVE
         compiled = options.compiled and method is options.method and (native or not refuge)
         changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
-        if is_dear(self._setting.scene):
+        if self._setting.scene.is_dear:
             changed = replace(changed, worth=WORTH)
         return replace(self._setting, options=changed)
 

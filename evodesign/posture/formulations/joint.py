@@ -311,15 +311,15 @@ class JointPostures:
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
-        filled_ones = [(name, self._begun(start, parameters)) for name, start in starts]
-        if solver.program.switches is None or not self._setting.scene.disturbances.several:
-            return [(name, solver.solve(parameters, start)) for name, start in filled_ones]
-        ends = [(name, solver.brief.solve(parameters, start)) for name, start in filled_ones]
+        given = [(name, self._begun(start, parameters)) for name, start in starts]
+        if not self._setting.scene.is_dear:
+            return [(name, solver.solve(parameters, start)) for name, start in given]
+        ends = [(name, solver.brief.solve(parameters, start)) for name, start in given]
         if any(raw.status is Status.SOLVED for _, raw in ends):
             return ends
         return [
             (name, solver.solve(parameters, start) if raw.status is Status.ITERATION_LIMIT else raw)
-            for (name, start), (_, raw) in zip(filled_ones, ends, strict=True)
+            for (name, start), (_, raw) in zip(given, ends, strict=True)
         ]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:

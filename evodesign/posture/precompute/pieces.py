@@ -24,7 +24,7 @@ from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
-from evodesign.posture.postures import WORTH, PostureProblem, is_dear
+from evodesign.posture.postures import WORTH, PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
     PROGRAMS,
@@ -97,7 +97,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
-    dear = setting.symmetric and is_dear(setting.middle)
+    dear = setting.symmetric and setting.middle.is_dear
     if piece.subject in UNDISTURBED:
         setting = all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)

@@ -103,6 +103,12 @@ def test_a_brief_solve_is_given_up_early(monkeypatch: pytest.MonkeyPatch, on: fl
     assert whole.iterations > 3
 
 
+def test_solvers_with_other_options_share_the_program_with_all_rows() -> None:
+    """It takes seconds to make."""
+    solver = Solver(replace(program(0), switches=ByNumbers(program(0))), SolverOptions())
+    assert solver.brief.parted is solver.near.parted is solver.near.brief.parted is solver.parted
+
+
 def test_entries_are_at_their_places_among_those_of_the_program() -> None:
     """The sum of all rows' own derivatives, put where they belong, against CasADi's of the whole."""
     whole = program(1)
