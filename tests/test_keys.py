@@ -25,7 +25,7 @@ from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.keys import NO_PART_OF, key_of
+from evodesign.posture.precompute.keys import key_of, no_part_of
 from evodesign.posture.precompute.plan import UNDISTURBED, Piece, PrecomputeSetting, Subject
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
@@ -184,15 +184,16 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
 @pytest.mark.parametrize(
     ("problem", "subject"),
     [
-        *(("shared_lifting", subject) for subject in Subject),
-        ("three_people_three_loads", Subject.PERSON),
+        *(("shared_lifting", subject) for subject in Subject),  # where bodies are kept apart
+        *(("three_people_three_loads", subject) for subject in Subject),
         ("icub_materials", Subject.POSTURE),
     ],
 )
 def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, subject: Subject) -> None:
-    setting, without = setting_of(problem), NO_PART_OF[subject]
+    setting = setting_of(problem)
     scene = setting.middle
-    if subject in UNDISTURBED:  # worked out where nothing disturbs
+    without = no_part_of(setting, Piece(subject, scene.pair))
+    if subject in UNDISTURBED and scene.human.collisions is None:  # worked out where nothing disturbs
         without = {**without, Scene: {"disturbances": "none"}}
     one = replace(setting, scenes=(scene,))
 

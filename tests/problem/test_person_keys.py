@@ -62,7 +62,9 @@ def expressions(problem: DesignProblem) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["point_grasp", "shared_lifting", "sartore2022", "sartore2022_as_published"])
+@pytest.mark.parametrize(
+    "name", ["point_grasp", "three_people_three_loads", "sartore2022", "sartore2022_as_published"]
+)
 def test_without_the_keys_programs_are_those_without_the_terms(
     name: str, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

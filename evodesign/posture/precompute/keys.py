@@ -16,7 +16,7 @@ from evodesign.posture.precompute.plan import (
     all_undisturbed,
 )
 
-__all__ = ["NO_PART_OF", "key_of"]
+__all__ = ["key_of", "no_part_of"]
 
 CODE, CODE_OF_LIFTS = "evodesign.posture.precompute.pieces", "evodesign.motion.starts"
 """The modules that work pieces out."""
@@ -87,13 +87,22 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
 """Fields on which a piece does not depend, by its subject, with the reason."""
 
 
+def no_part_of(setting: PrecomputeSetting, piece: Piece) -> Exceptions:
+    """Fields that do not count in the key of a piece, with the reason."""
+    return NO_PART_OF_PARTED if _parted(setting, piece) else NO_PART_OF[piece.subject]
+
+
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     """The digest under which a piece is kept: of all that it may follow from, and of the code."""
-    apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
-    parted = apart and piece.subject is not Subject.MEETINGS
-    without = NO_PART_OF_PARTED if parted else NO_PART_OF[piece.subject]
-    if piece.subject in UNDISTURBED and not parted:
+    without = no_part_of(setting, piece)
+    if piece.subject in UNDISTURBED and not _parted(setting, piece):
         setting = all_undisturbed(setting)
     data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
     code = code_digest(CODE_OF_LIFTS if piece.subject is Subject.LIFT else CODE)
     return digest((data, code), without=without)
+
+
+def _parted(setting: PrecomputeSetting, piece: Piece) -> bool:
+    """Whether a piece follows from what comes near whom, which is found where bodies are kept apart."""
+    apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
+    return apart and piece.subject is not Subject.MEETINGS
