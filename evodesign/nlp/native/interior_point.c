@@ -179,9 +179,13 @@ static Status iterate(Solver *s, const Options *options) {
                 return ACCEPTABLE;
             if (o->restorations >= MOST_RESTORATIONS)
                 return RESTORATION_FAILED;
-            if (!restore(s, RESTORATIONS))
+            int left = options->iterations - o->iterations - o->restorations;
+            if (!restore(s, RESTORATIONS < left ? RESTORATIONS : left)) {
+                if (o->iterations + o->restorations >= options->iterations)
+                    return ITERATION_LIMIT;
                 return largest(s->residuals, s->problem.rows) > INFEASIBLE_RESIDUAL ? INFEASIBLE
                                                                                     : RESTORATION_FAILED;
+            }
             leave_restoration(s, fraction);
         }
         s->violation = take_residuals(s, s->now.rows, s->primals_now, s->residuals);

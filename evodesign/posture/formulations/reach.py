@@ -275,7 +275,7 @@ def _best_settled(
     solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float
 ) -> list[RawSolution]:
     """The result of every start, of which the most extreme one violates nothing that was switched off."""
-    found = [solver.solve(parameters, start) for start in starts]
+    found = solver.solved_each(parameters, starts)
     settled: set[int] = set()
     while True:
         solved = [place for place, raw in enumerate(found) if raw.status is Status.SOLVED]

@@ -28,6 +28,9 @@ from evodesign.tasks import Task
 _Met = tuple[str, BodyPair]
 """A pair, after whom it is of."""
 
+_Values = tuple[float, ...]
+"""What programs are given of a design."""
+
 _Near = dict[_Met, float]
 """Pairs of a posture with their distances [m]."""
 
@@ -36,9 +39,12 @@ __all__ = ["REACH", "found_meetings", "with_meetings"]
 REACH = "reach"
 """Whose pairs are the robot's at extreme heights, beside those of the agents."""
 
-DESIGNS, AT_REACH, FEWEST = 28, 12, 4
-"""Whose postures are looked at, at the tasks and at extreme heights, with all people and loads together, and
-at least with each."""
+DESIGNS, AT_CORNERS, AT_REACH, FEWEST = 28, 28, 12, 4
+"""Whose postures are looked at: designs all over the space at the tasks, those at its corners, where searches
+end, and at extreme heights; with all people and loads together, and at least with each."""
+
+WHOLE_SHARE = 0.3
+"""Of these where postures are whole: solves take ten times as long."""
 
 NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
@@ -54,7 +60,8 @@ def found_meetings(
 
     In a fold everything passes through everything, and a few rows part it all: the pair that overlaps most in
     each posture is kept apart, then the one that does so still, and so on. At the task's heights those that
-    are near each other in the end are kept apart as well.
+    are near each other in the end are kept apart as well, but for designs at corners, of which many have
+    something near that others never have.
 
     Args:
         setting: of one person and load.
@@ -65,10 +72,11 @@ def found_meetings(
     """
     finder = _Finder(setting, symmetric, part, parts)
     scene = finder.scene
-    held, near = _deepest_first(lambda kept, left: finder.held(tasks, kept, left))
+    held, near = _deepest_first(lambda kept, left: finder.held(finder.spread, tasks, kept, left))
+    held, _ = _deepest_first(lambda kept, left: finder.held(finder.corners, tasks, kept, left), held | near)
     highest = {met for pairs in finder.at_reach(HIGHEST, set()).values() for met in _overlapping(pairs)}
     lowest, _ = _deepest_first(lambda kept, left: finder.at_reach(LOWEST, kept), highest)
-    met = {*held, *near, *lowest}
+    met = {*held, *lowest}
     found = {name: {pair for of, pair in met if of == name} for name in (ROBOT, HUMAN, REACH)}
     return {
         ROBOT: _in_order(scene.robot, found[ROBOT], finder.forms[0]),
@@ -125,22 +133,29 @@ class _Finder:
         self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
         space = setting.space
 
-        def given(genome: tuple[float, ...]) -> tuple[float, ...]:
-            return space.given(space.values(genome), {})
+        def given(genome: Sequence[float]) -> tuple[float, ...]:
+            return space.given(space.values(tuple(genome)), {})
 
-        def own(count: int) -> list[tuple[float, ...]]:
-            all_together = max(count, FEWEST * parts)
-            every = spread_designs(len(space.parameters), given, lambda _: True, all_together)
+        def own(count: int, of: Callable[[Sequence[float]], Sequence[float]] = tuple) -> list[_Values]:
+            all_together = max(int(count * (1.0 if symmetric else WHOLE_SHARE)), FEWEST * parts)
+            dimension = len(space.parameters)
+            every = spread_designs(dimension, lambda point: given(of(point)), lambda _: True, all_together)
             return [*every][part::parts]
 
-        self._held, self._at_reach = own(DESIGNS), own(AT_REACH)
+        self.spread, self._at_reach = own(DESIGNS), own(AT_REACH)
+        self.corners = own(AT_CORNERS, lambda point: [float(round(each)) for each in point])
 
     def held(
-        self, tasks: Sequence[Task], parted: Collection[_Met], left: Collection[Hashable] | None
+        self,
+        designs: Sequence[_Values],
+        tasks: Sequence[Task],
+        parted: Collection[_Met],
+        left: Collection[Hashable] | None,
     ) -> dict[Hashable, _Near]:
         """What is near in postures of the tasks, by numbers of design and task.
 
         Args:
+            designs: whose.
             tasks: of the problem.
             parted: pairs that are kept apart.
             left: the postures to look at; None for all.
@@ -151,7 +166,7 @@ class _Finder:
         problem = JointPostures(name, forms, replace(self._setting, scene=scene), SolverCache())
         human = AgentModel.of(free.human, free.human.tree)
         found: dict[Hashable, _Near] = {}
-        for number, values in enumerate(self._held):
+        for number, values in enumerate(designs):
             robot = AgentModel.of(free.robot, space.resized(free.robot.tree, values))
             checker = Checker(free, robot, human)
             for place, task in enumerate(tasks):
