@@ -32,9 +32,10 @@ from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
-from tests.robots import HUMANOIDS
+from tests.robots import HUMANOIDS, MJCF_HUMANOIDS
 
 HEAD = ("robot", "pairs checked", "with rows", "heights solved", "nearest [mm]", "without", "reach [m]", "s")
+ROBOTS = HUMANOIDS | MJCF_HUMANOIDS
 RESULTS = Path(__file__).parent / "results" / "clear_robots.json"
 
 
@@ -108,14 +109,14 @@ def row(name: str, found: dict[str, Any]) -> str:
 def main() -> None:
     """Measure the robots that are asked for."""
     parser = argparse.ArgumentParser(description="public humanoids whose bodies keep clear of each other")
-    parser.add_argument("--robots", default=",".join(HUMANOIDS))
+    parser.add_argument("--robots", default=",".join(ROBOTS))
     parser.add_argument("--fixed-starts", action="store_true")
     options = parser.parse_args()
     print(f"| {' | '.join(HEAD)} |", "|---" * len(HEAD) + "|", sep="\n")
     for name in options.robots.split(","):
         with tempfile.TemporaryDirectory() as folder:
             os.environ["EVODESIGN_CACHE"] = folder
-            found = measured(HUMANOIDS[name], Path(folder), fixed_starts=options.fixed_starts)
+            found = measured(ROBOTS[name], Path(folder), fixed_starts=options.fixed_starts)
         known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
         RESULTS.write_text(json.dumps(known | {name: found}, indent=2) + "\n")
         print(row(name, found), end="", flush=True)

@@ -77,7 +77,7 @@ NEEDS: dict[str, tuple[Callable[[], object], str]] = {
     "needs_chromium": (chromium, "no Chromium (Debian: apt-get install chromium)"),
     "needs_clang": (memory_sanitizer, "no clang with its memory sanitizer (Debian: apt-get install clang)"),
     "needs_compiler": (compiler_works, "no C compiler that works (Debian: apt-get install gcc libc6-dev)"),
-    "needs_robots": (robots_installed, "no public robots (pip install 'evodesign[robots]')"),
+    "needs_robots": (robots_installed, "no public robots (make test-all installs them)"),
 }
 """By marker: whether this machine has what is needed, and the reason and remedy if not."""
 

@@ -1,4 +1,4 @@
-"""Public models of humanoids of other make, from packages that the extra `robots` installs."""
+"""Public models of humanoids of other make: of the extra `robots`, and of robosuite without its needs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sysconfig
 from pathlib import Path
 
 SHARED = Path(sysconfig.get_path("purelib")) / "cmeel.prefix" / "share" / "example-robot-data" / "robots"
+ROBOSUITE = Path(sysconfig.get_path("purelib")) / "robosuite" / "models" / "assets" / "robots"
 ICUB = Path(sys.prefix) / "share" / "iCub" / "robots"
 
 HUMANOIDS = {
@@ -18,10 +19,13 @@ HUMANOIDS = {
 }
 """Their URDF files by name."""
 
+MJCF_HUMANOIDS = {"gr1": ROBOSUITE / "gr1" / "robot.xml"}
+"""MJCF files of others."""
+
 NO_HUMANOID = SHARED / "tiago_description" / "robots" / "tiago.urdf"
 """A robot on wheels."""
 
 
 def robots_installed() -> bool:
     """Whether all of them are there."""
-    return all(path.is_file() for path in (*HUMANOIDS.values(), NO_HUMANOID))
+    return all(path.is_file() for path in (*HUMANOIDS.values(), *MJCF_HUMANOIDS.values(), NO_HUMANOID))

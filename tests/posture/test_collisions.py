@@ -28,7 +28,7 @@ from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, r
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.meetings import found_meetings, with_meetings
+from evodesign.posture.precompute.meetings import _Finder, found_meetings, with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
@@ -180,6 +180,28 @@ def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: De
         assert ("head", other) in checked["robot"]
         assert ("l_hand", LOAD) not in checked["robot"]
     assert ("l_foot_front", FLOOR) not in checked["robot"]
+
+
+@pytest.mark.slow
+def test_what_meets_at_corners_of_the_space_is_found_too(
+    apart: DesignProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Searches end there, where shoulders come down to the hips above a short trunk."""
+
+    def found(corners: int) -> set[tuple[str, str]]:
+        few = {"DESIGNS": 1, "AT_CORNERS": corners, "AT_REACH": 1, "FEWEST": 0}
+        for name, number in few.items():
+            monkeypatch.setattr(f"evodesign.posture.precompute.meetings.{name}", number)
+        return set(found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)["robot"])
+
+    inside, everywhere = found(0), found(6)
+    assert inside < everywhere
+    finder = _Finder(setting_of(apart), True, 0, 1)
+    assert len(finder.corners) == 6
+    lowest, highest = (apart.space.values((end,) * len(apart.space.parameters)) for end in (0.0, 1.0))
+    ends = zip(apart.space.given(lowest, {}), apart.space.given(highest, {}), strict=True)
+    for values, own in zip(zip(*finder.corners, strict=True), ends, strict=True):
+        assert set(values) <= set(own)
 
 
 def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:

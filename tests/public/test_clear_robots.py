@@ -1,4 +1,4 @@
-"""A public humanoid with meshes, of which nothing is said but that its bodies keep clear of each other."""
+"""Public humanoids with meshes, of which nothing is said but that their bodies keep clear of each other."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.clear_robots import measured
-from tests.robots import HUMANOIDS
+from benchmarks.clear_robots import ROBOTS, measured
 
 pytestmark = pytest.mark.needs_robots
 
@@ -16,8 +15,9 @@ DEEPEST = 0.003
 
 
 @pytest.mark.slow
-def test_a_robot_with_meshes_holds_the_load_without_overlap(tmp_path: Path) -> None:
-    found = measured(HUMANOIDS["g1"], tmp_path, fixed_starts=True)
+@pytest.mark.parametrize("name", ["g1", "gr1"])
+def test_a_robot_with_meshes_holds_the_load_without_overlap(name: str, tmp_path: Path) -> None:
+    found = measured(ROBOTS[name], tmp_path, fixed_starts=True)
     assert found["solved"]
     assert found["nearest"]["distance_m"] > -DEEPEST
     assert 0 < found["with_rows"]["robot"] < found["checked"]["robot"]

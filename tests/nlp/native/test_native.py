@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -191,6 +192,17 @@ def test_no_feasible_point_is_said_and_soon() -> None:
     assert found.status is Status.INFEASIBLE
     assert found.reason == "Infeasible_Problem_Detected"
     assert found.iterations < 150
+
+
+def test_restorations_count_among_iterations() -> None:
+    """A solve that is given up early ends as soon in a search for a feasible point."""
+    x = ca.SX.sym("x", 2)
+    small = program(x[0], x, {"circle": (ca.sumsqr(x), 1.0, 1.0), "far": (x[0], 3.0, np.inf)})
+    whole = Solver(small, NATIVE).solve({}, {}).iterations
+    assert whole > 10
+    for limit in range(2, whole, 3):
+        few = Solver(small, replace(NATIVE, iterations=limit)).solve({}, {})
+        assert (few.status, few.iterations) == (Status.ITERATION_LIMIT, limit)
 
 
 def test_a_number_that_is_none_is_a_failure_with_a_reason() -> None:
