@@ -48,7 +48,7 @@ class SolverOptions:
     seconds: float = 20.0
     compiled: bool = False
     near: bool = False
-    worth: float = 1e-3
+    worth: float = 1e-4
     seldom: bool = False
     method: MethodName = MethodName.IPOPT
 

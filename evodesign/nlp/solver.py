@@ -163,13 +163,10 @@ class Solver:
         )
 
     def solved_each(
-        self, parameters: Mapping[str, Any], starts: Sequence[Mapping[str, Array]]
+        self, parameters: Mapping[str, Any], starts: Sequence[Mapping[str, Array]], *, brief: bool
     ) -> list[RawSolution]:
-        """Where starts lead to; with rows that can be switched on, slow solves are given up unless all are.
-
-        Such solves fail more often, and take several times as long where they do.
-        """
-        if len(starts) == 1 or self.program.switches is None:
+        """Where starts lead to; if brief, solves that take long are given up unless all of them do."""
+        if not brief or len(starts) == 1:
             return [self.solve(parameters, start) for start in starts]
         ends = [self.brief.solve(parameters, start) for start in starts]
         if any(raw.status is Status.SOLVED for raw in ends):
@@ -211,11 +208,10 @@ class Solver:
         switches = self.program.switches
         if switches is None or raw.status is not Status.SOLVED:
             return raw
-        anew = not has_any(switches.names, raw.start)
         found = self._without_violations(parameters, raw)
         if found is raw and not has_any(switches.names, raw.values):
             return raw
-        if found.status is not Status.SOLVED and anew:
+        if found.status is not Status.SOLVED and not has_any(switches.names, raw.start):
             found = self._without_violations(
                 parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
             )

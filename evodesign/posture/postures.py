@@ -30,7 +30,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Status
 from evodesign.tasks import Task, TaskRecord
 
-__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
+__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "WORTH", "PostureProblem", "Symmetry"]
 
 DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
 """Names of the formulations in results."""
@@ -61,6 +61,10 @@ def _whole(
 
 
 FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
+
+
+WORTH = 1e-3
+"""Share of its cost that a dear posture must gain by parting bodies in other ways to be solved again."""
 
 
 class Symmetry(StrEnum):
@@ -291,6 +295,8 @@ class PostureProblem:
         native = method is MethodName.NATIVE
         compiled = options.compiled and method is options.method and (native or not refuge)
         changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
+        if self._setting.scene.is_dear:
+            changed = replace(changed, worth=WORTH)
         return replace(self._setting, options=changed)
 
 

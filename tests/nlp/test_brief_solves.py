@@ -1,11 +1,16 @@
-"""With rows that can be switched on slow solves are given up, unless all of them are."""
+"""Slow solves are given up where that is asked for, unless all of them are; and where solves are dear."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 from typing import Any
 
+from evodesign.collision.rules import CollisionRules
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.nlp.solver import BRIEF, Solver, SolverOptions
+from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 
 NEEDED = {"quick": 10, "slow": 90, "hopeless": 999}
@@ -15,8 +20,7 @@ NEEDED = {"quick": 10, "slow": 90, "hopeless": 999}
 class Counted(Solver):
     """Solves that need some iterations, and what was asked for: where each began, and its limit."""
 
-    def __init__(self, switches: object = "some") -> None:
-        self.program: Any = SimpleNamespace(switches=switches)
+    def __init__(self) -> None:
         self.options = SolverOptions()
         self.asked: list[tuple[str, int]] = []
 
@@ -27,9 +31,9 @@ class Counted(Solver):
         status = Status.SOLVED if NEEDED[start] <= limit else Status.ITERATION_LIMIT
         return SimpleNamespace(status=Status.INFEASIBLE if start == "hopeless" else status)
 
-    def ends(self, *starts: Any) -> list[Status]:
+    def ends(self, *starts: Any, brief: bool = True) -> list[Status]:
         """Where starts lead to."""
-        return [raw.status for raw in self.solved_each({}, starts)]
+        return [raw.status for raw in self.solved_each({}, starts, brief=brief)]
 
 
 def test_slow_ones_are_given_up_where_another_one_succeeds() -> None:
@@ -50,7 +54,16 @@ def test_the_only_one_is_solved_to_its_end() -> None:
     assert solver.asked == [("slow", 300)]
 
 
-def test_no_solve_is_given_up_where_no_rows_can_be_switched_on() -> None:
-    solver = Counted(switches=None)
-    assert solver.ends("slow", "quick") == [Status.SOLVED, Status.SOLVED]
+def test_no_solve_is_given_up_unless_that_is_asked_for() -> None:
+    solver = Counted()
+    assert solver.ends("slow", "quick", brief=False) == [Status.SOLVED, Status.SOLVED]
     assert solver.asked == [("slow", 300), ("quick", 300)]
+
+
+def test_scenes_are_dear_with_bodies_apart_and_several_disturbances(problem: DesignProblem) -> None:
+    pushes = [Disturbance(name, push=(push, 0.0, 0.0)) for name, push in (("to", 9.0), ("fro", -9.0))]
+    rules = CollisionRules(0.005, ())
+    for collisions, count in product((None, rules), range(3)):
+        robot = replace(problem.scene.robot, collisions=collisions)
+        scene = replace(problem.scene, robot=robot, disturbances=Disturbances(tuple(pushes[:count])))
+        assert scene.is_dear is (collisions is not None and count == 2)

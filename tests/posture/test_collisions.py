@@ -16,6 +16,7 @@ from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, CollisionRules
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.collision.supports import ConvexShape, shapes_of
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.posture.allocation import EffortWeights
@@ -192,11 +193,14 @@ def test_what_meets_at_corners_of_the_space_is_found_too(
         few = {"DESIGNS": 1, "AT_CORNERS": corners, "AT_REACH": 1, "FEWEST": 0}
         for name, number in few.items():
             monkeypatch.setattr(f"evodesign.posture.precompute.meetings.{name}", number)
-        return set(found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)["robot"])
+        return set(found_meetings(dear, apart.tasks[:1], symmetric=True)["robot"])
 
+    pushes = [Disturbance(name, push=(push, 0.0, 0.0)) for name, push in (("to", 9.0), ("fro", -9.0))]
+    setting = setting_of(apart)
+    dear = replace(setting, scene=replace(setting.scene, disturbances=Disturbances(tuple(pushes))))
     inside, everywhere = found(0), found(6)
     assert inside < everywhere
-    finder = _Finder(setting_of(apart), True, 0, 1)
+    finder = _Finder(dear, True, 0, 1)
     assert len(finder.corners) == 6
     lowest, highest = (apart.space.values((end,) * len(apart.space.parameters)) for end in (0.0, 1.0))
     ends = zip(apart.space.given(lowest, {}), apart.space.given(highest, {}), strict=True)

@@ -154,7 +154,7 @@ class JointPostures:
         if switches is not None:
             start = {key: value for key, value in start.items() if key not in switches.names}
         parameters = {"design": design, **simple._beside(task)}
-        raw = simple._solver.brief.solve(parameters, simple._begun(start, parameters))
+        raw = simple._solver.solve(parameters, simple._begun(start, parameters))
         attempt = checked(self.name, name, raw, ())
         found = Candidate(attempt, simple._instants(raw, task), (), raw)
         return Trial((attempt,), found if found.solved else None)
@@ -295,8 +295,8 @@ class JointPostures:
     ) -> list[tuple[str, RawSolution]]:
         """Where starts lead to, by way of the best undisturbed optima where there are disturbances.
 
-        What cannot be held without disturbances cannot be held with them. Where bodies are kept apart,
-        solves that take long are given up where others do not.
+        What cannot be held without disturbances cannot be held with them. Where bodies are kept apart under
+        several disturbances, solves that take long are given up where others do not.
         """
         solver, simple = self._solver, self._undisturbed if len(starts) > FEW else None
         if simple is not None:
@@ -312,7 +312,8 @@ class JointPostures:
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
         given = [(name, self._begun(start, parameters)) for name, start in starts]
-        raws = solver.solved_each(parameters, [start for _, start in given])
+        dear = self._setting.scene.is_dear
+        raws = solver.solved_each(parameters, [start for _, start in given], brief=dear)
         return [(name, raw) for (name, _), raw in zip(given, raws, strict=True)]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:

@@ -191,16 +191,16 @@ class ReachProblem:
         """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on there."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        solver = self._solver
+        solver, brief = self._solver, self._setting.scene.is_dear
         if sense == LOWEST and self.program.switches is not None:
             for begun in (starts, FIXED) if self._starts[sense] else (FIXED,):
                 parted = [solver.parted_start(parameters, start) for start in begun]
-                found = _best_settled(solver, parameters, parted, sense)
+                found = _best_settled(solver, parameters, parted, sense, brief)
                 if any(raw.status is Status.SOLVED for raw in found):
                     return found
-        found = _best_settled(solver, parameters, starts, sense)
+        found = _best_settled(solver, parameters, starts, sense, brief)
         if solver.native and not any(raw.status is Status.SOLVED for raw in found):
-            return _best_settled(solver.by_ipopt, parameters, starts, sense)
+            return _best_settled(solver.by_ipopt, parameters, starts, sense, brief)
         return found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
@@ -272,10 +272,10 @@ def _with_own_rows(setting: Setting) -> Setting:
 
 
 def _best_settled(
-    solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float
+    solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float, brief: bool
 ) -> list[RawSolution]:
     """The result of every start, of which the most extreme one violates nothing that was switched off."""
-    found = solver.solved_each(parameters, starts)
+    found = solver.solved_each(parameters, starts, brief=brief)
     settled: set[int] = set()
     while True:
         solved = [place for place, raw in enumerate(found) if raw.status is Status.SOLVED]

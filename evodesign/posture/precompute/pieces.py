@@ -24,7 +24,7 @@ from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
-from evodesign.posture.postures import PostureProblem
+from evodesign.posture.postures import WORTH, PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
     PROGRAMS,
@@ -51,10 +51,6 @@ PARTED_SHARE = 0.5
 PARTED_PORTFOLIO, PARTED_ROUNDS = 12, 4
 """Starts that a portfolio may hold there before some are chosen, and rounds of fresh designs: a bend around a
 load has many optima."""
-
-TRAINED_WORTH = 1e-4
-"""Share of its cost that an optimum of a portfolio must gain by parting bodies in other ways; evaluations go
-on from it, and are content with less."""
 
 GATHERING = Gathering()
 """Of optima where bodies are kept apart under several disturbances: solves take long there, many fail."""
@@ -185,7 +181,7 @@ def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed, *, dear: bool) -> StartPortfolio:
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
-    own = Setting(scene, space, setting.weights, options if dear else replace(options, worth=TRAINED_WORTH))
+    own = Setting(scene, space, setting.weights, replace(options, worth=WORTH) if dear else options)
     beside = replace(known, highest=NO_STARTS, lowest=NO_STARTS)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=beside)
     if task is None:
