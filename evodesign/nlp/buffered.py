@@ -22,13 +22,10 @@ class BufferedFunction:
     def __init__(self, function: Any) -> None:
         self._function = function
         self._rows = [function.numel_out(place) for place in range(function.n_out())]
-        self._called: tuple[Any, Any] | None = None
 
     def __call__(self, *columns: Array) -> list[Array]:
         """The results, one array each, in CasADi's order: column after column."""
-        if self._called is None:
-            self._called = self._function.buffer()
-        buffer, call = self._called
+        buffer, call = self._function.buffer()
         given = [np.ascontiguousarray(column, dtype=float) for column in columns]
         results = [np.empty(rows) for rows in self._rows]
         for place, column in enumerate(given):
