@@ -8,7 +8,7 @@ Source: Sartore et al. 2022, Eq. 5 at rest; pinocchio `nonLinearEffects` at rest
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 
@@ -16,6 +16,7 @@ import numpy as np
 import pinocchio as pin
 
 from evodesign.body.placement import Vector
+from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
@@ -34,6 +35,7 @@ __all__ = [
     "Checker",
     "SceneMotion",
     "Unchecked",
+    "near_bodies",
     "sizes",
 ]
 
@@ -159,6 +161,34 @@ def _limited(agent: Agent, tree: Tree) -> Agent:
         return agent
     limits = agent.torque_limits if agent.limits_torques else {}
     return replace(agent, torque_limits={**limits, **rated}, limits_torques=True)
+
+
+def near_bodies(
+    models: Iterable[AgentModel],
+    postures: Mapping[str, AgentPosture],
+    load: Vector,
+    load_height: float,
+    within: float = 0.0,
+) -> list[BodyDistance]:
+    """Bodies that must not overlap and are nearer to each other than a distance, of those who have postures.
+
+    Args:
+        models: of agents; who has no bodies is left out.
+        postures: by agent name, of one agent or several.
+        load: sides of its box [m].
+        load_height: of the load's centre [m].
+        within: the distance [m].
+    """
+    present = [(model, postures[model.agent.name]) for model in models if model.agent.name in postures]
+    solids = {model.agent.name: model.solid for model, _ in present if model.solid is not None}
+    if not solids:
+        return []
+    poses = {
+        model.agent.name: (model.agent.sign, model.at(posture).poses)
+        for model, posture in present
+        if model.agent.name in solids
+    }
+    return SceneBodies(solids, load).near(poses, load_height, within)
 
 
 class Checker:

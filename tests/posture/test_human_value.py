@@ -11,14 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
-from evodesign.mechanics.scene import Grasp, GraspDirection, Scene
+from evodesign.mechanics.scene import HUMAN, Grasp, GraspDirection, Scene
+from evodesign.nlp.solver import RawSolution
+from evodesign.posture.check import AgentModel, near_bodies
 from evodesign.posture.formulations.human_value import LARGEST_ERROR, HumanProblem, chebyshev_sum
 from evodesign.posture.precompute.pieces import compute_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, Subject, stages
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.problem.build import DesignProblem
+from evodesign.posture.warm_start import instants_of, layout_of
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.precompute import precompute_setting
 from evodesign.records import Case, Hold, Status
@@ -108,6 +111,31 @@ def test_height_out_of_the_persons_reach_has_no_value(problem: DesignProblem) ->
     assert with_piece(NOTHING_PRECOMPUTED, piece, b'{"push_n":') is None, (
         "a content that cannot be read is missing"
     )
+
+
+def test_postures_in_which_the_persons_bodies_overlap_do_not_count(problem: DesignProblem) -> None:
+    """With rows for the feet alone people fold through themselves: at 0.5 m always, at 0.7 m at less cost."""
+    source = msgspec.structs.replace(problem.source, text=f"{problem.source.text}\n[collisions]\n")
+    scene = build_problem(source).scene
+    form = symmetric_forms(scene)[1]
+    person, model = (
+        HumanProblem(form, scene, 1.0, problem.options),
+        AgentModel.of(scene.human, scene.human.tree),
+    )
+
+    def overlap(raw: RawSolution) -> float:
+        (instant,) = instants_of(layout_of(person.program, HUMAN), (form,), scene, raw.values)
+        gaps = near_bodies((model,), instant.postures, scene.payload.size, 0.7)
+        return -min((gap.distance for gap in gaps), default=0.0)
+
+    ends = [person.solve(0.7, 0.0, start) for start in person_starts(person.program)]
+    solved = sorted((end for end in ends if end.status is Status.SOLVED), key=lambda end: end.cost)
+    assert overlap(solved[0]) > 0.01
+    best = person.best_of_many(0.7, 0.0)
+    assert best is not None
+    assert overlap(best) == 0.0
+    assert best.cost == min(end.cost for end in solved if overlap(end) == 0.0) > 1.1 * solved[0].cost
+    assert person.value(0.5) is None
 
 
 @pytest.mark.slow

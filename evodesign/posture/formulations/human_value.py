@@ -15,6 +15,7 @@ Source: Chebyshev interpolation: Trefethen, Approximation Theory and Approximati
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -26,6 +27,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import Array, ConstraintBlock, Program
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.check import TOLERANCE, AgentModel, near_bodies
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.starts import person_starts
@@ -33,6 +35,7 @@ from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.load import any_load, force_along_x
 from evodesign.posture.terms.registry import TERMS
+from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.records import Status
 
 __all__ = ["COEFFICIENTS", "COST_UNIT", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
@@ -99,6 +102,7 @@ class HumanProblem:
         options: SolverOptions,
         solvers: SolverCache | None = None,
     ) -> None:
+        self._form, self._scene = form, scene
         self._push = scene.stance.push
         self._mass = scene.payload.mass
         key = program_key("person", scene, form, weight)
@@ -145,12 +149,15 @@ class HumanProblem:
         return min(ends, key=lambda end: (end.status is not Status.SOLVED, end.cost))
 
     def value(self, height: float) -> HumanValue | None:
-        """V at a height [m]; None when the person cannot hold the load there or V is too rough to fit."""
+        """V at a height [m]; None when the person cannot hold the load there or V is too rough to fit.
+
+        Where bodies are kept apart, postures in which the check finds any that overlap do not count.
+        """
         nodes = self._push * np.cos(np.pi * (np.arange(COEFFICIENTS) + 0.5) / COEFFICIENTS)
         between = (nodes[1:] + nodes[:-1]) / 2.0
         best: dict[float, RawSolution] = {}
         for push in (*nodes.tolist(), *between.tolist()):
-            solution = self._best(height, push)
+            solution = self.best_of_many(height, push)
             if solution is None:
                 return None
             best[push] = solution
@@ -172,16 +179,30 @@ class HumanProblem:
         cheapest = sorted(best.values(), key=lambda solution: solution.cost)[:NODES_TRIED]
         found = {}
         for push, own in best.items():
-            ends = [self.solve(height, push, other.values) for other in cheapest]
-            solved = [end for end in ends if end.status is Status.SOLVED]
-            found[push] = min([own, *solved], key=lambda solution: solution.cost)
+            ends = [own, *(self.solve(height, push, other.values) for other in cheapest)]
+            found[push] = self._cheapest(height, ends) or own
         return found
 
-    def _best(self, height: float, push: float) -> RawSolution | None:
-        """The best of many starts, the same ones every time."""
-        solutions = [self.solve(height, push, start) for start in person_starts(self.program)]
-        solved = [solution for solution in solutions if solution.status is Status.SOLVED]
-        return min(solved, key=lambda solution: solution.cost, default=None)
+    def best_of_many(self, height: float, push: float) -> RawSolution | None:
+        """The person's posture at a height [m] under a push [N], from many starts, always the same."""
+        return self._cheapest(
+            height, [self.solve(height, push, each) for each in person_starts(self.program)]
+        )
+
+    def _cheapest(self, height: float, ends: Sequence[RawSolution]) -> RawSolution | None:
+        """Of the solves that succeeded and keep the person's bodies clear."""
+        solved = sorted((end for end in ends if end.status is Status.SOLVED), key=lambda end: end.cost)
+        return next((end for end in solved if self._keeps_clear(height, end)), None)
+
+    def _keeps_clear(self, height: float, raw: RawSolution) -> bool:
+        layout = layout_of(self.program, HUMAN)
+        (instant,) = instants_of(layout, (self._form,), self._scene.undisturbed, raw.values)
+        near = near_bodies((self._person,), instant.postures, self._scene.payload.size, height)
+        return all(gap.distance >= -TOLERANCE for gap in near)
+
+    @cached_property
+    def _person(self) -> AgentModel:
+        return AgentModel.of(self._form.agent, self._form.agent.tree)
 
 
 def human_program(form: Form, scene: Scene, weight: float, *, switched: bool = False) -> Program:

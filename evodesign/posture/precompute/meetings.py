@@ -12,12 +12,11 @@ from dataclasses import replace
 
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
-from evodesign.collision.scene_bodies import SceneBodies
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
-from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.check import AgentModel, Checker, near_bodies
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
@@ -219,12 +218,7 @@ class _Finder:
     def near(self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float) -> _Near:
         """The pairs that are near, with their distances [m]."""
         robot = self._robot.resized(self._setting.space.resized(self.scene.robot.tree, values))
-        models = {name: {ROBOT: robot, HUMAN: self._human}[name] for name in postures}
-        solids = {name: model.solid for name, model in models.items() if model.solid is not None}
-        poses = {
-            name: (models[name].agent.sign, models[name].at(each).poses) for name, each in postures.items()
-        }
-        gaps = SceneBodies(solids, self.scene.payload.size).near(poses, height, NEAR)
+        gaps = near_bodies((robot, self._human), postures, self.scene.payload.size, height, NEAR)
         return {met: gap.distance for gap in gaps for met in _own_pairs(gap)}
 
 
