@@ -25,6 +25,7 @@ __all__ = [
     "Solver",
     "SolverCache",
     "SolverOptions",
+    "after",
     "available",
     "has_any",
     "status_of",
@@ -176,6 +177,10 @@ class Solver:
             for start, raw in zip(starts, ends, strict=True)
         ]
 
+    def continued(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
+        """What a solve that was given up leads to when it has as long again."""
+        return replace(after(raw, self.brief.solve(parameters, raw.values)), start=raw.start)
+
     @cached_property
     def parted(self) -> Solver:
         """The same with all rows, for starts that switch some on."""
@@ -263,9 +268,13 @@ class Solver:
 
     def _solved_from(self, parameters: Mapping[str, Any], raw: RawSolution, on: Start) -> RawSolution:
         """The solve that goes on from another one, with rows switched on."""
-        again = self.solve(parameters, {**raw.values, **on})
-        iterations, seconds = again.iterations + raw.iterations, again.seconds + raw.seconds
-        return replace(again, start=raw.start, iterations=iterations, seconds=seconds)
+        return replace(after(raw, self.solve(parameters, {**raw.values, **on})), start=raw.start)
+
+
+def after(first: RawSolution, then: RawSolution) -> RawSolution:
+    """A solve that began where another one ended, with the work of both."""
+    iterations, seconds = first.iterations + then.iterations, first.seconds + then.seconds
+    return replace(then, iterations=iterations, seconds=seconds)
 
 
 def status_of(word: str) -> Status:

@@ -103,9 +103,10 @@ def chosen(
         designs: to choose and examine with.
         most: starts that the portfolio may hold.
         enough: share of the designs that all of them serve, for the portfolio to serve.
-        roughly: whether ends count as they are, as `Landscape.rough` has them.
+        roughly: whether ends count as they are, as `Landscape.rough` has them, and solves are given up early,
+            as evaluations do.
     """
-    solve = landscape.rough if roughly else landscape.solve
+    solve = landscape.briefly.rough if roughly else landscape.solve
     ends = [[solve(design, start) for start in offers] for design in designs]
     shape = len(designs), len(offers)
     costs = np.array([[cost_of(end) for end in row] for row in ends]).reshape(shape)

@@ -29,6 +29,10 @@ FAR = 1.5
 Rows that are switched on may lead far away from what a start promised, and others less far.
 """
 
+PROMISING = 0.93, 0.995
+"""Shares of the best one's cost between which solves that were given up must cost to go on: what costs
+much less is far from holding the constraints."""
+
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
@@ -92,18 +96,20 @@ class Finishing:
         settle: goes on from a solution that violates rows which were switched off; what it gives costs more.
         better: what a solution leads to that may cost less by more than so much.
         finish: makes a candidate of a named solve that succeeded.
+        go_on: what a solve that was given up early leads to in as many iterations again; None where none was.
     """
 
     settle: Callable[[RawSolution], RawSolution]
     better: Callable[[RawSolution, float], RawSolution]
     finish: Callable[[str, RawSolution], Candidate]
+    go_on: Callable[[RawSolution], RawSolution] | None = None
 
 
 def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishing: Finishing) -> Trial:
     """Settle, finish and check solves from the cheapest on, until one holds; others may yet cost less.
 
     Others are looked at for ways to get better than it, and settled where it costs far more than the cheapest
-    end promised.
+    end promised; those that were given up at less cost go on.
 
     Args:
         formulation: its name.
@@ -132,9 +138,14 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
             left.discard(place)
     if best is None:
         return Trial(tuple(attempts), None, overlaps)
-    for place in _each_once([raw.cost for raw in raws], left - settled):
+    go_on = finishing.go_on
+    given_up = {place for place, raw in enumerate(raws) if go_on and raw.status is Status.ITERATION_LIMIT}
+    for place in _each_once([raw.cost for raw in raws], (left - settled) | given_up):
         raw, found = raws[place], raws[place]
-        if best.raw.cost > FAR * bound:
+        least, most = np.multiply(PROMISING, best.raw.cost)
+        if go_on is not None and place in given_up and least < raw.cost < most:
+            found = finishing.settle(go_on(raw))
+        elif best.raw.cost > FAR * bound:
             found = finishing.settle(raw)
         elif DISTINCT * best.raw.cost < raw.cost - best.raw.cost <= MAY_GAIN * best.raw.cost:
             found = finishing.better(raw, raw.cost - best.raw.cost)

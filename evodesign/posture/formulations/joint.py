@@ -27,7 +27,7 @@ from evodesign.nlp.landscape import NEAR, Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver, SolverCache
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache, after
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
 from evodesign.posture.candidate import DISTINCT, Candidate, Finishing, Trial, cheapest, checked
@@ -98,6 +98,10 @@ class JointPostures:
             return None
         setting = replace(self._setting, scene=scene.undisturbed)
         return JointPostures(self.name, self._forms, setting, self._solvers, self._kind)
+
+    @property
+    def _is_dear(self) -> bool:
+        return self._setting.scene.is_dear
 
     @cached_property
     def _worst(self) -> WorstCase:
@@ -281,6 +285,7 @@ class JointPostures:
             lambda raw: self._solver.settled(parameters, raw, gain),
             lambda raw, least: self._solver.bettered(parameters, raw, max(gain, least)),
             lambda start, raw: self._candidate(start, raw, task, checker),
+            (lambda raw: self._solver.continued(parameters, raw)) if self._is_dear else None,
         )
         return cheapest(self.name, ends, finishing)
 
@@ -306,14 +311,13 @@ class JointPostures:
             if not any(raw.status is Status.SOLVED for _, raw in settled):
                 return settled or first
             ends = [
-                (name, _after(raw, solver.solve(parameters, self._begun(begun.needed(raw), parameters))))
+                (name, after(raw, solver.solve(parameters, self._begun(begun.needed(raw), parameters))))
                 for name, raw in _distinct(settled)
             ]
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
         given = [(name, self._begun(start, parameters)) for name, start in starts]
-        dear = self._setting.scene.is_dear
-        raws = solver.solved_each(parameters, [start for _, start in given], brief=dear)
+        raws = solver.solved_each(parameters, [start for _, start in given], brief=self._is_dear)
         return [(name, raw) for (name, _), raw in zip(given, raws, strict=True)]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:
@@ -345,12 +349,6 @@ def _distinct(ends: Sequence[tuple[str, RawSolution]]) -> list[tuple[str, RawSol
         if raw.status is Status.SOLVED and raw.cost > least:
             found.append((name, raw))
     return found
-
-
-def _after(first: RawSolution, then: RawSolution) -> RawSolution:
-    """A solve that began where another one ended, with the work of both."""
-    iterations, seconds = first.iterations + then.iterations, first.seconds + then.seconds
-    return replace(then, iterations=iterations, seconds=seconds)
 
 
 def posture_program(
