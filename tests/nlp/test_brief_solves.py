@@ -7,8 +7,12 @@ from itertools import product
 from types import SimpleNamespace
 from typing import Any
 
+import casadi as ca
+import pytest
+
 from evodesign.collision.rules import CollisionRules
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
+from evodesign.nlp.program import Program, Variable
 from evodesign.nlp.solver import BRIEF, Solver, SolverOptions
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
@@ -58,6 +62,21 @@ def test_no_solve_is_given_up_unless_that_is_asked_for() -> None:
     solver = Counted()
     assert solver.ends("slow", "quick", brief=False) == [Status.SOLVED, Status.SOLVED]
     assert solver.asked == [("slow", 300), ("quick", 300)]
+
+
+def test_a_solve_that_was_given_up_goes_on_where_it_ended() -> None:
+    """In a bent valley, whose least cost is at (1, 1); the work of both parts is told."""
+    place = Variable.column("place", [-2.0, -2.0], [2.0, 2.0], [0.0, 0.0], 1.0)
+    x, y = ca.vertsplit(place.value)
+    program = Program("valley", (place,), (), (1.0 - x) ** 2 + 100.0 * (y - x**2) ** 2, {})
+    start = {"place": [-1.9, 2.0]}
+    given_up = Solver(program, SolverOptions(iterations=5)).solve({}, start)
+    assert given_up.status is Status.ITERATION_LIMIT
+    found = Solver(program, SolverOptions()).continued({}, given_up)
+    assert found.status is Status.SOLVED
+    assert found.values["place"] == pytest.approx([1.0, 1.0], abs=1e-4)
+    assert found.start == start
+    assert found.iterations > given_up.iterations == 5
 
 
 def test_scenes_are_dear_with_bodies_apart_and_several_disturbances(problem: DesignProblem) -> None:

@@ -205,6 +205,36 @@ def test_of_starts_that_serve_as_many_the_one_with_the_least_work_is_chosen() ->
     assert [start["robot.joints"] for start in found.starts] == [[20]]
 
 
+def test_starts_whose_solves_evaluations_give_up_are_not_chosen() -> None:
+    """A start leads to the deepest well in as many iterations as evaluations wait for, or elsewhere."""
+
+    class Given(CountedSolver):
+        """Fails after so many iterations as the options have."""
+
+        options = SolverOptions()
+
+        def solve(self, parameters: dict, start: dict) -> SimpleNamespace:
+            """From 20 to a poorer optimum, from 90 to the best one."""
+            (work,) = start["robot.joints"]
+            solved = work <= self.options.iterations
+            status = Status.SOLVED if solved else Status.ITERATION_LIMIT
+            return SimpleNamespace(status=status, cost=2.0 - work / 90.0, iterations=work, values=start)
+
+        @property
+        def brief(self) -> Given:
+            """Given up after 60."""
+            other = Given()
+            other.program, other.options = self.program, SolverOptions(iterations=60)
+            return other
+
+    given = Given()
+    given.program = landscape().solver.program
+    offers = [{"robot.joints": [work]} for work in (20, 90)]
+    for roughly, one in ((False, 90), (True, 20)):
+        found = chosen(replace(landscape(), solver=given), offers, list(designs(6)), most=1, roughly=roughly)
+        assert [start["robot.joints"] for start in found.starts] == [[one]]
+
+
 def test_a_solution_that_is_not_accepted_counts_as_none() -> None:
     above = replace(landscape(), accepted=lambda design, raw: raw.values["robot.joints"][0] > 0.0)
     assert above.solve((0.0,), {"robot.joints": [1.0]}).status is Status.SOLVED

@@ -35,11 +35,22 @@ class Asked:
     ) -> None:
         self.asked: list[tuple[float, float]] = []
         self.settled: list[float] = []
+        self.gone_on: list[float] = []
         self._costs, self._refused, self._settled = costs, refused, settled or {}
 
     def trial(self, *costs: float) -> Trial:
         ends = [(f"start {number}", ended(cost)) for number, cost in enumerate(costs, 1)]
         return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish))
+
+    def trial_with_given_up(self, solved: float, *given_up: float, early: bool = True) -> Trial:
+        ends = [("start 0", ended(solved))]
+        ends += [(f"start {n}", ended(cost, Status.ITERATION_LIMIT)) for n, cost in enumerate(given_up, 1)]
+        go_on = self.go_on if early else None
+        return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish, go_on))
+
+    def go_on(self, raw: RawSolution) -> RawSolution:
+        self.gone_on.append(raw.cost)
+        return replace(raw, status=Status.SOLVED, cost=self._costs.get(raw.cost, raw.cost))
 
     def settle(self, raw: RawSolution) -> RawSolution:
         self.settled.append(raw.cost)
@@ -103,3 +114,23 @@ def test_all_are_settled_where_the_best_costs_far_more_than_the_cheapest_end_pro
     near = Asked({}, settled={1.0: 1.4, 6.0: 0.5})
     assert best_of(near.trial(1.0, 6.0)) == ("start 1", 1.4)
     assert near.settled == [1.0]
+
+
+def test_what_was_given_up_at_a_little_less_cost_goes_on() -> None:
+    asked = Asked({95.0: 96.0})
+    trial = asked.trial_with_given_up(100.0, 95.0, 99.9, 101.0, 50.0)
+    assert best_of(trial) == ("start 1", 96.0)
+    assert asked.gone_on == [95.0], "what promises more or hardly anything does not"
+    assert [attempt.status for attempt in trial.attempts[2:]] == [Status.ITERATION_LIMIT] * 3
+
+
+def test_what_has_gone_on_and_is_settled_at_more_cost_is_not_taken() -> None:
+    asked = Asked({}, settled={95.0: 110.0})
+    assert best_of(asked.trial_with_given_up(100.0, 95.0)) == ("start 0", 100.0)
+    assert asked.gone_on == [95.0]
+
+
+def test_nothing_goes_on_where_no_solve_was_given_up_early() -> None:
+    asked = Asked({95.0: 96.0})
+    assert best_of(asked.trial_with_given_up(100.0, 95.0, early=False)) == ("start 0", 100.0)
+    assert asked.gone_on == []
