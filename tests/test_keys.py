@@ -25,7 +25,7 @@ from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.keys import key_of, no_part_of
+from evodesign.posture.precompute.keys import NO_PART_OF, key_of, no_part_of
 from evodesign.posture.precompute.plan import UNDISTURBED, Piece, PrecomputeSetting, Subject
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
@@ -181,11 +181,18 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
         see_every_field_count(scene, without, key)
 
 
+APART = (Subject.MEETINGS, Subject.POSTURE, Subject.LIFT)
+"""One subject of each kind of key where bodies are kept apart."""
+
+FREE = tuple({(id(NO_PART_OF[each]), each in UNDISTURBED): each for each in Subject}.values())
+"""One of each kind elsewhere: of those whose keys leave out the same fields, of the same programs."""
+
+
 @pytest.mark.parametrize(
     ("problem", "subject"),
     [
-        *(("shared_lifting", subject) for subject in Subject),  # where bodies are kept apart
-        *(("three_people_three_loads", subject) for subject in Subject),
+        *(("shared_lifting", subject) for subject in APART),
+        *(("three_people_three_loads", subject) for subject in FREE),
         ("icub_materials", Subject.POSTURE),
     ],
 )
@@ -206,6 +213,13 @@ def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, 
 
     seen = see_every_field_count(whole, without, key)
     assert {"Piece", "SolverOptions", "EffortWeights", "DesignParameter", "Payload", "Tree"} <= seen
+
+
+def test_where_bodies_are_kept_apart_keys_of_all_pieces_but_meetings_leave_out_the_same_fields() -> None:
+    setting = setting_of("shared_lifting")
+    without = {each: no_part_of(setting, Piece(each, setting.middle.pair)) for each in Subject}
+    assert without.pop(Subject.MEETINGS) is not without[Subject.POSTURE]
+    assert all(each is without[Subject.POSTURE] for each in without.values())
 
 
 def test_a_piece_is_that_of_its_scene_and_of_symmetric_postures_or_not() -> None:
