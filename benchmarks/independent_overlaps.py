@@ -1,0 +1,277 @@
+"""Whether bodies pass through each other on a run's front, by code that shares nothing with the product's check.
+
+    python -m benchmarks.independent_overlaps RUN [RUN ...] [--designs N]
+
+Robot and people come from the URDF files that a design is exported as; pinocchio places their solids at the
+logged joint positions, and coal measures each pair (a mesh by its convex hull). Exempt are two links joined
+by one joint; pairs that overlap in the unscaled robot at its zero posture or in more than half of 400 random
+postures, and likewise in a person; and the load against links within three joints of the grasp. No list,
+exemption or tolerance of `evodesign.collision` is used.
+
+Told for each run: postures, the deepest overlap, and the pairs deeper than 3 mm.
+Written to benchmarks/results/independent_overlaps.json, printed as a table.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from evodesign.analysis.front import front
+from evodesign.records import CaseDetail
+from evodesign.report.opened_design import RebuiltProblem
+from evodesign.report.scene_models import SceneSet
+from evodesign.runlog.run import read_run
+from evodesign.tree.mesh_write import mesh_files
+from evodesign.tree.urdf_write import urdf_text
+
+RESULTS = Path(__file__).parent / "results" / "independent_overlaps.json"
+DEEP = 0.003  # [m]
+RANDOM = 400
+TURN = np.pi  # [rad], of a joint without limits
+FINGERS = 3  # joints between a hand's frame and what may touch the load
+
+Pair = tuple[str, str]
+
+
+@dataclass
+class Body:
+    """Solids of a URDF, as pinocchio and coal see them.
+
+    Args:
+        text: of the URDF.
+        folder: of its meshes.
+    """
+
+    text: str
+    folder: Path
+
+    def __post_init__(self) -> None:
+        path = self.folder / "body.urdf"
+        path.write_text(self.text)
+        self.model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer())
+        self.data = self.model.createData()
+        self.geometry = pin.buildGeomFromUrdf(
+            self.model, str(path), pin.GeometryType.VISUAL, str(self.folder)
+        )
+        for each in self.geometry.geometryObjects:
+            if isinstance(each.geometry, coal.BVHModelBase):
+                each.geometry.buildConvexHull(True, "Qt")
+                each.geometry = each.geometry.convex
+        self.places = self.geometry.createData()
+        frames = self.model.frames
+        self.links = [frames[each.parentFrame].name for each in self.geometry.geometryObjects]
+        self.above = {
+            f.name: frames[frames[f.parentFrame].parentFrame].name
+            for f in frames
+            if f.type == pin.FrameType.BODY and f.parentFrame
+        }
+
+    def placed(self, joints: Mapping[str, float], base: pin.SE3) -> list[tuple[str, Any, Any]]:
+        """Each solid with its link and its place in the world."""
+        q = pin.neutral(self.model)
+        q[:7] = pin.SE3ToXYZQUAT(base)
+        for name, value in joints.items():
+            joint = self.model.joints[self.model.getJointId(name)]
+            turned = [np.cos(value), np.sin(value)] if joint.nq == 2 else [value]
+            q[joint.idx_q : joint.idx_q + joint.nq] = turned
+        pin.updateGeometryPlacements(self.model, self.data, self.geometry, self.places, q)
+        return [
+            (link, each.geometry, coal.Transform3s(where.rotation, where.translation))
+            for link, each, where in zip(
+                self.links, self.geometry.geometryObjects, self.places.oMg, strict=True
+            )
+        ]
+
+    def exempt(self, joints: Sequence[str], limits: Mapping[str, tuple[float, float]]) -> frozenset[Pair]:
+        """Pairs of its links that may overlap."""
+        links = [*dict.fromkeys(self.links)]
+        joined = {
+            pair
+            for pair in combinations(links, 2)
+            if pair[1] == self.above.get(pair[0]) or pair[0] == self.above.get(pair[1])
+        }
+        others = {pair for pair in combinations(links, 2) if pair not in joined}
+        zero = self._deep({}, others)
+        rng, counts = np.random.default_rng(1), Counter[Pair]()
+        for _ in range(RANDOM):
+            drawn = {name: rng.uniform(*limits[name]) for name in joints}
+            counts.update(self._deep(drawn, others))
+        return frozenset(joined) | zero | {pair for pair, count in counts.items() if 2 * count > RANDOM}
+
+    def _deep(self, joints: Mapping[str, float], pairs: set[Pair]) -> set[Pair]:
+        found = overlaps(self.placed(joints, pin.SE3.Identity()), None)
+        return {pair for pair in found if pair in pairs}
+
+    def limits(self, joints: Sequence[str]) -> dict[str, tuple[float, float]]:
+        """Of joints, where they have any."""
+        found = {}
+        for name in joints:
+            joint = self.model.joints[self.model.getJointId(name)]
+            low = self.model.lowerPositionLimit[joint.idx_q] if joint.nq == 1 else -TURN
+            high = self.model.upperPositionLimit[joint.idx_q] if joint.nq == 1 else TURN
+            found[name] = (max(low, -TURN), min(high, TURN))
+        return found
+
+
+def overlaps(
+    one: Sequence[tuple[str, Any, Any]], other: Sequence[tuple[str, Any, Any]] | None
+) -> dict[Pair, float]:
+    """Depth [m] of all overlaps among solids, or of one with another set, by links."""
+    found: dict[Pair, float] = {}
+    pairs = combinations(one, 2) if other is None else ((a, b) for a in one for b in other)
+    boxes = {id(each): _box(each) for each in [*one, *(other or ())]}
+    for first, second in pairs:
+        (low, high), (low_2, high_2) = boxes[id(first)], boxes[id(second)]
+        if first[0] == second[0] and other is None or np.any(low > high_2) or np.any(low_2 > high):
+            continue
+        result = coal.DistanceResult()
+        depth = -coal.distance(*first[1:], *second[1:], coal.DistanceRequest(), result)
+        if depth > 0.0:
+            key = (first[0], second[0])
+            found[key] = max(depth, found.get(key, 0.0))
+    return found
+
+
+def _box(solid: tuple[str, Any, Any]) -> tuple[Any, Any]:
+    """Corners of an axis-aligned box about a solid's ball."""
+    _, geometry, where = solid
+    geometry.computeLocalAABB()
+    centre = where.getRotation() @ geometry.aabb_center + where.getTranslation()
+    return centre - geometry.aabb_radius, centre + geometry.aabb_radius
+
+
+class Judge:
+    """All postures of a run's front."""
+
+    def __init__(self, run: Path, folder: Path) -> None:
+        self.log = read_run(run)
+        self.problem = RebuiltProblem(self.log.header).problem
+        self.folder = folder
+        scenes = self.problem.scenes
+        robot = scenes[0].robot
+        names, meshes = mesh_files(robot.tree, "meshes")
+        self._write(meshes)
+        unscaled = Body(urdf_text(robot.tree, names), folder)
+        self.exempt = {"robot": unscaled.exempt(robot.joints, unscaled.limits(robot.joints))}
+        self.people = {}
+        for scene in scenes:
+            person = scene.human
+            if person.label not in self.people:
+                body = Body(urdf_text(person.tree), folder)
+                self.people[person.label] = body
+                self.exempt[person.label] = body.exempt(person.joints, body.limits(person.joints))
+
+    def _write(self, files: Mapping[str, bytes]) -> None:
+        for name, content in files.items():
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / name).write_bytes(content)
+
+    def designs(self, most: int | None) -> Iterator[tuple[int, Any, Sequence[CaseDetail]]]:
+        """Number, robot and postures of designs of the front."""
+        logged = {detail.evaluation: detail.cases for detail in self.log.details}
+        found = front(self.log.header.objectives, self.log.evaluations)
+        for evaluation in found[:: max(1, len(found) // most)] if most else found:
+            assessment, space = evaluation.assessment, self.problem.space
+            values = space.given(
+                [assessment.design[p.name] for p in space.parameters], assessment.rated_torques
+            )
+            tree = SceneSet.of(
+                self.problem.scenes, space.resized(self.problem.scene.robot.tree, values)
+            ).robot
+            names, meshes = mesh_files(tree, "meshes")
+            self._write(meshes)
+            yield evaluation.number, Body(urdf_text(tree, names), self.folder), logged[evaluation.number]
+
+    def deep(self, robot: Body, case: CaseDetail) -> dict[Pair, float]:
+        """Overlaps in a posture, by names."""
+        scene = self.problem.scene_of(case.case)
+        person = self.people[scene.human.label]
+        placed = {}
+        for who, body, turn in (("robot", robot, 0.0), ("human", person, np.pi)):
+            posture = case.agents[who]
+            own = pin.SE3(pin.rpy.rpyToMatrix(*posture.base_rpy_rad), np.array(posture.base_position_m))
+            world = pin.SE3(pin.rpy.rpyToMatrix(0.0, 0.0, turn), np.zeros(3)) * own
+            placed[who] = body.placed(posture.joints_rad, world)
+        found: dict[Pair, float] = {}
+        for who, label in (("robot", "robot"), ("human", scene.human.label)):
+            for pair, depth in overlaps(placed[who], None).items():
+                if pair not in self.exempt[label]:
+                    found[f"{label} {pair[0]}", pair[1]] = depth
+        for pair, depth in overlaps(placed["robot"], placed["human"]).items():
+            found[f"robot {pair[0]}", f"{scene.human.label} {pair[1]}"] = depth
+        box = coal.Box(*scene.payload.size)
+        load = [("load", box, coal.Transform3s(np.eye(3), np.array([0.0, 0.0, case.height_m])))]
+        for who, body, agent in (("robot", robot, scene.robot), ("human", person, scene.human)):
+            hands = {link for hand in agent.hands.values() for link in _up(body.above, hand)}
+            for (link, _), depth in overlaps(placed[who], load).items():
+                if not any(near in hands for near in _up(body.above, link)):
+                    found[f"{who} {link}", "load"] = depth
+        return found
+
+
+def _up(above: Mapping[str, str], link: str) -> list[str]:
+    found = [link]
+    while len(found) <= FINGERS and found[-1] in above:
+        found.append(above[found[-1]])
+    return found
+
+
+def judged(run: Path, most: int | None) -> dict[str, Any]:
+    """What is found on a run's front."""
+    with tempfile.TemporaryDirectory() as folder:
+        judge = Judge(run, Path(folder))
+        postures, deepest, pairs, robots = 0, 0.0, dict[str, float](), set[int]()
+        designs = [*judge.designs(most)]
+        for number, robot, cases in designs:
+            for case in cases:
+                for moment in case.few_moments:
+                    postures += 1
+                    for pair, depth in judge.deep(robot, moment).items():
+                        deepest = max(deepest, depth)
+                        if depth > DEEP:
+                            robots.add(number)
+                            name = " / ".join(pair)
+                            pairs[name] = max(pairs.get(name, 0.0), depth)
+    return {
+        "problem": judge.log.header.problem_name,
+        "seed": judge.log.header.search.seed,
+        "evaluations": len(judge.log.evaluations),
+        "designs": len(designs),
+        "postures": postures,
+        "deepest_mm": 1e3 * deepest,
+        "designs_deeper_than_3_mm": len(robots),
+        "pairs_mm": {name: 1e3 * depth for name, depth in sorted(pairs.items(), key=lambda each: -each[1])},
+    }
+
+
+def main() -> None:
+    """Judge runs."""
+    parser = argparse.ArgumentParser(description="overlaps on the fronts of runs, by independent code")
+    parser.add_argument("runs", nargs="+", type=Path)
+    parser.add_argument("--designs", type=int, default=None)
+    options = parser.parse_args()
+    found = [judged(run, options.designs) for run in options.runs]
+    RESULTS.write_text(json.dumps(found, indent=1) + "\n")
+    for each in found:
+        print(
+            f"{each['problem']}, seed {each['seed']}: {each['postures']} postures of {each['designs']} designs, "
+            f"deepest {each['deepest_mm']:.2f} mm, {each['designs_deeper_than_3_mm']} designs deeper than 3 mm"
+        )
+        for name, depth in each["pairs_mm"].items():
+            print(f"  {depth:6.1f} mm  {name}")
+
+
+if __name__ == "__main__":
+    main()
