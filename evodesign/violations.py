@@ -9,6 +9,9 @@ bound that a quantity q exceeds,
 so a metre of height counts as much as the whole of a bound. The torques of a design that misses a height do
 not exist; such a quantity counts as violated by the whole of its bound, e_q = 1. Where all heights are within
 reach but a posture was not found, or a quantity does not exist for another reason, the violation is unknown.
+
+Of a design whose build brings bodies together no posture is sought. What they lack [m] to be as far apart as
+asked while all joints are at zero is the excess of `bodies_apart` over its lower bound 0.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from typing import Any
 from evodesign.records import Assessment, CaseOutcome, Constraint, ReachOutcome, Status
 
 __all__ = [
+    "BODIES_APART",
     "HEIGHT",
     "bound_margin",
     "bounds_text",
@@ -37,8 +41,12 @@ __all__ = [
 HEIGHT = "height"
 """Name of the constraint that every problem has: that the load is held at all required heights."""
 
+BODIES_APART = "bodies_apart"
+"""By how much bodies that some design's build brings together are farther apart than asked [m], and the
+constraint that this is positive, which every problem has where bodies keep clear of each other."""
+
 WHOLE_BOUND = 1.0
-"""Relative excess of a quantity that does not exist because a height is missed."""
+"""Relative excess of a quantity that does not exist because a height is missed, or no posture was sought."""
 
 
 def excess(constraint: Constraint, value: float) -> float:
@@ -61,7 +69,7 @@ def missed_height(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> f
             max(reach.lowest_m - height, height - reach.highest_m, 0.0)
             for height in outcome.case.task.heights
         )
-        if distance == 0.0 and outcome.status is not Status.SOLVED:
+        if distance == 0.0 and outcome.status not in (Status.SOLVED, Status.BODIES_OVERLAP):
             return None
         total += distance if outcome.case.pair == cases[0].case.pair else 0.0  # the same for everyone
     return total
@@ -115,9 +123,9 @@ def violation_terms(
 ) -> dict[str, float | None]:
     """The terms of `total_violation` by name of the constraint, None for those that are unknown."""
     terms: dict[str, float | None] = {HEIGHT: missed}
+    absent = WHOLE_BOUND if missed or values.get(BODIES_APART, 0.0) < 0.0 else None
     for constraint in constraints:
         value = values.get(constraint.name)
-        absent = WHOLE_BOUND if missed else None
         terms[constraint.name] = absent if value is None else _relative_excess(constraint, value)
     return terms
 
@@ -148,7 +156,7 @@ def constraint_sentences(constraints: Sequence[Constraint], assessment: Assessme
     return tuple(
         f"{_words(constraint)} is {_figure(constraint, much)} {_beyond(constraint, assessment)}"
         for constraint in constraints
-        if (much := found[constraint.name])
+        if (much := found[constraint.name]) and not _is_told(constraint, assessment)
     )
 
 
@@ -157,6 +165,11 @@ def reason_of_infeasibility(constraints: Sequence[Constraint], assessment: Asses
     beyond = constraint_sentences(constraints, assessment)
     failed = () if assessment.status is Status.SOLVED and beyond else (assessment.reason,)
     return "; ".join((*failed, *beyond))
+
+
+def _is_told(constraint: Constraint, assessment: Assessment) -> bool:
+    """Whether the reason of a design's status says it already."""
+    return constraint.name == BODIES_APART and assessment.status is Status.BODIES_OVERLAP
 
 
 def exceeded_bounds(constraints: Sequence[Constraint], assessment: Assessment) -> tuple[str, ...]:

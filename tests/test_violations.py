@@ -22,6 +22,7 @@ from evodesign.records import (
     Status,
 )
 from evodesign.violations import (
+    BODIES_APART,
     HEIGHT,
     bounds_text,
     constraint_sentences,
@@ -103,6 +104,18 @@ def test_what_is_missing_without_a_missed_height_is_unknown() -> None:
     assert violations([LIGHT], lost) == {HEIGHT: None, "mass": 5.0}
     nowhere = assessment({"mass": 70.0}, reach=None)
     assert violations([LIGHT], nowhere)[HEIGHT] is None
+
+
+def test_bodies_in_each_other_count_by_their_metres_and_hide_no_other_bound() -> None:
+    apart = Constraint(name=BODIES_APART, unit="m", lower=0.0, upper=None)
+    cases = [case(1.0, Status.BODIES_OVERLAP), case(1.4, Status.BODIES_OVERLAP)]
+    reason = "chest 35 mm inside root_link"
+    found = assessment({BODIES_APART: -0.035}, *cases, status=Status.BODIES_OVERLAP, reason=reason)
+    assert violations([apart], found) == {HEIGHT: pytest.approx(0.1), BODIES_APART: pytest.approx(0.035)}
+    whole_bound = 1.0  # of the torque, which does not exist without a posture
+    total = total_violation((apart, WEAK), found.constrained, 0.1)
+    assert total == pytest.approx(0.1 + 0.035 + whole_bound)
+    assert reason_of_infeasibility([apart, LIGHT], found) == reason
 
 
 def test_a_height_counts_once_whatever_the_number_of_people() -> None:

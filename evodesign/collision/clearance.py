@@ -236,9 +236,13 @@ class PlacedSolids:
         return BodyDistance(self.names[i], self.names[j], self._distance(i, j))
 
     def _distance(self, i: int, j: int) -> float:
+        return self.parted(i, j)[0]
+
+    def parted(self, i: int, j: int) -> tuple[float, Array, int, int]:
+        """How far two solids are apart [m], the unit vector that parts them most, and their places."""
         request, result = coal.DistanceRequest(), coal.DistanceResult()
         one, other = (self._geometry(place) for place in (i, j))
-        return float(coal.distance(*one, *other, request, result))
+        return float(coal.distance(*one, *other, request, result)), np.array(result.normal), i, j
 
     def _geometry(self, place: int) -> tuple[Any, Any]:
         where = coal.Transform3s(self.rotations[place], self.positions[place])

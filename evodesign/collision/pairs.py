@@ -1,19 +1,25 @@
 """Which bodies of an agent must not overlap: all but those that its build brings together.
 
-    neighbours     joined links, by way of at most one more with a body (an elbow's cross) or of three axes (a
-                   hip's, a shoulder's); bare frames do not count; and links between which no joint moves
-                   that the problem names
-    always         pairs that overlap in most of the agent's postures
-    a hand         may touch the load that it holds, and so may links that begin less than a hand's length
+Exempt are, of the agent as its file has it,
+
+    joined         two links that one joint joins
+    still          two between which no joint moves
+    touching       two that are in touch while all joints are at zero, and in at least a tenth of its
+                   postures: arms that hang beside the hips are apart in nearly all others, and stay checked
+    mostly         two that overlap in most of its postures
+    holding        a hand and the load that it holds, and so links that begin less than a hand's length
                    from the grasp, as wrists do, and fingers that stand still
 
-So MoveIt fills its matrix of allowed collisions: adjacent, always, never.
+Where a pair is exempt, so is its mirror image. No design is asked: what only a resized robot brings together
+is a fault of that design (`built_in_pairs`).
+
+Source: MoveIt's matrix of allowed collisions: adjacent, in touch by default, always, never.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import combinations
 
 import numpy as np
@@ -21,29 +27,41 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.collision.clearance import SolidBodies, places_of
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
+from evodesign.errors import ModelError
 from evodesign.tree.frames import link_frames, link_poses
-from evodesign.tree.model import Joint, JointKind, Tree
+from evodesign.tree.model import Joint, Tree
+from evodesign.tree.symmetry import mirror_of
 
-__all__ = ["checked_pairs", "collision_pairs", "feet_pairs", "holding_links"]
-
-BETWEEN, AXES = 1, 3
-"""Links with a body, or joints that move, between two neighbours."""
+__all__ = [
+    "JOINED",
+    "STILL",
+    "built_in_pairs",
+    "checked_pairs",
+    "collision_pairs",
+    "exempt_pairs",
+    "feet_pairs",
+    "holding_links",
+]
 
 HAND = 0.15
 """A hand's length [m]."""
 
-SAMPLES, MOST = 100, 0.5
-"""Postures that are looked at, and the share of them in which a pair overlaps that always does."""
+TOUCH = 1e-6
+"""Solids nearer than this [m] are in touch: shapes that end where another one begins."""
+
+SAMPLES = 500
+"""Postures in which pairs are looked at."""
+
+MOST, SELDOM = 0.55, 0.1
+"""Shares of the postures: more than half of them, whichever are drawn, and so few that a touch is chance."""
 
 TURN = np.pi  # [rad], of a joint without limits
 
+JOINED, STILL = "joined by a joint", "no joint moves between them"
+
 
 def checked_pairs(
-    tree: Tree,
-    joints: Collection[str],
-    hands: Mapping[str, str],
-    soles: Mapping[str, str],
-    resized: Sequence[Tree] = (),
+    tree: Tree, joints: Collection[str], hands: Mapping[str, str], soles: Mapping[str, str]
 ) -> tuple[BodyPair, ...]:
     """Pairs of links, and of links with load, floor and partner, that must not overlap, in the tree's order.
 
@@ -52,30 +70,77 @@ def checked_pairs(
         joints: that move; the others stand at zero.
         hands: frames at the grasps, by side.
         soles: frames under the feet, by side.
-        resized: trees of some designs: what always overlaps in one of them is a matter of its build.
     """
     names = tuple(dict.fromkeys(SolidBodies.of_tree(tree).names))
     holding = holding_links(tree, joints, hands)
     standing = {link for sole in soles.values() for link in _foot(tree, joints, sole)}
     return (
-        *collision_pairs(tree, joints, resized),
+        *collision_pairs(tree, joints),
         *((name, LOAD) for name in names if name not in holding),
         *((name, FLOOR) for name in names if name not in standing),
         *((name, PARTNER) for name in names if name not in holding),
     )
 
 
-def collision_pairs(
-    tree: Tree, joints: Collection[str], resized: Sequence[Tree] = ()
-) -> tuple[BodyPair, ...]:
+def collision_pairs(tree: Tree, joints: Collection[str]) -> tuple[BodyPair, ...]:
     """Pairs of links that must not overlap, in the tree's order; for the arguments see `checked_pairs`."""
-    bodies = SolidBodies.of_tree(tree)
-    names = tuple(dict.fromkeys(bodies.names))
-    pairs = [pair for pair in combinations(names, 2) if not _near_by(tree, joints, frozenset(names), *pair)]
-    always = frozenset[BodyPair]().union(
-        *(_always_in_touch(each, joints, pairs) for each in (tree, *resized))
-    )
-    return tuple(pair for pair in pairs if pair not in always)
+    exempt = exempt_pairs(tree, joints)
+    return tuple(pair for pair in _link_pairs(tree) if pair not in exempt)
+
+
+def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
+    """Pairs of links that may overlap, in the tree's order, each with its reason.
+
+    Args:
+        tree: of the agent, unscaled.
+        joints: that move.
+    """
+    joined = {frozenset((joint.parent, joint.child)) for joint in tree.joints}
+    pairs = _link_pairs(tree)
+    others = [pair for pair in pairs if frozenset(pair) not in joined]
+    touching, shares = _touching(tree, others), _overlap_shares(tree, joints, others, _images(tree))
+    found: dict[BodyPair, str] = {}
+    for pair in pairs:
+        share = shares.get(pair, 0.0)
+        if frozenset(pair) in joined:
+            found[pair] = JOINED
+        elif _is_still(tree, joints, pair):
+            found[pair] = STILL
+        elif pair in touching and share >= SELDOM:
+            found[pair] = f"in touch while all joints are at zero, and in {share:.0%} of postures"
+        elif share > MOST:
+            found[pair] = f"overlap in {share:.0%} of postures"
+    return found
+
+
+def built_in_pairs(
+    tree: Tree, joints: Collection[str], checked: Collection[BodyPair], resized: Iterable[Tree]
+) -> tuple[BodyPair, ...]:
+    """Pairs of links that the build of some design brings together.
+
+    They overlap in it while all joints are at zero, and in a tenth of its postures at least, and are apart in
+    the unscaled robot at zero.
+
+    Args:
+        tree: of the agent, unscaled.
+        joints: that move.
+        checked: pairs that must not overlap; those between which no joint moves count as well.
+        resized: trees of some designs.
+    """
+    joined = {frozenset((joint.parent, joint.child)) for joint in tree.joints}
+    known = {frozenset(pair) for pair in checked}
+    own = [
+        pair
+        for pair in _link_pairs(tree)
+        if frozenset(pair) in known or (frozenset(pair) not in joined and _is_still(tree, joints, pair))
+    ]
+    apart, images = {*own} - _touching(tree, own), _images(tree)
+    found: set[BodyPair] = set()
+    for each in resized:
+        shares = _overlap_shares(each, joints, sorted(_touching(each, apart - found)), images)
+        found |= {pair for pair, share in shares.items() if share >= SELDOM}
+    found |= {(images.get(one, one), images.get(other, other)) for one, other in found}
+    return tuple(pair for pair in own if pair in found or pair[::-1] in found)
 
 
 def feet_pairs(
@@ -137,33 +202,64 @@ def _still_below(tree: Tree, joints: Collection[str], name: str) -> Iterator[str
             yield from _still_below(tree, joints, joint.child)
 
 
-def _near_by(tree: Tree, joints: Collection[str], bodies: frozenset[str], first: str, second: str) -> bool:
-    """Whether hardly anything is between two links."""
-    above, beyond = tree.to_root(first), tree.to_root(second)
-    common = next(link for link in above if link in beyond)
-    legs = above[: above.index(common)] + beyond[: beyond.index(common)]
-    between = [tree.parent_joint[link] for link in legs]
-    if not any(joint.name in joints for joint in between):
-        return True
-    axes = sum(joint.kind is not JointKind.FIXED for joint in between)
-    return axes <= AXES or len({*legs, common} & bodies - {first, second}) <= BETWEEN
+def _link_pairs(tree: Tree) -> tuple[BodyPair, ...]:
+    """All pairs of links that have solids, in the tree's order."""
+    return tuple(combinations(dict.fromkeys(SolidBodies.of_tree(tree).names), 2))
 
 
-def _always_in_touch(tree: Tree, joints: Collection[str], pairs: Collection[BodyPair]) -> frozenset[BodyPair]:
-    """Pairs that overlap in most postures, drawn from the joints' ranges; always the same ones."""
+def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:
+    """Whether nothing moves two links against each other."""
+    paths = [{tree.parent_joint[link].name for link in tree.to_root(name)[:-1]} for name in pair]
+    return not paths[0].symmetric_difference(paths[1]).intersection(joints)
+
+
+def _images(tree: Tree) -> Mapping[str, str]:
+    """The mirror image of each link, if the tree is symmetric."""
+    try:
+        return mirror_of(tree).links
+    except ModelError:
+        return {}
+
+
+def _touching(tree: Tree, pairs: Collection[BodyPair]) -> set[BodyPair]:
+    """Those of some pairs that are in touch while all joints are at zero."""
+    bodies = SolidBodies.of_tree(tree)
+    placed = bodies.placed(link_frames(tree, Placement(), {}))
+    return {(gap.first, gap.second) for gap in placed.overlapping(places_of(bodies.names, pairs), TOUCH)}
+
+
+def _overlap_shares(
+    tree: Tree, joints: Collection[str], pairs: Collection[BodyPair], images: Mapping[str, str]
+) -> Mapping[BodyPair, float]:
+    """In what share of postures pairs overlap: those that do, and their mirror images, which have the same.
+
+    Args:
+        tree: of the agent.
+        joints: that move; their positions are drawn from their ranges, always the same ones.
+        pairs: of links.
+        images: the mirror image of each link; none where the tree is not symmetric.
+    """
+    if not pairs:
+        return {}
     rng, bodies = np.random.default_rng(0), SolidBodies.of_tree(tree)
     ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
     lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
     drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
     poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
     turns, origins = (np.array([poses[name][part] for name in bodies.names]) for part in (0, 1))
-    counts: Counter[tuple[str, str]] = Counter()
+    counts: Counter[frozenset[str]] = Counter()
     places = places_of(bodies.names, pairs)
     samples = turns.shape[1]  # one where nothing moves
     for sample in range(samples):
         placed = bodies.placed_at(turns[:, sample], origins[:, sample])
-        counts.update((gap.first, gap.second) for gap in placed.overlapping(places))
-    return frozenset(pair for pair, count in counts.items() if count > MOST * samples)
+        counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places))
+    found: dict[BodyPair, float] = {}
+    for pair in pairs:
+        image = frozenset(images.get(link, link) for link in pair)
+        both = counts[frozenset(pair)] + counts[image]
+        if both:
+            found[pair] = both / (2 * samples)
+    return found
 
 
 def _range(joint: Joint) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from evodesign.body.placement import Vector
 
@@ -28,12 +28,20 @@ class CollisionRules:
         checked: pairs that must not overlap.
         parted: those of them that have rows in programs: the ones that come near each other in postures.
         parted_at_reach: those that have rows in their place where the load is as high or low as it can be.
+        built_in: pairs of links that some design's build brings together (`collision.pairs`).
+        narrow: margins [m] of pairs that are built nearer to each other (`collision.margins`).
     """
 
     margin: float
     checked: tuple[BodyPair, ...]
     parted: tuple[BodyPair, ...] = ()
     parted_at_reach: tuple[BodyPair, ...] = ()
+    built_in: tuple[BodyPair, ...] = ()
+    narrow: Mapping[BodyPair, float] = field(default_factory=dict)
+
+    def margin_of(self, pair: BodyPair) -> float:
+        """The least distance that programs ask for of a pair [m]."""
+        return self.narrow.get(pair, self.narrow.get(pair[::-1], self.margin))
 
     @property
     def at_reach(self) -> CollisionRules:

@@ -24,6 +24,7 @@ from evodesign.nlp.solver import status_of
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training, start_portfolio
 from evodesign.posture.check import Unchecked
+from evodesign.posture.design_checkers import can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem
@@ -130,8 +131,10 @@ def lift_portfolio(
     holds = PostureProblem(own, setting.symmetry, known)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
 
+    built = can_be_built(scene.robot, space)
+
     def held(design: Design) -> bool:
-        if reach.solve(design).beyond(lift.heights) != 0.0:
+        if not built(design) or reach.solve(design).beyond(lift.heights) != 0.0:
             return False
         ends = (holds.solve(design, Hold(height_m=height), Unchecked()) for height in lift.heights)
         return all(end.solved for end in ends)

@@ -1,14 +1,25 @@
-"""The check of postures of any design of a problem."""
+"""The check of any design of a problem: of its build, and of its postures."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+from evodesign.collision.zero_posture import built_in_slack
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import Scene
+from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.check import AgentModel, Checker
 
-__all__ = ["DesignCheckers"]
+__all__ = ["DesignCheckers", "can_be_built"]
+
+
+def can_be_built(robot: Agent, space: DesignSpace) -> Callable[[Sequence[float]], bool]:
+    """Whether the build of a design leaves bodies apart: a function of what programs are given of it."""
+
+    def apart(design: Sequence[float]) -> bool:
+        slack = built_in_slack(space.without_actuators(robot.tree, design), robot.collisions)
+        return slack is None or slack[0] >= 0.0
+
+    return apart
 
 
 class DesignCheckers:

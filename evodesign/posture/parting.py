@@ -22,6 +22,7 @@ from evodesign.posture.terms.collisions import (
     OFF,
     PARTING,
     directed,
+    margin_of,
     placed_pairs,
 )
 
@@ -276,14 +277,13 @@ def meetings_of(
     places: list[int] = []
     margins: list[float] = []
     for each in bodies:
-        rules = each.body.agent.collisions
         for number, meeting in enumerate(directed(each.body.form)):
             own = placed_pairs(each.body, meeting)
             held = each.body.values[PARTING][NUMBERS * number : NUMBERS * (number + 1)]
             pairs += own
             along += [one.apart_along(other, held) for one, other in own]
             places += [len(margins)] * len(own)
-            margins.append(rules.margin if rules else 0.0)
+            margins.append(margin_of(each.body.form, meeting))
     least = [_least_apart(*pair) for pair in pairs]
     shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
     given = list(arguments)

@@ -21,7 +21,7 @@ from evodesign.problem.agents import (
     robot_agent,
 )
 from evodesign.problem.collisions import with_collisions
-from evodesign.problem.constraints import constraints_of, refuse_constraints
+from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
 from evodesign.problem.descriptors import search_descriptors
 from evodesign.problem.design_space import (
     check_allocations,
@@ -259,7 +259,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         tasks=tasks_of(tables, source),
         weights=weights,
         objectives=objectives_of(tables, source, scenes),
-        constraints=constraints_of(tables, source, robot, people),
+        constraints=with_bodies_apart(constraints_of(tables, source, robot, people), robot),
         options=options,
         limits=worker_limits(tables),
         symmetry=resolved.symmetry,

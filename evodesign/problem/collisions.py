@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 
-from evodesign.collision.pairs import checked_pairs, feet_pairs
+from evodesign.collision.clearance import SolidBodies
+from evodesign.collision.margins import narrow_margins
+from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
@@ -15,9 +18,9 @@ from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 
 DESIGNS = 16
-"""In which pairs may always overlap."""
+"""Of which it is asked what their build brings together."""
 
-__all__ = ["with_collisions"]
+__all__ = ["may_overlap", "with_collisions"]
 
 
 def with_collisions(
@@ -43,14 +46,28 @@ def with_collisions(
     )
 
 
+def may_overlap(agent: Agent) -> Mapping[BodyPair, str]:
+    """Pairs of an agent's links that may overlap where bodies keep clear of each other, with the reason."""
+    kept = {frozenset(pair) for pair in agent.collisions.checked} if agent.collisions else set()
+    reasons = exempt_pairs(agent.tree, agent.joints)
+    links = dict.fromkeys(SolidBodies.of_tree(agent.tree).names)
+    return {
+        pair: reasons.get(pair, "ignored by the problem file, or exempt in another person")
+        for pair in combinations(links, 2)
+        if frozenset(pair) not in kept
+    }
+
+
 def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> CollisionRules:
-    resized = [space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT]
     ignored = {frozenset(pair) for pair in table.ignore}
     checked = [
         pair
-        for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles, resized)
+        for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
         if frozenset(pair) not in ignored
     ]
+    resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
+    built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
+    built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}
     names = {*agent.tree.link_by_name}
     for pair in table.part:
@@ -58,7 +75,9 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
             own.setdefault(frozenset(pair), pair)
     feet = feet_pairs(agent.tree, agent.joints, agent.soles, checked)
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
-    return CollisionRules(table.margin_m, tuple(own.values()), tuple(dict.fromkeys(parted)))
+    parted = tuple(dict.fromkeys(parted))
+    narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
+    return CollisionRules(table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow)
 
 
 def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:

@@ -26,8 +26,9 @@ from evodesign.problem.objectives import (
 )
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
 from evodesign.records import Constraint, ProblemSource
+from evodesign.violations import BODIES_APART
 
-__all__ = ["constraint_key", "constraints_of", "refuse_constraints"]
+__all__ = ["constraint_key", "constraints_of", "refuse_constraints", "with_bodies_apart"]
 
 SUFFIXES: Mapping[str, str] = {
     "N m": "_n_m",
@@ -102,12 +103,21 @@ def _check_bounds(table: BoundsTable, place: str, source: ProblemSource) -> None
         raise InputError(source.path, f"{place}.lower", f"less than upper ({upper:g})", f"{lower:g}")
 
 
+def with_bodies_apart(constraints: Sequence[Constraint], robot: Agent) -> tuple[Constraint, ...]:
+    """Constraints of a file, and that no design's build brings bodies together, where that may be."""
+    rules, named = robot.collisions, {constraint.name for constraint in constraints}
+    if rules is None or not rules.built_in or BODIES_APART in named:
+        return tuple(constraints)
+    return (*constraints, Constraint(name=BODIES_APART, unit="m", lower=0.0, upper=None))
+
+
 def refuse_constraints(constraints: Sequence[Constraint], source: ProblemSource) -> None:
     """Refuse constraints for the paper's joint problem, whose program does not hold them.
 
     Raises:
         InputError: naming the first one.
     """
-    if constraints:
-        key = f"constraints.{constraint_key(constraints[0].name)}"
+    asked = [constraint.name for constraint in constraints if constraint.name != BODIES_APART]
+    if asked:
+        key = f"constraints.{constraint_key(asked[0])}"
         raise InputError(source.path, key, "no [constraints] in the joint problem", "a bound")

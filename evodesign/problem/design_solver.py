@@ -1,5 +1,7 @@
 """Reach and postures of one design: reach first, then the postures of every case.
 
+Of a design whose build brings bodies together only the reach is asked.
+
 With sized actuators postures are found in rounds (`problem.sizing`): the first asks for reach and begins all
 cases; the last one checks them.
 """
@@ -10,6 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
+from evodesign.collision.clearance import BodyDistance
+from evodesign.collision.zero_posture import built_in_slack
 from evodesign.mechanics.added_mass import AddedMasses
 from evodesign.mechanics.stance_case import StanceTorques
 from evodesign.nlp.program import Start
@@ -23,7 +27,7 @@ from evodesign.problem.demand import SizedRobot
 from evodesign.problem.design_result import DesignResult
 from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.inner import InnerProblems
-from evodesign.problem.sizing import sized_result
+from evodesign.problem.sizing import sized_result, usual_values
 from evodesign.records import Case, Hold, Lift, Status
 from evodesign.tree.equip import mounted_solids
 
@@ -55,6 +59,9 @@ class DesignSolver:
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
         design = _OneDesign(self, values)
+        overlap = design.built_in_overlap
+        if overlap is not None:
+            return design.unsought(overlap)
         if not self.problem.space.margins:
             return design.result(values)
         result = sized_result(self.problem.space, values, design.sized_robot, design, self.usual)
@@ -104,6 +111,24 @@ class _OneDesign:
         self._tree = solver.problem.space.without_actuators(solver.tree, values, solver.growths)
         self._robot = solver.robot.resized(self._tree)
 
+    @property
+    def built_in_overlap(self) -> BodyDistance | None:
+        """The bodies that the design's build brings nearest to each other, if it brings any together."""
+        found = built_in_slack(self._tree, self._robot.agent.collisions)
+        return found[1] if found is not None and found[0] < 0.0 else None
+
+    def unsought(self, overlap: BodyDistance) -> DesignResult:
+        """The results without a posture in any case, as the design's build brings bodies together."""
+        how = "inside" if overlap.distance < 0.0 else "from"
+        apart = f"{overlap.first} {1e3 * abs(overlap.distance):.2g} mm {how} {overlap.second}"
+        reason = f"{apart} while all joints are at zero: no posture was sought"
+        cases = (CaseSolution(case, Status.BODIES_OVERLAP, reason) for case in self._problem.cases)
+        space, given = self._problem.space, self._values
+        if space.margins:
+            given = usual_values(space, given, self._solver.usual)
+        result = self._of_cases(given, self._reach(given), tuple(cases))
+        return replace(result, values=tuple(self._values), rated=tuple(given) if space.margins else ())
+
     @cached_property
     def sized_robot(self) -> SizedRobot:
         """The robot without the actuators that are sized."""
@@ -144,7 +169,11 @@ class _OneDesign:
         robot = self._robot.driven(tree) if problem.space.driven else self._robot
         reach = self._reach(values)
         check = Checker(problem.scene, robot, solver.people[problem.scene.human.label])
-        alone = solver.alone
+        return self._of_cases(values, reach, self._cases(values, reach, check, before))
+
+    def _of_cases(self, values: Sequence[float], reach: Reach, cases: Cases) -> DesignResult:
+        problem, solver, robot = self._problem, self._solver, self._robot
+        tree, alone = problem.space.with_actuators(self._tree, values), solver.alone
         body = robot.body if alone.body is solver.robot.body else None
         return DesignResult(
             scenes=problem.scenes,
@@ -153,7 +182,7 @@ class _OneDesign:
             tree=tree,
             standing=StanceModel(alone.cases, alone.body, None if body is None else (tree, body)),
             reach=reach,
-            cases=self._cases(values, reach, check, before),
+            cases=cases,
             paper=problem.joint,
             people_highest=min(
                 (person.highest for person in solver.known.person_reaches.values()), default=None

@@ -20,6 +20,8 @@ from functools import cached_property
 
 import numpy as np
 
+from evodesign.collision.zero_posture import built_in_slack, distance_along
+from evodesign.design.parameter import ParameterKind
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
@@ -46,7 +48,7 @@ from evodesign.problem.objectives import (
 from evodesign.problem.sensitivities import STEP, ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Case, CaseGradient, Gradients, Lift
-from evodesign.violations import HEIGHT
+from evodesign.violations import BODIES_APART, HEIGHT
 
 __all__ = ["assessed_gradients"]
 
@@ -173,6 +175,8 @@ class _Design:
             return _slope(self._highest)
         if name == SHARED_REACH:
             return self._of_shared_reach()
+        if name == BODIES_APART:
+            return self._of_bodies()
         if name in OF_THE_ROBOT:
             return self._of_robot(name)
         sensitivity = self._by_differences[name]
@@ -282,6 +286,26 @@ class _Design:
             return slope
         given = self._given
         return given if isinstance(given, NotDifferentiable) else np.asarray(slope @ given)
+
+    def _of_bodies(self) -> Found:
+        """Of the nearest two bodies at zero, differenced along the resized robot: lengths alone move them."""
+        space, tree = self._problem.space, self._result.robot.tree
+        slack = built_in_slack(self._result.tree, self._result.robot.collisions)
+        if slack is None:
+            return NotDifferentiable("the design has no such value")
+        found, (_, nearest) = np.zeros(len(self._values)), slack
+        apart = distance_along(self._result.tree, (nearest.first, nearest.second))
+
+        def value(position: int, moved: float) -> float:
+            values = list(self._result.program_values)
+            values[position] += moved
+            return apart(space.without_actuators(tree, values))
+
+        for position, parameter in enumerate(space.parameters):
+            if parameter.kind is ParameterKind.LENGTH:
+                step = STEP * self._values[position]
+                found[position] = (value(position, step) - value(position, -step)) / (2.0 * step)
+        return found
 
     def _of_robot(self, name: str) -> Found:
         space, tree = self._problem.space, self._result.robot.tree

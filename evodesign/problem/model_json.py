@@ -15,6 +15,7 @@ from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.scene import Agent, Payload
 from evodesign.problem.agents import everyone
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.collisions import may_overlap
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
 from evodesign.records import Hold, Lift
@@ -68,7 +69,14 @@ def _collisions(problem: DesignProblem) -> dict[str, Any]:
     if not rules:
         return {}
     pairs = {name: [list(pair) for pair in each.checked] for name, each in rules.items()}
-    return {"collisions": {"margin_m": next(iter(rules.values())).margin, "pairs": pairs}}
+    exempt = {
+        agent.label or agent.name: [
+            {"bodies": list(pair), "reason": reason} for pair, reason in may_overlap(agent).items()
+        ]
+        for agent in (problem.scene.robot, *{s.human.label: s.human for s in problem.scenes}.values())
+    }
+    margin = next(iter(rules.values())).margin
+    return {"collisions": {"margin_m": margin, "pairs": pairs, "exempt": exempt}}
 
 
 def _materials(problem: DesignProblem) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from evodesign.collision.zero_posture import built_in_slack
 from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.balance import standing_height_of_mass
@@ -64,6 +65,7 @@ from evodesign.problem.motion_objectives import (
     robot_power,
 )
 from evodesign.records import Constraint, Lift, Objective
+from evodesign.violations import BODIES_APART
 
 __all__ = [
     "HUMAN_EFFORT",
@@ -136,6 +138,15 @@ def shared_reach_height(result: DesignResult) -> float | None:
     if result.reach.highest is None or result.people_highest is None:
         return None
     return min(result.reach.highest, result.people_highest)
+
+
+def bodies_apart(result: DesignResult) -> float | None:
+    """By how much bodies that designs may bring together are farther apart than asked, joints at zero [m].
+
+    None where bodies may pass through anything, or where no design brings any together.
+    """
+    found = built_in_slack(result.tree, result.robot.collisions)
+    return None if found is None else found[0]
 
 
 def mass(result: DesignResult) -> float:
@@ -261,6 +272,7 @@ REACH, SHARED_REACH = "reach_height", "shared_reach_height"
 WHOLE: Mapping[str, ObjectiveKind] = {
     REACH: ObjectiveKind("m", reach_height),
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
+    BODIES_APART: ObjectiveKind("m", bodies_apart),
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
     "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),

@@ -23,7 +23,7 @@ from evodesign.problem.demand import Demand, SizedRobot, demand_of
 from evodesign.problem.design_result import DesignResult
 from evodesign.records import Status
 
-__all__ = ["BOUNDS", "SizingRounds", "sized_result"]
+__all__ = ["BOUNDS", "SizingRounds", "sized_result", "usual_values"]
 
 BOUNDS = (1.0, 300.0)
 """Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
@@ -50,6 +50,22 @@ class SizingRounds(Protocol):
 
     def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
         """The checked results near them; cases that have no posture there have none."""
+
+
+def usual_values(
+    space: DesignSpace, values: Sequence[float], usual: Mapping[str, float] = NOTHING_KNOWN
+) -> list[float]:
+    """The values of a design with rated torques [N m] for margins, as another design asks for them.
+
+    Args:
+        space: of the problem.
+        values: of the design.
+        usual: what the other design asks of each group [N m].
+    """
+    found = list(values)
+    for place in space.margins:
+        found[place] *= usual.get(space.parameters[place].name, TYPICAL)
+    return found
 
 
 def sized_result(
@@ -90,9 +106,10 @@ def sized_result(
 
     margins = {name: values[place] for name, place in groups.items()}
     bounds = dict.fromkeys(groups, BOUNDS)
-    start: Mapping[str, float] = {name: margin * usual.get(name, TYPICAL) for name, margin in margins.items()}
-    sketch = rounds.sketched(given(start))
-    told = demand_of(space, given(start), robot, sketch) if sketch else ""
+    first = usual_values(space, values, usual)
+    start: Mapping[str, float] = {name: first[place] for name, place in groups.items()}
+    sketch = rounds.sketched(first)
+    told = demand_of(space, first, robot, sketch) if sketch else ""
     if isinstance(told, Demand):
         start = sizes_met(told.at, start, margins, bounds)
     for _ in range(BEGINNINGS):

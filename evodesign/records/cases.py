@@ -17,6 +17,7 @@ class Status(StrEnum):
 
     SOLVED = "solved"
     INFEASIBLE = "infeasible"
+    BODIES_OVERLAP = "bodies in each other"
     ITERATION_LIMIT = "iteration limit"
     TIME_LIMIT = "time limit"
     NUMERICAL_FAILURE = "numerical failure"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rich.markup import escape
@@ -10,7 +10,9 @@ from rich.table import Table
 
 from evodesign.cli.output import markup, printable, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
+from evodesign.collision.pairs import JOINED, STILL
 from evodesign.errors import on_one_line
+from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.inertia_rules import RuleDifference
 from evodesign.problem.model_json import model_json
@@ -35,6 +37,7 @@ def model_tables(problem: DesignProblem) -> tuple[FittedTable | Table, ...]:
         _links_table(shown["links"]),
         _parameters_table(shown["parameters"]),
         *([_materials_table(shown["materials"])] if "materials" in shown else []),
+        *([_exempt_table(shown["collisions"]["exempt"])] if "collisions" in shown else []),
     )
 
 
@@ -154,6 +157,19 @@ def _materials_table(materials: Iterable[dict[str, Any]]) -> FittedTable:
     for material in materials:
         name, source = escape(on_one_line(material["name"])), escape(on_one_line(material["source"]))
         table.add_row(name, rounded(material["density_kg_per_m3"]), source)
+    return table
+
+
+def _exempt_table(exempt: Mapping[str, Sequence[Mapping[str, Any]]]) -> FittedTable:
+    """Pairs of bodies that may overlap, by their reason; those joined by a joint are counted alone."""
+    rows: dict[tuple[str, str], list[str]] = {}
+    for agent, pairs in exempt.items():
+        for pair in pairs:
+            rows.setdefault((agent, pair["reason"]), []).append(" and ".join(pair["bodies"]))
+    table = titled("bodies that may overlap", names("agent", "reason", "pairs"))
+    for (agent, reason), pairs in sorted(rows.items(), key=lambda row: row[0][0] != ROBOT):
+        told = f"{len(pairs)} pairs (--json lists them)" if reason in (JOINED, STILL) else ", ".join(pairs)
+        table.add_row(markup(agent), markup(reason), markup(told))
     return table
 
 

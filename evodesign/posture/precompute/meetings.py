@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
@@ -17,6 +18,7 @@ from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies
+from evodesign.posture.design_checkers import can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
@@ -41,6 +43,9 @@ REACH = "reach"
 DESIGNS, AT_CORNERS, AT_REACH, FEWEST = 28, 28, 12, 4
 """Whose postures are looked at: designs all over the space at the tasks, those at its corners, where searches
 end, and at extreme heights; with all people and loads together, and at least with each."""
+
+LOOKED_AT = 8
+"""How many times as many designs are looked at, at most, as many cannot be built."""
 
 WHOLE_SHARE = 0.3
 """Of these where postures are whole: solves take ten times as long."""
@@ -133,6 +138,7 @@ class _Finder:
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
         self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
         space = setting.space
+        built = can_be_built(scene.robot, space)
 
         def given(genome: Sequence[float]) -> tuple[float, ...]:
             return space.given(space.values(tuple(genome)), {})
@@ -140,8 +146,9 @@ class _Finder:
         def own(count: int, of: Callable[[Sequence[float]], Sequence[float]] = tuple) -> list[_Values]:
             all_together = max(int(count * (1.0 if symmetric else WHOLE_SHARE)), FEWEST * parts)
             dimension = len(space.parameters)
-            every = spread_designs(dimension, lambda point: given(of(point)), lambda _: True, all_together)
-            return [*every][part::parts]
+            looked_at = LOOKED_AT * all_together
+            every = spread_designs(dimension, lambda point: given(of(point)), built, looked_at)
+            return [*islice(every, all_together)][part::parts]
 
         self.spread, self._at_reach = own(DESIGNS), own(AT_REACH)
         self.corners = own(AT_CORNERS, lambda point: [float(round(each)) for each in point])

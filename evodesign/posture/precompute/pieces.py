@@ -20,7 +20,7 @@ from evodesign.nlp.program import Start
 from evodesign.nlp.start_library import Gathering, gathered
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training, chosen, start_portfolio
-from evodesign.posture.design_checkers import DesignCheckers
+from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
@@ -196,8 +196,10 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed, *, 
         near = STRICTER * landscape.relative, STRICTER * landscape.absolute
         landscape = replace(landscape, relative=near[0], absolute=near[1])
 
+    built = can_be_built(scene.robot, space)
+
     def wanted(design: tuple[float, ...]) -> bool:
-        return task is None or reach.solve(design).beyond(task.heights) == 0.0
+        return built(design) and (task is None or reach.solve(design).beyond(task.heights) == 0.0)
 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})

@@ -62,6 +62,7 @@ __all__ = [
     "PARTING",
     "Meeting",
     "directed",
+    "margin_of",
     "meetings",
     "placed_pairs",
 ]
@@ -132,6 +133,13 @@ def _meeting(mirror: Mirror | None, kept: Collection[str], pair: BodyPair) -> Me
         return Meeting(MeetingKind.MIDDLE, first, first, True)
     one, other = sorted((first, mirror.links[second]))  # mirror images of this pair are another name of it
     return Meeting(MeetingKind.DIRECTION, one, other, True)
+
+
+def margin_of(form: Form, meeting: Meeting) -> float:
+    """How far the two of a meeting are asked to be apart [m]."""
+    rules, images = form.agent.collisions, form.mirror.links if form.mirror else {}
+    second = images[meeting.second] if meeting.mirrored else meeting.second
+    return 0.0 if rules is None else rules.margin_of((meeting.first, second))
 
 
 def directed(form: Form) -> tuple[Meeting, ...]:
@@ -207,6 +215,7 @@ def rows(body: Body) -> Iterator[Row]:
     left = ca.DM([0.0, 1.0, 0.0])
     parted = directed(body.form)
     for meeting in meetings(body.form):
+        spare = rules.margin - margin_of(body.form, meeting)
         if meeting.kind is MeetingKind.PLANE:
             away = ca.DM(PLANES[meeting.second])
             for shape in _placed(body, meeting.first):
@@ -215,14 +224,13 @@ def rows(body: Body) -> Iterator[Row]:
                 )
         elif meeting.kind is MeetingKind.MIDDLE:
             for shape in _placed(body, meeting.first):
-                found[MeetingKind.MIDDLE].append(
-                    (meeting.label, 2.0 * (shape.centre[1] - shape.support(left)))
-                )
+                apart = 2.0 * (shape.centre[1] - shape.support(left)) + spare
+                found[MeetingKind.MIDDLE].append((meeting.label, apart))
         elif PARTING in body.values:
             place = NUMBERS * parted.index(meeting)
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
             for one, other in pairs:
-                apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0])
+                apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0]) + spare
                 found[MeetingKind.DIRECTION].append((meeting.label, apart))
     for kind, name, least in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", rules.margin),
