@@ -1,4 +1,4 @@
-"""Whether bodies pass through each other on a run's front, by code that shares nothing with the product's check.
+"""Whether bodies pass through each other on a run's front, by code that shares nothing with the check.
 
     python -m benchmarks.independent_overlaps RUN [RUN ...] [--designs N]
 
@@ -134,7 +134,7 @@ def overlaps(
     boxes = {id(each): _box(each) for each in [*one, *(other or ())]}
     for first, second in pairs:
         (low, high), (low_2, high_2) = boxes[id(first)], boxes[id(second)]
-        if first[0] == second[0] and other is None or np.any(low > high_2) or np.any(low_2 > high):
+        if (first[0] == second[0] and other is None) or np.any(low > high_2) or np.any(low_2 > high):
             continue
         result = coal.DistanceResult()
         depth = -coal.distance(*first[1:], *second[1:], coal.DistanceRequest(), result)
@@ -265,9 +265,9 @@ def main() -> None:
     found = [judged(run, options.designs) for run in options.runs]
     RESULTS.write_text(json.dumps(found, indent=1) + "\n")
     for each in found:
+        where = f"{each['problem']}, seed {each['seed']}: {each['postures']} postures of {each['designs']} designs"
         print(
-            f"{each['problem']}, seed {each['seed']}: {each['postures']} postures of {each['designs']} designs, "
-            f"deepest {each['deepest_mm']:.2f} mm, {each['designs_deeper_than_3_mm']} designs deeper than 3 mm"
+            f"{where}, deepest {each['deepest_mm']:.2f} mm, {each['designs_deeper_than_3_mm']} deeper than 3 mm"
         )
         for name, depth in each["pairs_mm"].items():
             print(f"  {depth:6.1f} mm  {name}")
