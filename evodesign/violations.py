@@ -59,10 +59,11 @@ def excess(constraint: Constraint, value: float) -> float:
 def missed_height(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> float | None:
     """Sum over tasks of the distance of the worst of their heights from the interval within reach [m].
 
-    None when a failure hides it: the reach is unknown, or a case within reach was not solved.
+    None when a failure hides it: the reach is unknown, or a case within reach was not solved. Zero where the
+    reach is unknown of a design whose bodies are in each other.
     """
     if reach is None or reach.lowest_m is None or reach.highest_m is None:
-        return None
+        return _unasked(cases)
     total = 0.0
     for outcome in cases:
         distance = max(
@@ -75,13 +76,18 @@ def missed_height(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> f
     return total
 
 
+def _unasked(cases: Sequence[CaseOutcome]) -> float | None:
+    """What counts of heights where the reach is unknown [m]: nothing if bodies in each other explain it."""
+    return 0.0 if any(outcome.status is Status.BODIES_OVERLAP for outcome in cases) else None
+
+
 def height_margin(reach: ReachOutcome | None, cases: Sequence[CaseOutcome]) -> float | None:
     """How far the worst required height lies beyond the interval within reach [m]; negative within it.
 
-    None when the reach is unknown.
+    None when the reach is unknown, but zero of a design whose bodies are in each other.
     """
     if reach is None or reach.lowest_m is None or reach.highest_m is None:
-        return None
+        return _unasked(cases)
     heights = [height for outcome in cases for height in outcome.case.task.heights]
     return max(reach.lowest_m - min(heights), max(heights) - reach.highest_m)
 

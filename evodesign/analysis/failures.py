@@ -20,7 +20,7 @@ __all__ = ["Cause", "causes", "causes_of_infeasibility", "failed", "failures"]
 
 def failed(evaluation: Evaluation) -> bool:
     """Whether an evaluation ended without a result for its design."""
-    return evaluation.assessment.status not in (Status.SOLVED, Status.INFEASIBLE)
+    return evaluation.assessment.status not in (Status.SOLVED, Status.INFEASIBLE, Status.BODIES_OVERLAP)
 
 
 def failures(evaluations: Iterable[Evaluation]) -> Counter[Status]:

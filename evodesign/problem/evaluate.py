@@ -37,6 +37,7 @@ from evodesign.records import (
     LoadCaseDetail,
     ProblemSource,
     ReachOutcome,
+    Status,
     worst_status,
 )
 from evodesign.violations import missed_height, total_violation
@@ -123,13 +124,21 @@ class Evaluator:
             design=dict(self.problem.space.named(values)),
             objectives=objective_values(self.problem.objectives, result),
             violation=total_violation(constraints, constrained, missed_height(reach, cases)),
-            status=worst_status([result.reach.status, *(solution.status for solution in result.cases)]),
+            status=_status(result),
             reason=failed[0].reason if failed else "solved",
             reach=reach,
             cases=cases,
             constraints=constrained or msgspec.UNSET,
             rated=rated_of(result) or msgspec.UNSET,
         )
+
+
+def _status(result: DesignResult) -> Status:
+    """The worst of reach and cases; bodies in each other explain a reach that was not found as well."""
+    found = [solution.status for solution in result.cases]
+    if Status.BODIES_OVERLAP in found:
+        return Status.BODIES_OVERLAP
+    return worst_status([result.reach.status, *found])
 
 
 def rated_of(result: DesignResult) -> dict[str, float]:

@@ -167,8 +167,8 @@ def _exempt_table(exempt: Mapping[str, Sequence[Mapping[str, Any]]]) -> FittedTa
         for pair in pairs:
             rows.setdefault((agent, pair["reason"]), []).append(" and ".join(pair["bodies"]))
     table = titled("bodies that may overlap", names("agent", "reason", "pairs"))
-    for (agent, reason), pairs in sorted(rows.items(), key=lambda row: row[0][0] != ROBOT):
-        told = f"{len(pairs)} pairs (--json lists them)" if reason in (JOINED, STILL) else ", ".join(pairs)
+    for (agent, reason), found in sorted(rows.items(), key=lambda row: row[0][0] != ROBOT):
+        told = f"{len(found)} pairs (--json lists them)" if reason in (JOINED, STILL) else ", ".join(found)
         table.add_row(markup(agent), markup(reason), markup(told))
     return table
 
