@@ -40,7 +40,7 @@ from evodesign.records import (
     Status,
     worst_status,
 )
-from evodesign.violations import missed_height, total_violation
+from evodesign.violations import BODIES_APART, missed_height, total_violation
 
 __all__ = ["AssessmentFactory", "Evaluator", "case_outcome", "detail_of", "reach_of"]
 
@@ -118,7 +118,10 @@ class Evaluator:
         """A design's results in short, as they are logged."""
         failed = [solution for solution in result.cases if not solution.solved]
         constraints, reach = self.problem.constraints, reach_of(result.reach)
-        constrained = objective_values(constraints, result)
+        known = constraints
+        if any(solution.status is Status.BODIES_OVERLAP for solution in failed):  # nothing else is known
+            known = tuple(constraint for constraint in constraints if constraint.name == BODIES_APART)
+        constrained = objective_values(known, result)
         cases = tuple(case_outcome(solution, native=self._native) for solution in result.cases)
         return Assessment(
             design=dict(self.problem.space.named(values)),

@@ -158,14 +158,17 @@ def test_margins_of_violations_are_negative_inside():
 
 
 def test_infeasibility_adds_violations_and_expected_failures():
-    def margins(points):
-        return np.stack([points[:, 0] - 0.5, points[:, 1] - 0.5], axis=1)
+    def one(points):
+        return points[:, :1] - 0.5
+
+    def other(points):
+        return points[:, 1:] - 0.5
 
     def failure(points):
         return np.where(points[:, :1] > 0.9, 1.0, -1.0)
 
     points = np.array([[0.1, 0.1], [0.7, 0.6], [0.95, 0.0]])
-    assert Feasibility(margins, failure, 0.0)(points) == pytest.approx([0.0, 0.3, 1.45])
+    assert Feasibility([one, other], failure, 0.0)(points) == pytest.approx([0.0, 0.3, 1.45])
 
 
 def test_the_chosen_add_most_together():
@@ -253,6 +256,30 @@ def test_objectives_are_learnt_by_their_parts():
     told = [whole(genome).objectives for genome in points]
     assert model.expected()(np.array(points)) == pytest.approx(np.array(told), abs=1e-5)
     assert np.abs(model.expected()(asked) - expected).mean() < 0.05
+
+
+def test_a_margin_is_learnt_from_the_designs_in_which_it_is_known():
+    """The second is unknown where the first is violated, and would be far off there."""
+
+    def outcome(genome, second):
+        point = np.array(genome)
+        first = float(point[0] - 0.5)
+        margins = (first, None if first > 0.0 else second(point))
+        violation = max(first, 0.0) + max(margins[1] or 0.0, 0.0)
+        return Outcome(sloped(genome).objectives if violation == 0.0 else None, violation, margins=margins)
+
+    def true(point):
+        return float(point[1] - 0.7)
+
+    generator = np.random.default_rng(8)
+    knowledge, points = Knowledge(settings()), generator.random((60, 6)).tolist()
+    for genome in points:
+        knowledge.add(tuple(genome), outcome(genome, true))
+    asked = generator.random((200, 6))
+    expected = np.maximum(asked[:, 0] - 0.5, 0.0) + np.maximum(asked[:, 1] - 0.7, 0.0)
+    found = knowledge.feasibility(generator)(asked)
+    assert np.abs(found - expected).mean() < 0.03
+    assert np.corrcoef(found, expected)[0, 1] > 0.95
 
 
 def test_what_lies_beyond_a_given_reference_is_left_alone():

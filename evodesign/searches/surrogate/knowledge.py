@@ -1,6 +1,6 @@
 """What a search has been told, as arrays, and the models made of it.
 
-The models of objectives know feasible designs, those of margins all designs whose margins are known. When
+The models of objectives know feasible designs, that of a margin all designs in which it is known. When
 they are made anew from more than a thousand, those stay that few others dominate, and the newest.
 
 Hypervolumes are measured against a reference point. Where none is given it moves with the front: its worst
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import moocore
 import numpy as np
@@ -25,6 +26,7 @@ from evodesign.searches.surrogate.approximation import (
     KEPT,
     REDRAWN,
     Approximation,
+    Function,
     Known,
 )
 from evodesign.searches.surrogate.feasibility import LATEST, Feasibility, margins_of_violations
@@ -58,10 +60,12 @@ class Knowledge:
         self._feasible: list[int] = []
         self._objectives = _Rows(settings.objectives)
         self._known: list[int] = []
+        self._within: list[list[int]] = []
         self._violated = False
         self._front: tuple[int, Array, Array] | None = None
         self._parts: tuple[int, ...] = ()
-        self._model, self._margins, self._failures = (_Maintained(self._discrete) for _ in range(3))
+        self._model, self._violations, self._failures = (_Maintained(self._discrete) for _ in range(3))
+        self._margins: list[_Maintained] = []
 
     def __len__(self) -> int:
         return len(self._outcomes)
@@ -73,6 +77,7 @@ class Knowledge:
         if violation is not None:
             self._known.append(len(self))
             self._violated |= violation > 0.0
+            self._add_margins(outcome.margins)
         if values is not None:
             if not self._feasible:
                 self._parts = tuple(map(len, outcome.parts)) or (0,) * len(values)
@@ -80,6 +85,15 @@ class Knowledge:
             self._objectives.append(values)
         self._genomes.append(genome)
         self._outcomes.append(outcome)
+
+    def _add_margins(self, margins: Sequence[float | None]) -> None:
+        """Take note of where each margin of the latest design is known."""
+        if len(margins) > len(self._within):
+            self._within = [[] for _ in margins]
+            self._margins = [_Maintained(self._discrete) for _ in margins]
+        for known, margin in zip(self._within, margins, strict=False):
+            if margin is not None:
+                known.append(len(self))
 
     @property
     def points(self) -> Array:
@@ -168,16 +182,13 @@ class Knowledge:
             generator: draws the features of the margins' model.
         """
         latest = list(map(_violation, self._outcomes[-LATEST:]))
-        margins = failures = None
-        if self._violated:
-            margins = self._margins.of(
-                len(self._known), self._margins_reported, _newest(len(self._known)), generator
-            )
+        failures = None
+        margins = self._expected_margins(generator) if self._violated else []
         if 0 < len(self._known) < len(self):
             failures = self._failures.of(len(self), self._failures_reported, _newest(len(self)), generator)
         share = latest.count(None) / max(len(latest), 1)
         return Feasibility(
-            None if margins is None else margins.expected(),
+            margins,
             None if failures is None else failures.expected(),
             share,
         )
@@ -188,21 +199,32 @@ class Knowledge:
         signs = np.array([[1.0 if _violation(each) is None else -1.0] for each in told])
         return Known(self.points[which], signs, self._gradients([()] * len(signs), 1))
 
-    def _margins_reported(self, which: NDArray[np.intp]) -> Known:
-        """Of some of the designs whose violation is known."""
-        places = [self._known[place] for place in which]
-        violations = np.array([_violation(self._outcomes[place]) for place in places], dtype=float)
-        return self._margins_of(places, violations)
+    def _expected_margins(self, generator: np.random.Generator) -> list[Function]:
+        """What each margin is expected to be, of those that enough is known of; else of the violation."""
+        found = [
+            model.of(len(known), partial(self._margin_reported, place), _newest(len(known)), generator)
+            for place, (model, known) in enumerate(zip(self._margins, self._within, strict=True))
+        ]
+        if not self._within:
+            count = len(self._known)
+            found = [self._violations.of(count, self._violations_reported, _newest(count), generator)]
+        return [model.expected() for model in found if model is not None]
 
-    def _margins_of(self, places: Sequence[int], violations: Array) -> Known:
-        told = [self._outcomes[place] for place in places]
-        points = self.points[list(places)]
-        if all(outcome.margins and None not in outcome.margins for outcome in told):
-            margins = np.array([outcome.margins for outcome in told], dtype=float)
-            gradients = self._gradients([outcome.margin_gradients for outcome in told], margins.shape[1])
-            return Known(points, margins, gradients)
-        margins = margins_of_violations(violations)
-        return Known(points, margins, self._gradients([()] * len(told), 1))
+    def _margin_reported(self, margin: int, which: NDArray[np.intp]) -> Known:
+        """Some of the designs in which a margin is known."""
+        told = [self._within[margin][place] for place in which]
+        outcomes = [self._outcomes[place] for place in told]
+        targets = np.array([[outcome.margins[margin]] for outcome in outcomes], dtype=float)
+        slopes = [outcome.margin_gradients[margin : margin + 1] for outcome in outcomes]
+        return Known(self.points[told], targets, self._gradients(slopes, 1))
+
+    def _violations_reported(self, which: NDArray[np.intp]) -> Known:
+        """Some of the designs whose violation is known."""
+        told = [self._known[place] for place in which]
+        violations = np.array([_violation(self._outcomes[place]) for place in told], dtype=float)
+        return Known(
+            self.points[told], margins_of_violations(violations), self._gradients([()] * len(told), 1)
+        )
 
 
 def _violation(outcome: Outcome) -> float | None:
