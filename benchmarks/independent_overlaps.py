@@ -265,10 +265,9 @@ def main() -> None:
     found = [judged(run, options.designs) for run in options.runs]
     RESULTS.write_text(json.dumps(found, indent=1) + "\n")
     for each in found:
-        where = f"{each['problem']}, seed {each['seed']}: {each['postures']} postures of {each['designs']} designs"
-        print(
-            f"{where}, deepest {each['deepest_mm']:.2f} mm, {each['designs_deeper_than_3_mm']} deeper than 3 mm"
-        )
+        front = f"{each['postures']} postures of {each['designs']} designs"
+        deep = f"deepest {each['deepest_mm']:.2f} mm, {each['designs_deeper_than_3_mm']} deeper than 3 mm"
+        print(f"{each['problem']}, seed {each['seed']}: {front}, {deep}")
         for name, depth in each["pairs_mm"].items():
             print(f"  {depth:6.1f} mm  {name}")
 
