@@ -76,7 +76,7 @@ def few_triangles(content: bytes, name: str, most: int, source: str, key: str) -
     """The bytes of a mesh file of a kind that is read, as in `read_mesh`.
 
     Raises:
-        InputError: they hold no triangles, or no reader is installed.
+        InputError: they hold no triangles.
     """
     kind = PurePath(name).suffix.lower()
     cache = _cache()
@@ -89,9 +89,6 @@ def few_triangles(content: bytes, name: str, most: int, source: str, key: str) -
         surface = _simplified(content, kind, most)
     except ValueError as error:
         raise InputError(source, key, "a mesh of triangles", f"'{name}' ({error})") from error
-    except ImportError as error:
-        wanted = "[robot] meshes = false, or readers of meshes: pip install 'evodesign[mesh]'"
-        raise InputError(source, key, wanted, f"the mesh '{name}' and none ({error})") from error
     if cache:
         with suppress(OSError):
             cache.store(entry, surface_text(surface).encode())
@@ -129,7 +126,7 @@ def _loaded(content: bytes, kind: str) -> Any:
     Raises:
         ValueError: the libraries cannot read it.
     """
-    import trimesh  # here: what is kept needs neither
+    import trimesh  # here: what is kept needs neither, and commands start without
     from collada.common import DaeError
     from trimesh.exchange.stl import HeaderError
 

@@ -13,6 +13,7 @@ from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
 HEAVY = ("casadi", "pinocchio")
+READERS = ("trimesh", "collada", "fast_simplification")
 
 
 def loaded(code: str, names: tuple[str, ...]) -> str:
@@ -21,8 +22,13 @@ def loaded(code: str, names: tuple[str, ...]) -> str:
 
 
 def test_commands_are_listed_without_what_they_need() -> None:
-    names = (*HEAVY, "numpy", "msgspec", "rich", "mcap", "pymoo", "plotly", "matplotlib")
+    names = (*HEAVY, "numpy", "msgspec", "rich", "mcap", "pymoo", "plotly", "matplotlib", *READERS)
     assert loaded("import evodesign.cli.main", names) == "[]\n"
+
+
+def test_a_problem_is_read_without_readers_of_meshes_until_it_shows_one() -> None:
+    code = "from evodesign.problem.source import read_source\nread_source('icub-lifting')"
+    assert loaded(code, READERS) == "[]\n"
 
 
 @pytest.mark.parametrize("command", ["front", "verify", "watch --once", "merge", "recover", "compare"])

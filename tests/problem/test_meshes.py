@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -316,13 +315,3 @@ def test_meshes_with_y_up_are_turned_where_they_would_lie_beside_their_links(
     middle = (found.vertices.min(axis=0) + found.vertices.max(axis=0)) / 2.0
     np.testing.assert_allclose(middle, (0.0, 0.02, -0.3), atol=2e-3)
     assert found.volume == pytest.approx(capsule().volume, rel=1e-5)
-
-
-def test_without_readers_of_meshes_a_sentence_names_the_extra(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "a.ply"
-    trimesh.creation.box((0.2, 0.3, 0.4)).export(path)
-    monkeypatch.setitem(sys.modules, "trimesh", None)
-    with pytest.raises(InputError, match=r"pip install 'evodesign\[mesh\]'"):
-        read_mesh(path, 300, "p.toml", "robot.urdf")
