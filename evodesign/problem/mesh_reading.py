@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from evodesign.errors import InputError
 from evodesign.identity import code_digest, digest
 from evodesign.nlp.disk_cache import Cache, user_cache
+from evodesign.tree.placeholder import placeholder
 from evodesign.tree.surface import Surface, read_surface, surface_of, surface_text
 
 __all__ = ["KINDS", "few_triangles", "read_mesh"]
@@ -78,7 +79,9 @@ def few_triangles(content: bytes, name: str, most: int, source: str, key: str) -
     Raises:
         InputError: they hold no triangles.
     """
-    kind = PurePath(name).suffix.lower()
+    kind, missing = PurePath(name).suffix.lower(), placeholder(content)
+    if missing:
+        raise InputError(source, key, "a mesh of triangles", f"'{name}', which {missing}")
     cache = _cache()
     entry = digest((kind, most, content, code_digest(__name__)))
     kept = cache.read(entry) if cache else None
@@ -136,6 +139,8 @@ def _loaded(content: bytes, kind: str) -> Any:
     )
     try:
         scene = trimesh.load_scene(io.BytesIO(content), file_type=kind[1:], resolver=None)
+        if not scene.geometry:
+            raise ValueError("no triangles in it")
         units = {_metres(geometry.units) for geometry in scene.geometry.values()}
         mesh = scene.to_mesh()
         mesh.apply_scale(max(units))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from evodesign.errors import InputError
 from evodesign.tree.mjcf_read import TranslatedRobot, is_mjcf, translated
+from evodesign.tree.placeholder import placeholder
 
 __all__ = ["read_robot", "read_text"]
 
@@ -35,19 +36,19 @@ def read_robot(path: Path, name: str, source: str, key: str) -> TranslatedRobot:
 
 
 def read_text(path: Path, source: str, key: str) -> str:
-    """A UTF-8 text file.
+    """A UTF-8 text file, without the mark of the byte order that some editors begin it with.
 
     Args:
         path: of the file.
         source: who names it, for messages.
         key: where in the source, empty for the whole.
     Raises:
-        InputError: it cannot be read, or is longer than `LONGEST_FILE`.
+        InputError: it cannot be read, is longer than `LONGEST_FILE`, or stands for a file that is not here.
     """
     try:
         if path.exists() and not path.is_file():  # reading a device or a pipe might never end
             raise InputError(source, key, "a file", f"'{path}', which is none")
-        with path.open(encoding="utf-8") as file:
+        with path.open(encoding="utf-8-sig") as file:
             text = file.read(LONGEST_FILE + 1)
     except FileNotFoundError as error:
         raise InputError(source, key, "an existing file", f"no file '{path}'") from error
@@ -57,4 +58,6 @@ def read_text(path: Path, source: str, key: str) -> str:
         raise InputError(source, key, "a readable file", f"'{path}' ({error})") from error
     if len(text) > LONGEST_FILE:
         raise InputError(source, key, f"a file of at most {LONGEST_FILE} letters", f"a longer '{path}'")
+    if text.strip() and (missing := placeholder(text[:1000].encode(errors="replace"))):
+        raise InputError(source, key, "a file with its content", f"'{path}', which {missing}")
     return text

@@ -16,6 +16,7 @@ from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import BodyTerm, MeasuredBody, Residual, Unknown
 from evodesign.tree.kinematics import Pose, forward
+from evodesign.tree.model import Joint
 
 __all__ = ["FLOATING_BASE", "joint_ranges"]
 
@@ -44,7 +45,7 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
         "joints",
         lower,
         upper,
-        [0.0] * len(lower),
+        np.clip(0.0, lower, upper).tolist(),
         group=LimitGroup.JOINT_LIMITS,
         posture_only=True,
         labels=form.joints,
@@ -53,9 +54,19 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
 
 
 def joint_ranges(form: Form) -> list[tuple[float, float]]:
-    """Limits of each of the form's joints [rad], within half a turn to either side."""
-    joints = [form.agent.tree.joint_by_name[name] for name in form.joints]
-    return [(max(joint.lower, -math.pi), min(joint.upper, math.pi)) for joint in joints]
+    """Limits of each of the form's joints [rad], of those that turn further those of one turn about zero."""
+    return [_one_turn(form.agent.tree.joint_by_name[name]) for name in form.joints]
+
+
+TURN = 2.0 * math.pi
+
+
+def _one_turn(joint: Joint) -> tuple[float, float]:
+    """The limits, or the 2 pi [rad, of a slide m] between them that are centred nearest to zero."""
+    if joint.upper - joint.lower <= TURN:
+        return joint.lower, joint.upper
+    lower = min(max(-math.pi, joint.lower), joint.upper - TURN)
+    return lower, lower + TURN
 
 
 def _standing(agent: Agent, scene: Scene) -> list[float]:
