@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 __all__ = [
     "EvodesignError",
@@ -23,6 +23,7 @@ __all__ = [
     "ModelError",
     "ResumeMismatch",
     "RunError",
+    "listed",
     "nearest_name",
     "on_one_line",
     "shortened",
@@ -64,6 +65,16 @@ def shortened(text: str, longest: int = LONGEST_WORD) -> str:
     """The text with its middle left out where it has more letters than `longest`."""
     kept = (longest - 3) // 2
     return text if len(text) <= longest else f"{text[:kept]}...{text[-kept:]}"
+
+
+LISTED = 3
+"""Names that a sentence lists before it counts the others."""
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first of some names, and how many there are beside them."""
+    more = len(names) - LISTED
+    return ", ".join(names[:LISTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _readable(clause: str) -> str:

@@ -26,6 +26,7 @@ __all__ = [
     "Scalar",
     "Vector",
     "matrix_from_rpy",
+    "matrix_from_wxyz",
     "mirrored_matrix",
     "mirrored_point",
     "quaternion_wxyz",
@@ -78,6 +79,11 @@ class Placement:
         """Placement from a URDF origin: xyz [m], rpy [rad]."""
         return cls(matrix_from_rpy(rpy), (xyz[0], xyz[1], xyz[2]))
 
+    @classmethod
+    def from_xyz_wxyz(cls, xyz: Sequence[float], wxyz: Sequence[float]) -> Placement:
+        """Placement by position [m] and a quaternion of any length but zero."""
+        return cls(matrix_from_wxyz(wxyz), (xyz[0], xyz[1], xyz[2]))
+
 
 def add(a: Vector, b: Vector) -> Vector:
     """Sum of two vectors."""
@@ -124,6 +130,17 @@ def matrix_from_rpy(rpy: Sequence[float]) -> Matrix:
         (-sp, cp * sr, cp * cr),
     )
     return tuple(tuple(entry + 0.0 for entry in row) for row in rows)  # type: ignore[return-value]  # no -0.0
+
+
+def matrix_from_wxyz(wxyz: Sequence[float]) -> Matrix:
+    """Rotation of a quaternion (w, x, y, z), which need not be of unit length."""
+    w, x, y, z = wxyz
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    return (
+        (1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)),
+        (s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x)),
+        (s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y)),
+    )
 
 
 def rpy_from_matrix(matrix: Matrix) -> tuple[float, float, float]:

@@ -24,6 +24,7 @@ from evodesign.problem.mesh_upright import says_y_up, stood_upright
 from evodesign.tree.mjcf_read import TranslatedRobot
 from evodesign.tree.model import Mesh, Tree
 from evodesign.tree.surface import Surface, read_surface, surface_text
+from evodesign.tree.unit_doubts import mesh_doubts
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
 __all__ = ["is_kept_name", "kept_name", "mesh_texts", "with_meshes_beside", "with_surfaces"]
@@ -145,7 +146,7 @@ def with_surfaces(tree: Tree, files: Mapping[str, str], source: str) -> Tree:
             f"meshes of at most {MOST_SHOWN} triangles in all links; [robot] meshes = false leaves them out"
         )
         raise InputError(source, KEY, wanted, f"{triangles}")
-    return replace(tree, links=links)
+    return replace(tree, links=links, notes=(*tree.notes, *mesh_doubts(links)))
 
 
 def with_meshes_beside(tree: Tree, file: Path, robot: TranslatedRobot) -> Tree:

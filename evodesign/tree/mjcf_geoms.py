@@ -37,14 +37,8 @@ def vector(numbers: Sequence[float]) -> Vector:
 
 
 def placement(position: Sequence[float], wxyz: Sequence[float]) -> Placement:
-    """A place in a model by position and unit quaternion."""
-    w, x, y, z = map(float, wxyz)
-    rotation = (
-        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
-        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
-        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
-    )
-    return Placement(rotation, vector(position))
+    """A place in a model by position and quaternion."""
+    return Placement.from_xyz_wxyz(vector(position), [float(part) for part in wxyz])
 
 
 def is_left_out(mujoco: Any, model: Any, geom: int) -> bool:

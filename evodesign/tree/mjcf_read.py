@@ -30,12 +30,11 @@ from lxml import etree
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, scale
-from evodesign.errors import ModelError
+from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.mjcf_effort import acts_on, effort_limit
 from evodesign.tree.mjcf_geoms import add_geoms, is_left_out, placement, vector
 from evodesign.tree.model import Joint, JointKind
-from evodesign.tree.urdf_read import listed
 from evodesign.tree.urdf_write import add_inertial, add_joint, numbers_text, robot_text
 
 __all__ = ["TranslatedRobot", "is_mjcf", "translated"]

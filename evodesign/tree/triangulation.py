@@ -18,7 +18,7 @@ from evodesign.body.placement import Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.surface import Surface, surface_of
 
-__all__ = ["capsule", "ellipsoid", "scaled_surface"]
+__all__ = ["capsule", "capsule_surface", "ellipsoid", "scaled_surface"]
 
 SIDES, ARCS = 40, 8
 """Around the axis, and between a pole and the equator."""
@@ -32,6 +32,12 @@ def capsule(radius: float, length: float) -> Triangles:
     angles = np.concatenate([-quarter[::-1], quarter])
     ends = np.repeat([-length / 2.0, length / 2.0], ARCS)
     return _turned(radius * np.cos(angles), radius * np.sin(angles) + ends, length / 2.0 + radius)
+
+
+@functools.cache
+def capsule_surface(radius: float, length: float) -> Surface:
+    """The same as a surface [m], with the shape's own volume, pi r^2 (l + 4 r / 3)."""
+    return surface_of(*capsule(radius, length), math.pi * radius**2 * (length + 4.0 / 3.0 * radius))
 
 
 def ellipsoid(x: float, y: float, z: float) -> Triangles:

@@ -2,9 +2,9 @@
 
 What passes holds nothing but links and joints, and of these only what a tree is made of: places, masses,
 shapes, axes and limits, all figures finite and within bounds, and no part twice. Colours, sensors, simulator
-tags, and the axes and limits of fixed joints are stripped; shapes of a size of zero or of an unknown kind
-too, with a note. Nothing is fetched: documents with a DTD (and so entities) are refused, and a mesh's file is
-not opened here.
+tags, and the axes and limits of fixed joints are stripped; shapes of a size of zero or of an unknown kind,
+and all else that is not read (`urdf_unread`), with a note. Nothing is fetched: documents with a DTD (and so
+entities) are refused, and a mesh's file is not opened here.
 
 Source: wiki.ros.org/urdf/XML (link, joint).
 """
@@ -12,6 +12,7 @@ Source: wiki.ros.org/urdf/XML (link, joint).
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ from lxml import etree
 
 from evodesign.errors import ModelError, on_one_line, shortened
 from evodesign.tree.model import JointKind
+from evodesign.tree.urdf_unread import refuse_xacro, tag_of, unread
 
 __all__ = ["checked_urdf"]
 
@@ -52,22 +54,25 @@ AXIS = Figures(3, -1e3, 1e3, required=False)
 OPTIONAL, NOT_NEGATIVE = Figures(required=False), Figures(low=0.0, required=False)
 
 ATTRIBUTES: Mapping[str, Mapping[str, Figures]] = {
-    "origin": {"xyz": POSITION, "rpy": ANGLES},
+    "origin": {"xyz": POSITION, "rpy": ANGLES, "quat_xyzw": Figures(4, -1e3, 1e3, required=False)},
     "mass": {"value": MASS},
     "inertia": dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), MOMENT),
     "box": {"size": Figures(3, SIZE.low, SIZE.high)},
     "cylinder": {"radius": SIZE, "length": SIZE},
+    "capsule": {"radius": SIZE, "length": SIZE},
     "sphere": {"radius": SIZE},
     "mesh": {"scale": Figures(3, -1e3, 1e3, required=False)},
     "mimic": {"multiplier": OPTIONAL, "offset": OPTIONAL},
     "axis": {"xyz": AXIS},
     "limit": {"lower": OPTIONAL, "upper": OPTIONAL, "effort": NOT_NEGATIVE, "velocity": NOT_NEGATIVE},
 }
-PRIMITIVES = ("box", "cylinder", "sphere")
-SHORTEST_AXIS = 1e-6
-"""An <axis> of fewer than this length has no direction."""
-LONGEST_NAME, LONGEST_FILE_NAME, LONGEST_TAG = 200, 1_000, 100_000
-"""Letters of a name, of a path, and between the beginnings of two elements."""
+SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""What urdfdom takes for a number; Python takes `1_4.5`, too."""
+SHORTEST = 1e-6
+"""An <axis> of fewer than this length has no direction, a quaternion no rotation."""
+LONGEST_NAME, LONGEST_NOTE, LONGEST_FILE_NAME, LONGEST_TAG = 200, 400, 1_000, 100_000
+"""Letters of a name, of a note, of a path, and between the beginnings of two elements."""
 MOST_LINKS, MOST_ELEMENTS = 5_000, 100_000
 """A robot of 100 links has 1,500 elements."""
 
@@ -103,13 +108,18 @@ def _parsed(text: str, source: str) -> etree._Element:
         resolve_entities=False,
         no_network=True,
         huge_tree=False,
+        recover=True,  # what else than a prefix without its xmlns is wrong is refused below
         remove_comments=True,
         remove_pis=True,
     )
     try:
         root = etree.fromstring(text.encode("utf-8", "surrogatepass"), parser)
-    except etree.XMLSyntaxError as error:
+    except etree.XMLSyntaxError as error:  # nothing in it
         raise ModelError(source, "", "a URDF file", f"text that is not XML: {error.msg}") from error
+    faults = [each for each in parser.error_log if each.domain_name != "NAMESPACE"]
+    if faults:
+        found = f"text that is not XML: {faults[0].message}, line {faults[0].line}"
+        raise ModelError(source, "", "a URDF file", found)
     if root.getroottree().docinfo.doctype:
         raise ModelError(source, "", "a URDF file without a DTD", "a DOCTYPE declaration")
     return root
@@ -125,7 +135,9 @@ def _check(root: etree._Element, source: str, notes: list[str]) -> None:
     count = len(root.findall("link"))
     if not 0 < count <= MOST_LINKS:
         raise ModelError(source, "robot", f"links, at most {MOST_LINKS}", f"{count or 'none'}")
-    notes += [on_one_line(shortened(note.get("text", ""), LONGEST_NAME)) for note in root.findall("note")]
+    refuse_xacro(root, source)
+    notes += [on_one_line(shortened(note.get("text", ""), LONGEST_NOTE)) for note in root.findall("note")]
+    notes += map(on_one_line, unread(root))
     _strip(root, ("link", "joint"))
     for element in root:
         _check_name(element, source)
@@ -174,10 +186,11 @@ def _check_link(link: etree._Element, source: str, notes: list[str]) -> None:
         _strip(inertial, ("origin", "mass", "inertia"))
     for look in [*link.findall("visual"), *link.findall("collision")]:
         _check_once(look, ("origin", "geometry"), source)
-        shapes = [shape for geometry in look.findall("geometry") for shape in geometry]
+        inside = [shape for geometry in look.findall("geometry") for shape in geometry]
+        shapes = [shape for shape in inside if shape.tag in SHAPES] or inside[:1]
         if len(shapes) != 1:
-            found = shortened(", ".join(f"<{shape.tag}>" for shape in shapes)) or "nothing"
-            wanted = "one <box>, <cylinder>, <sphere> or <mesh>"
+            found = shortened(", ".join(f"<{tag_of(shape)}>" for shape in shapes)) or "nothing"
+            wanted = "one <box>, <cylinder>, <sphere>, <capsule> or <mesh>"
             raise ModelError(source, f"{_key(look)}.geometry", wanted, found)
         fault = _fault(shapes[0])
         if fault:
@@ -187,12 +200,13 @@ def _check_link(link: etree._Element, source: str, notes: list[str]) -> None:
         if shapes[0].tag == "mesh":
             _check_file(shapes[0], source)
         _strip(look, ("origin", "geometry"))
+        _strip(look.find("geometry"), (shapes[0].tag,))
 
 
 def _fault(shape: etree._Element) -> str:
     """Why a shape cannot be used though the file can be; nothing if it can."""
-    if shape.tag not in (*PRIMITIVES, "mesh"):
-        return f"whose <{shortened(str(shape.tag))}> is no box, cylinder, sphere or mesh"
+    if shape.tag not in SHAPES:
+        return f"whose <{shortened(tag_of(shape))}> is no box, cylinder, sphere, capsule or mesh"
     sizes = [number for name in ("size", "radius", "length") for number in _numbers(shape.get(name, ""))]
     return "whose size is zero" if 0.0 in sizes else ""
 
@@ -233,29 +247,36 @@ def _check_figures(element: etree._Element, source: str) -> None:
             found = "nothing" if text is None else _quoted(text)
             raise ModelError(source, f"{_key(element)}.{name}", str(figures), found)
         element.set(name, " ".join(map(repr, numbers)))
+    if element.get("quat_xyzw") is not None:
+        _check_quaternion(element, source)
+
+
+def _check_quaternion(origin: etree._Element, source: str) -> None:
+    key, text = f"{_key(origin)}.quat_xyzw", origin.get("quat_xyzw")
+    if origin.get("rpy") is not None:
+        raise ModelError(source, key, "either rpy or quat_xyzw", "both")
+    if math.hypot(*_numbers(text)) < SHORTEST:
+        raise ModelError(source, key, "a rotation", _quoted(text))
 
 
 def _check_motion(joint: etree._Element, source: str) -> None:
     """Axis and limits of a joint whose figures are known to be numbers."""
     axis, limit = joint.find("axis"), joint.find("limit")
-    if axis is not None and math.hypot(*_numbers(axis.get("xyz", "1 0 0"))) < SHORTEST_AXIS:
+    if axis is not None and math.hypot(*_numbers(axis.get("xyz", "1 0 0"))) < SHORTEST:
         raise ModelError(source, f"{_key(axis)}.xyz", "a direction", _quoted(axis.get("xyz", "")))
     if joint.get("type") not in (JointKind.REVOLUTE, JointKind.PRISMATIC):
         return
-    for name in ("lower", "upper"):
-        if limit is None or limit.get(name) is None:
-            raise ModelError(source, f"{_key(joint)}.limit.{name}", "a finite number", "nothing")
-    lower, upper = float(limit.get("lower")), float(limit.get("upper"))
+    if limit is None:
+        raise ModelError(source, f"{_key(joint)}.limit", "<limit>", "nothing")
+    lower, upper = (float(limit.get(name, "0")) for name in ("lower", "upper"))
     if lower > upper:
         raise ModelError(source, f"{_key(limit)}.lower", f"at most the upper limit {upper!r}", repr(lower))
 
 
 def _numbers(text: str) -> list[float]:
     """The numbers of an attribute; none when a word is not a number."""
-    try:
-        return [float(word) for word in text.split()]
-    except ValueError:
-        return []
+    words = text.split()
+    return [float(word) for word in words] if all(map(NUMBER.fullmatch, words)) else []
 
 
 def _quoted(text: str) -> str:

@@ -4,14 +4,16 @@
 
     shape of a link    its visuals; its collisions if there is none; no shape if there is a mesh among them:
                        what is seen beside a mesh is a mesh then, too
+    capsule            a mesh of triangles with the capsule's own volume (`triangulation.capsule_surface`)
     robot's link       with a shape and mass: solids of one density, mass / volume (`InertiaRule.SHAPES`)
                        with a mesh, or no shape: the file's mass, centre of mass and tensor
                        with a shape alone: only seen
     person's link      the file's centre of mass and tensor (`InertiaRule.FILE`); its shape is only seen
-    mimic joint        locked where its formula puts it while the joint that it follows is at zero
+    mimic joint        locked where its formula puts it (`urdf_mimic`)
 
 What a file says and the tree does not take as it stands is told in `Tree.notes`: locked joints, shapes that
-were left out, what <note> elements say, and tensors that no body has (a principal moment is larger than the
+were left out, what is not read (`urdf_unread`), figures in what seem to be other units (`unit_doubts`), what
+<note> elements say, and tensors that no body has (a principal moment is larger than the
 sum of the others). Such a tensor is kept: holding a load asks for mass and centre of mass alone.
 
 Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III (tensors that bodies have).
@@ -20,7 +22,7 @@ Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -30,14 +32,16 @@ from lxml import etree
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, Vector, scale
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
-from evodesign.errors import ModelError
+from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
-from evodesign.tree.triangulation import scaled_surface
+from evodesign.tree.triangulation import capsule_surface, scaled_surface
+from evodesign.tree.unit_doubts import unit_doubts
 from evodesign.tree.urdf_check import checked_urdf
+from evodesign.tree.urdf_mimic import held_positions
 from evodesign.tree.urdf_write import UNLIMITED
 
-__all__ = ["InertiaRule", "listed", "read_urdf"]
+__all__ = ["InertiaRule", "read_urdf"]
 
 LEAST_MASS = 1e-9
 """A link below a microgram [kg] has no mass: some files give their frames a tiny one."""
@@ -45,9 +49,6 @@ LEAST_MASS = 1e-9
 ROUNDED, NO_MOMENT = 0.01, 1e-12
 """Share of the largest principal moment by which a file's figures may miss the triangle inequality, and a
 moment [kg m^2] that counts as zero: some files give their links a mass and no tensor."""
-
-LISTED = 3
-"""Names that a note lists before it counts the others."""
 
 LONGEST_CHAIN = 200
 """Joints from the root to a link; what is computed along a chain recurs."""
@@ -82,8 +83,10 @@ def read_urdf(text: str, source: str, rule: InertiaRule) -> Tree:
     notes: list[str] = []
     robot = checked_urdf(text, source, notes)
     links = tuple(_link(element, rule) for element in robot.findall("link"))
+    held = held_positions(robot, source)
+    joints = tuple(_joint(joint, held) for joint in robot.findall("joint"))
     notes += _strange(robot, links)
-    joints = tuple(map(_joint, robot.findall("joint")))
+    notes += unit_doubts(links, joints)
     try:
         tree = Tree(robot.get("name", ""), links, joints, tuple(notes))
     except ModelError as error:
@@ -103,6 +106,11 @@ class Shapes:
 
     primitives: tuple[Look, ...]
     meshes: tuple[Mesh, ...]
+
+    @property
+    def known(self) -> bool:
+        """Whether no mesh of a file is among them."""
+        return all(mesh.surface is not None for mesh in self.meshes)
 
     @property
     def all_meshes(self) -> tuple[Mesh, ...]:
@@ -125,19 +133,23 @@ def _link(link: etree._Element, rule: InertiaRule) -> Link:
         density = inertia.mass / sum(look.shape.volume for look in shapes)
         solids = tuple(Solid(look.shape, look.link_from_look, density) for look in shapes)
         return Link(name, solids=solids, meshes=seen.all_meshes)
-    return Link(name, own_inertia=inertia, looks=shapes, meshes=seen.all_meshes)
+    capsules = touched.all_meshes if not (seen.primitives or seen.meshes) and touched.known else ()
+    return Link(name, own_inertia=inertia, looks=shapes, meshes=seen.all_meshes or capsules)
 
 
 def _shapes(looks: list[etree._Element]) -> Shapes:
     found = [(look.find("geometry")[0], _placement(look.find("origin"))) for look in looks]
     return Shapes(
-        tuple(Look(_shape(shape), place) for shape, place in found if shape.tag != "mesh"),
-        tuple(
-            Mesh(shape.get("filename"), _vector(shape, "scale", (1.0, 1.0, 1.0)), place)
-            for shape, place in found
-            if shape.tag == "mesh"
-        ),
+        tuple(Look(_shape(shape), place) for shape, place in found if shape.tag not in ("mesh", "capsule")),
+        tuple(_mesh(shape, place) for shape, place in found if shape.tag in ("mesh", "capsule")),
     )
+
+
+def _mesh(shape: etree._Element, place: Placement) -> Mesh:
+    if shape.tag == "mesh":
+        return Mesh(shape.get("filename"), _vector(shape, "scale", (1.0, 1.0, 1.0)), place)
+    surface = capsule_surface(_number(shape, "radius"), _number(shape, "length"))
+    return Mesh("capsule", link_from_mesh=place, surface=surface)
 
 
 def _shape(shape: etree._Element) -> Shape:
@@ -165,18 +177,18 @@ def _strange(robot: etree._Element, links: Iterable[Link]) -> Iterator[str]:
     locked = [joint.get("name", "") for joint in robot.findall("joint") if joint.find("mimic") is not None]
     if locked:
         yield f"locked where they are while the joints that they mimic are at zero: {listed(locked)}"
+    capsules = [each.getparent().getparent().getparent().get("name") for each in robot.iter("capsule")]
+    if capsules:
+        yield (
+            "capsules are meshes of triangles, within 1 % of their radius; mass and inertia are the file's: "
+            f"{listed(list(dict.fromkeys(capsules)))}"
+        )
     impossible = [link.name for link in links if _is_impossible(link.own_inertia)]
     if impossible:
         yield (
             "no body has the inertia tensor (a principal moment is larger than the sum of the others; "
             f"postures ask for mass and centre of mass alone): {listed(impossible)}"
         )
-
-
-def listed(names: Sequence[str]) -> str:
-    """The first of some names, and how many there are beside them."""
-    more = len(names) - LISTED
-    return ", ".join(names[:LISTED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _is_impossible(inertia: Inertia) -> bool:
@@ -186,7 +198,7 @@ def _is_impossible(inertia: Inertia) -> bool:
     return moments[2] > NO_MOMENT and moments[0] + moments[1] < (1.0 - ROUNDED) * moments[2]
 
 
-def _joint(joint: etree._Element) -> Joint:
+def _joint(joint: etree._Element, held: Mapping[str, float]) -> Joint:
     name, kind = joint.get("name", ""), JointKind(joint.get("type"))
     parent, child = (joint.find(role).get("link") for role in ("parent", "child"))
     place = _placement(joint.find("origin"))
@@ -194,14 +206,13 @@ def _joint(joint: etree._Element) -> Joint:
         return Joint(name, kind, parent, child, place)
     given = _vector(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
     axis = scale(1.0 / math.hypot(*given), given)
-    mimic = joint.find("mimic")
-    if mimic is not None:
+    if name in held:
         moving = Joint(name, kind, parent, child, place, axis)
-        return Joint(name, JointKind.FIXED, parent, child, parent_from_child(moving, _offset(mimic)))
+        return Joint(name, JointKind.FIXED, parent, child, parent_from_child(moving, held[name]))
     limit = joint.find("limit")  # None for a continuous joint alone: the check asks the others for one
     ends = (-math.inf, math.inf)
     if kind is not JointKind.CONTINUOUS:
-        ends = _limit(_number(limit, "lower")), _limit(_number(limit, "upper"))
+        ends = _limit(_number(limit, "lower", "0")), _limit(_number(limit, "upper", "0"))
     effort, velocity = (
         math.inf if limit is None or limit.get(key) is None else _limit(_number(limit, key))
         for key in ("effort", "velocity")
@@ -209,23 +220,22 @@ def _joint(joint: etree._Element) -> Joint:
     return Joint(name, kind, parent, child, place, axis, *ends, effort, velocity)
 
 
-def _offset(mimic: etree._Element) -> float:
-    """Where a mimic joint is while the joint that it follows is at zero [rad or m]."""
-    return _number(mimic, "offset") if mimic.get("offset") else 0.0
-
-
 def _placement(origin: etree._Element | None) -> Placement:
     """The placement of an <origin>; the identity when it is left out."""
     nowhere = (0.0, 0.0, 0.0)
-    return Placement.from_xyz_rpy(_vector(origin, "xyz", nowhere), _vector(origin, "rpy", nowhere))
+    xyz = _vector(origin, "xyz", nowhere)
+    if origin is not None and origin.get("quat_xyzw"):
+        x, y, z, w = map(float, origin.get("quat_xyzw").split())
+        return Placement.from_xyz_wxyz(xyz, (w, x, y, z))
+    return Placement.from_xyz_rpy(xyz, _vector(origin, "rpy", nowhere))
 
 
 def _limit(value: float) -> float:
     return math.copysign(math.inf, value) if abs(value) >= UNLIMITED else value
 
 
-def _number(element: etree._Element, name: str) -> float:
-    return float(element.get(name, ""))
+def _number(element: etree._Element, name: str, otherwise: str = "") -> float:
+    return float(element.get(name, otherwise))
 
 
 def _vector(element: etree._Element | None, name: str, otherwise: tuple[float, ...]) -> Vector:

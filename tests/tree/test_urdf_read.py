@@ -225,7 +225,7 @@ def test_many_of_a_kind_are_one_note():
 @pytest.mark.parametrize(("shape", "why"), [
     ('<box size="0.1 0 0.3"/>', "whose size is zero"),
     ('<sphere radius="0"/>', "whose size is zero"),
-    ('<capsule radius="1" length="2"/>', "whose <capsule> is no box, cylinder, sphere or mesh"),
+    ('<cone radius="1" length="2"/>', "whose <cone> is no box, cylinder, sphere, capsule or mesh"),
 ])  # fmt: skip
 def test_a_shape_that_cannot_be_used_is_left_out_with_a_note(shape, why):
     tree = read(ONE_LINK.format(inertial(3.0) + look(shape) + look(ROD)))
@@ -274,7 +274,8 @@ FAULTS = [
     ("0 2 0", "0 0 0", "joint shoulder.axis.xyz", "a direction", "'0.0 0.0 0.0'"),
     ("0 2 0", "nan nan nan", "joint shoulder.axis.xyz", "3 finite numbers", "'nan nan nan'"),
     ('lower="-1"', 'lower="3"', "joint shoulder.limit.lower", "at most the upper limit 2.5", "3.0"),
-    ('lower="-1"', "", "joint shoulder.limit.lower", "a finite number", "nothing"),
+    ('lower="-1"', 'lower="-1_0"', "joint shoulder.limit.lower", "a finite number", "'-1_0'"),
+    ("<limit lower", "<limits lower", "joint shoulder.limit", "<limit>", "nothing"),
     ('effort="80"', 'effort="-80"', "joint shoulder.limit.effort", "from 0", "'-80'"),
     ('velocity="3"', 'velocity="inf"', "joint shoulder.limit.velocity", "a finite number", "'inf'"),
     ('type="revolute"', 'type="floating"', "joint shoulder.type", "continuous or prismatic", "'floating'"),
