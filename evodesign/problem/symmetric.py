@@ -25,7 +25,7 @@ from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 from evodesign.tree.averaging import averaged
 from evodesign.tree.frames import link_frames
-from evodesign.tree.mirror_images import PLACE
+from evodesign.tree.mirror_images import PLACE, SHARE, seen_in_root
 from evodesign.tree.symmetry import mirror_of
 
 __all__ = ["Resolved", "resolved_symmetry"]
@@ -117,10 +117,12 @@ def _symmetric_agent(agent: Agent) -> tuple[Agent, str]:
 def _refuse_moved_frames(agent: Agent, mean: Agent) -> None:
     """Refuse hands and soles that averaging moves, as it may move a joint's origin along its axis."""
     before, after = (link_frames(each.tree, Placement(), {}) for each in (agent, mean))
+    seen = seen_in_root(agent.tree)
     for noun, frames in (("hands", agent.hands), ("soles", agent.soles)):
         for side, name in frames.items():
             moved = math.dist(before[name].translation, after[name].translation)
-            if moved > PLACE:
+            most = max(PLACE, SHARE * seen[name].reach)
+            if moved > most:
                 found = f"'{name}', which is {1e3 * moved:.2g} mm from the mean of both sides"
-                wanted = f"a frame at the mirrored place within {1e3 * PLACE:g} mm"
+                wanted = f"a frame at the mirrored place within {1e3 * most:.2g} mm"
                 raise ModelError(agent.tree.name, f"{agent.name}.{noun}.{side}", wanted, found)

@@ -22,13 +22,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.body.inertia import Inertia, total
-from evodesign.body.placement import Placement, scale
+from evodesign.body.inertia import total
+from evodesign.body.placement import Placement
 from evodesign.body.shape import Solid
-from evodesign.errors import ModelError
+from evodesign.errors import ModelError, listed
 from evodesign.tree.mirror_candidates import Unpaired
 from evodesign.tree.mirror_images import ANGLE, MIRROR, Difference, Figure, Seen, near
-from evodesign.tree.mirror_pairs import Pairs, mirror_pairs
+from evodesign.tree.mirror_light import half, paired
+from evodesign.tree.mirror_pairs import Pairs
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 from evodesign.tree.solid_pairs import matrix, mean_rotation, mean_solids, turned_by, vector
 
@@ -52,22 +53,28 @@ class Averaged:
         tree: its own mirror image but for rounding.
         largest: the largest difference of each figure, those that come nearest to the tolerance first.
         weaker: pairs of joints whose effort limits differ, with both limits [N m or N].
+        halved: light links without a partner, half of whose mass is on the other side (`mirror_light`).
     """
 
     tree: Tree
     largest: tuple[Difference, ...]
     weaker: tuple[tuple[str, str, float, float], ...]
+    halved: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         several = "difference is" if len(self.largest) == 1 else "differences are"
-        listed = ", ".join(str(each) for each in self.largest)
-        said = f"the largest {several} {listed}" if self.largest else "no figure differs"
+        largest = ", ".join(str(each) for each in self.largest)
+        said = f"the largest {several} {largest}" if self.largest else "no figure differs"
         if self.weaker:
             one, other, effort, its = self.weaker[0]
             said += (
                 f"; of different effort limits the smaller counts ({effort:g} and {its:g} of {one} / {other}"
             )
             said += f" and {len(self.weaker) - 1} more pairs)" if len(self.weaker) > 1 else ")"
+        if self.halved:
+            said += (
+                f"; of light links without a partner half the mass is on either side: {listed(self.halved)}"
+            )
         return said
 
 
@@ -79,13 +86,13 @@ def averaged(tree: Tree) -> Averaged:
     """
     mass = sum(float(link.inertia.mass) for link in tree.links)
     try:
-        pairs = mirror_pairs(tree, near(mass), strict=False)
+        tree, pairs, halved = paired(tree, near(mass))
     except Unpaired as unpaired:
         raise _refusal(tree, unpaired) from None
     beyond = sorted((each for each in pairs.differences if each.excess > 1.0), key=lambda each: -each.excess)
     if beyond:
         raise _too_large(tree, beyond[0], len(beyond) - 1)
-    return Averaged(_mean_tree(tree, pairs), _largest(pairs), _weaker(tree, pairs))
+    return Averaged(_mean_tree(tree, pairs), _largest(pairs), _weaker(tree, pairs), halved)
 
 
 WANTED = "a mirror image in the plane y = 0"
@@ -208,20 +215,11 @@ def _seen_in_place(link: Link, seen: Mapping[str, Seen], frames: Mapping[str, Pl
 
 def _kept_inertia(link: Link, other: Link, seen: Mapping[str, Seen], frames: Mapping[str, Placement]) -> Link:
     """A link with the mean inertia of its own and its partner's image; its solids are only seen then."""
-    halves = [_half(seen[link.name].inertia), _half(seen[other.name].inertia.mirrored())]
+    halves = [half(seen[link.name].inertia), half(seen[other.name].inertia.mirrored())]
     inertia = total(halves).moved(frames[link.name].inverse)
     seen_only = tuple(Look(solid.shape, solid.link_from_solid) for solid in link.solids)
     shown = replace(link, solids=(), looks=(*seen_only, *link.looks))
     return replace(_seen_in_place(shown, seen, frames), own_inertia=inertia)
-
-
-def _half(inertia: Inertia) -> Inertia:
-    rows = inertia.about_center
-    return Inertia(
-        inertia.mass / 2.0,
-        inertia.center,
-        (scale(0.5, rows[0]), scale(0.5, rows[1]), scale(0.5, rows[2])),
-    )
 
 
 def _mean_joint(joint: Joint, tree: Tree, pairs: Pairs, frames: Mapping[str, Placement]) -> Joint:

@@ -54,6 +54,7 @@ class Tolerance:
 
     Args:
         place: of an origin or a centre of mass [m]; of a slide's limits too.
+        place_share: of an origin, as a share of the longest link between it and the root [-].
         angle: of an axis [rad].
         limits: of a turning joint's limits [rad].
         mass_share: of a mass [-].
@@ -65,6 +66,7 @@ class Tolerance:
     """
 
     place: float
+    place_share: float
     angle: float
     limits: float
     mass_share: float
@@ -75,16 +77,18 @@ class Tolerance:
     slides: bool
 
 
-EXACT = Tolerance(1e-9, math.sqrt(2e-9), 1e-9, 1e-9, 1e-9, 1.0, 0.0, 1.0, slides=False)
+EXACT = Tolerance(1e-9, 0.0, math.sqrt(2e-9), 1e-9, 1e-9, 1e-9, 1.0, 0.0, 1.0, slides=False)
 """Equal but for rounding: 1e-9 in every figure, and in the cosine of an axis."""
 
-PLACE, ANGLE, LIMIT, MASS, INERTIA = 1e-3, math.radians(0.5), math.radians(1.0), 0.02, 0.05
+PLACE, SHARE, ANGLE, LIMIT, MASS, INERTIA = 1e-3, 0.01, math.radians(0.5), math.radians(1.0), 0.02, 0.05
 LIGHT, BALANCE, SMALL = 0.003, 3e-4, 3e-5
 
 
 def near(mass: float) -> Tolerance:
     """Equal as CAD exports are: 1 mm, 0.5 degree, 1 degree of a limit, 2 % of a mass, 5 % of an inertia.
 
+    Origins may differ by 1 % of the longest link above them, where that is more: a shoulder that is off moves
+    all of its arm.
     What is small beside the whole robot is not held to a share of itself: masses below 0.3 % of the robot's
     count as that; a centre of mass may be further off if that moves the robot's by no more than 0.3 mm;
     moments below 3e-5 m^2 times the robot's mass count as that.
@@ -93,7 +97,7 @@ def near(mass: float) -> Tolerance:
         mass: of the whole robot or person [kg].
     """
     return Tolerance(
-        PLACE, ANGLE, LIMIT, MASS, INERTIA, LIGHT * mass, BALANCE * mass, SMALL * mass, slides=True
+        PLACE, SHARE, ANGLE, LIMIT, MASS, INERTIA, LIGHT * mass, BALANCE * mass, SMALL * mass, slides=True
     )
 
 
@@ -161,6 +165,7 @@ class Seen:
         axis: unit vector; zero where nothing moves.
         inertia: of the link, `center` and `about_center` in the root's frame.
         carries: whether the branch from here on has mass or a joint that moves; a bare frame has neither.
+        reach: the largest distance between two joints that follow each other from the root to here [m].
     """
 
     link: str
@@ -170,6 +175,7 @@ class Seen:
     axis: Array
     inertia: Inertia
     carries: bool
+    reach: float = 0.0
 
     @property
     def moves(self) -> bool:
@@ -188,19 +194,24 @@ def seen_in_root(tree: Tree) -> Mapping[str, Seen]:
     carries = {link.name: bool(link.inertia.mass > 0.0) for link in tree.links}
     for joint in reversed(tree.joints):
         carries[joint.parent] |= carries[joint.child] or joint.kind is not JointKind.FIXED
+    reach = {tree.root: 0.0}
+    for joint in tree.joints:
+        length = math.hypot(*joint.parent_from_child.translation)
+        reach[joint.child] = max(reach[joint.parent], length)
     return {
-        link.name: _seen(tree, link.name, frames[link.name], carries=carries[link.name])
+        link.name: _seen(tree, link.name, frames[link.name], carries[link.name], reach[link.name])
         for link in tree.links
     }
 
 
-def _seen(tree: Tree, name: str, frame: Placement, *, carries: bool) -> Seen:
+def _seen(tree: Tree, name: str, frame: Placement, carries: bool, reach: float) -> Seen:
     joint, axis = tree.parent_joint.get(name), np.zeros(3)
     if joint is not None and joint.kind is not JointKind.FIXED:
         axis = np.array(frame.rotation) @ np.array(joint.axis)
         carries = True
     inertia = tree.link_by_name[name].inertia.moved(frame)
-    return Seen(name, joint, frame, np.array(frame.translation, dtype=float), axis, inertia, carries)
+    place: Array = np.array(frame.translation, dtype=float)
+    return Seen(name, joint, frame, place, axis, inertia, carries, reach)
 
 
 def sign_of(one: Seen, other: Seen) -> float:
@@ -227,7 +238,8 @@ def _of_joints(one: Seen, other: Seen, tolerance: Tolerance) -> Iterator[tuple[F
     gap = MIRROR * one.place - other.place
     if tolerance.slides and other.moves:
         gap = gap - (gap @ other.axis) * other.axis
-    yield Figure.PLACE, math.hypot(*gap.tolist()), tolerance.place, "m"
+    most = max(tolerance.place, tolerance.place_share * min(one.reach, other.reach))
+    yield Figure.PLACE, math.hypot(*gap.tolist()), most, "m"
     if not one.moves or one.joint is None or other.joint is None:
         return
     along = float((MIRROR * one.axis) @ other.axis)

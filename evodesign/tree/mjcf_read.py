@@ -9,8 +9,8 @@
     site             link without mass
     geom             visual and collision (`mjcf_geoms`)
 
-What a tree does not have is told in <note>, which `read_urdf` passes on; a robot with ball joints is refused.
-Nobody who reads the URDF needs MuJoCo: a run or a copied problem is read without it.
+What a tree does not have (`mjcf_unread`) is told in <note>, which `read_urdf` passes on; a robot with ball
+joints is refused. Nobody who reads the URDF needs MuJoCo: a run or a copied problem is read without it.
 
 Source: MuJoCo XML reference (body, joint, equality); MuJoCo's mj_kinematics.
 """
@@ -21,6 +21,7 @@ import math
 import re
 import warnings
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -32,14 +33,19 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, scale
 from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
-from evodesign.tree.mjcf_effort import acts_on, effort_limit
-from evodesign.tree.mjcf_geoms import add_geoms, is_left_out, placement, vector
+from evodesign.tree.mjcf_coupled import Coupled, coupled_joints
+from evodesign.tree.mjcf_effort import effort_limit
+from evodesign.tree.mjcf_geoms import add_geoms, placement, vector
+from evodesign.tree.mjcf_unread import Unread
 from evodesign.tree.model import Joint, JointKind
+from evodesign.tree.placeholder import placeholder
 from evodesign.tree.urdf_write import add_inertial, add_joint, numbers_text, robot_text
 
 __all__ = ["TranslatedRobot", "is_mjcf", "translated"]
 
 FIRST_ELEMENT = re.compile(r"\ufeff?(?:\s+|<\?.*?\?>|<!--.*?-->)*+<mujoco\b", re.DOTALL)
+UNDEFINED = re.compile(r"""(?<!name)=\s*["'][\s0-9.eE+-]*\bnan\b""", re.IGNORECASE)
+"""A number that is none, other than a name of three letters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +78,9 @@ def translated(path: Path, source: str) -> TranslatedRobot:
     bodies = tuple(body for body in range(1, model.nbody) if model.body_rootid[body] == root)
     moving = [joint for joint in range(model.njnt) if model.jnt_bodyid[joint] in bodies[1:]]
     of_links, of_joints = _Names(set()), _Names(set())
+    figures = np.concatenate([model.body_mass, model.body_inertia.ravel(), model.body_ipos.ravel()])
+    if not np.isfinite(figures).all():
+        raise ModelError(source, "worldbody", "finite masses and inertias", "others")
     links = {body: of_links.of(model.body(body).name or f"body_{body}") for body in bodies}
     joints = {joint: of_joints.of(model.joint(joint).name or f"joint_{joint}") for joint in moving}
     return _Translation(mujoco, model, source, links, joints, of_links, of_joints, touching, said).result()
@@ -79,6 +88,9 @@ def translated(path: Path, source: str) -> TranslatedRobot:
 
 def _compiled(mujoco: Any, path: Path, source: str) -> tuple[Any, frozenset[int], tuple[str, ...]]:
     """A model whose geoms touch nothing, those that touch in the file, and what MuJoCo warns of."""
+    spec = None
+    if UNDEFINED.search(path.read_text(encoding="utf-8-sig", errors="replace")):
+        raise ModelError(source, "", "finite numbers", "'nan', for which MuJoCo takes its defaults")
     try:
         with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
@@ -90,9 +102,21 @@ def _compiled(mujoco: Any, path: Path, source: str) -> tuple[Any, frozenset[int]
             model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
         found = " ".join(str(error).split())
+        if spec is not None and (missing := _missing_mesh(spec, path)):
+            raise ModelError(source, "asset", "meshes", missing) from error
         raise ModelError(source, "", "an MJCF file that MuJoCo compiles", found) from error
     said = tuple(" ".join(f"MuJoCo says: {each.message}".split()) for each in warned)
     return model, frozenset(geom.id for geom in touching), said
+
+
+def _missing_mesh(spec: Any, path: Path) -> str:
+    """The first mesh whose file holds something else in place of it, if that is why nothing compiles."""
+    for mesh in spec.meshes:
+        file = path.parent / spec.compiler.meshdir / mesh.file
+        with suppress(OSError):
+            if mesh.file and (what := placeholder(file.read_bytes()[:1000])):
+                return f"'{file}', which {what}"
+    return ""
 
 
 def _root(model: Any, source: str) -> int:
@@ -144,7 +168,8 @@ class _Translation:
             link = etree.SubElement(robot, "link", name=name)
             add_inertial(link, self._inertia(body))
             meshes |= add_geoms(link, self.mujoco, self.model, body, self.touching)
-        coupled, root = self._coupled(), next(iter(self.links))
+        coupled = coupled_joints(self.mujoco, self.model, self.joints)
+        root = next(iter(self.links))
         turned = placement((0.0, 0.0, 0.0), self.model.body_quat[root])
         if turned != Placement():
             upright = self.link_names.of(f"{self.links[root]}_upright")
@@ -158,7 +183,7 @@ class _Translation:
             if name and body in self.links:
                 place = placement(self.model.site_pos[site], self.model.site_quat[site])
                 self._add(robot, self._weld(self.links[body], self.link_names.of(name, "_site"), place), {})
-        for note in self._notes():
+        for note in self._notes(coupled):
             etree.SubElement(robot, "note", text=note)
         return TranslatedRobot(robot_text(robot), meshes)
 
@@ -210,80 +235,23 @@ class _Translation:
     def _ref(self, joint: int) -> float:
         return float(self.model.qpos0[self.model.jnt_qposadr[joint]])
 
-    def _coupled(self) -> dict[str, tuple[str, float, float]]:
-        """By the name of a joint that an equality moves, the one that it follows, if any, slope and offset.
-
-        With references r and coefficients c:  q - r = sum c_k (p - r_p)^k, of which q at p = 0 is the offset.
-        """
-        found = {}
-        for number in self._equalities(self.mujoco.mjtEq.mjEQ_JOINT):
-            moved, followed = int(self.model.eq_obj1id[number]), int(self.model.eq_obj2id[number])
-            if moved in self.joints:
-                leader, at = self.joints.get(followed, ""), 0.0
-                if leader:
-                    at = -self._ref(followed)
-                coefficients = self.model.eq_data[number, :5]
-                offset = self._ref(moved) + float(np.polynomial.polynomial.polyval(at, coefficients))
-                found[self.joints[moved]] = (leader, float(coefficients[1]), offset)
-        return found
-
-    def _equalities(self, *kinds: Any) -> list[int]:
-        """Constraints of some kinds that hold from the beginning."""
-        model, wanted = self.model, {int(kind) for kind in kinds}
-        return [
-            each for each in range(model.neq) if model.eq_active0[each] and int(model.eq_type[each]) in wanted
-        ]
-
-    def _add(
-        self, robot: etree._Element, joint: Joint, coupled: Mapping[str, tuple[str, float, float]]
-    ) -> None:
+    def _add(self, robot: etree._Element, joint: Joint, coupled: Mapping[str, Coupled]) -> None:
         """A joint, and its child where that is no body's."""
         if joint.child not in self.links.values():
             etree.SubElement(robot, "link", name=joint.child)
-        leader, slope, offset = coupled.get(joint.name, ("", 0.0, 0.0))
-        if joint.name in coupled and not leader:
-            held = parent_from_child(joint, offset)
+        rule = coupled.get(joint.name)
+        if rule is not None and not rule.leader:
+            held = parent_from_child(joint, rule.position)
             joint = Joint(joint.name, JointKind.FIXED, joint.parent, joint.child, held)
         element = add_joint(robot, joint)
-        if leader:
-            multiplier, start = numbers_text([slope]), numbers_text([offset])
-            etree.SubElement(element, "mimic", joint=leader, multiplier=multiplier, offset=start)
+        if rule is not None and rule.leader:
+            slope, offset = numbers_text([rule.slope]), numbers_text([rule.offset])
+            etree.SubElement(element, "mimic", joint=rule.leader, multiplier=slope, offset=offset)
 
-    def _notes(self) -> Iterator[str]:
+    def _notes(self, coupled: Mapping[str, Coupled]) -> Iterator[str]:
         """Sentences on what a tree does not have."""
-        model, kinds = self.model, self.mujoco.mjtEq
-        left_out = {
-            "no part of the robot, and left out": [
-                model.body(body).name or f"body {body}"
-                for body in range(1, model.nbody)
-                if model.body_rootid[body] == body and body not in self.links
-            ],
-            "the robot floats without its joints to the world": [
-                model.joint(joint).name
-                for joint in range(model.njnt)
-                if model.jnt_bodyid[joint] == next(iter(self.links))
-                and model.jnt_type[joint] != self.mujoco.mjtJoint.mjJNT_FREE
-            ],
-            "locked where an equality holds them": [
-                name for name, (leader, _, _) in self._coupled().items() if not leader
-            ],
-            "what these equalities tie together moves freely": [
-                model.equality(each).name or f"equality {each}"
-                for each in self._equalities(kinds.mjEQ_CONNECT, kinds.mjEQ_WELD, kinds.mjEQ_TENDON)
-            ],
-            "no actuator acts directly on": [
-                name for joint, name in self.joints.items() if not acts_on(self.mujoco, model, joint)
-            ],
-            "geoms that are left out, as they have no size": [
-                model.geom(geom).name or f"geom {geom}"
-                for geom in range(model.ngeom)
-                if int(model.geom_bodyid[geom]) in self.links and is_left_out(self.mujoco, model, geom)
-            ],
-            "weights that MuJoCo compensates count nevertheless": [
-                name for body, name in self.links.items() if model.body_gravcomp[body]
-            ],
-        }
-        if not len(model.actuator_trntype):
-            del left_out["no actuator acts directly on"]
+        held = [name for name, rule in coupled.items() if not rule.leader]
         yield from self.said
-        yield from (f"{what}: {listed(names)}" for what, names in left_out.items() if names)
+        if held:
+            yield f"locked where an equality holds them: {listed(held)}"
+        yield from Unread(self.mujoco, self.model, self.links, self.joints).sentences()

@@ -91,7 +91,7 @@ def test_a_frame_of_no_mass_needs_no_partner_and_a_link_does(key: str) -> None:
         return
     with pytest.raises(ModelError, match=f"joint ({name}|{made.names['leg_bend']}): wanted a mirror image"):
         mirror_of(tree)
-    with pytest.raises(ModelError, match=r"found [0-9.]+ mm in the place of joint .* \(1 mm allowed\)"):
+    with pytest.raises(ModelError, match=r"found [0-9.]+ mm in the place of joint .* \(1.8 mm allowed\)"):
         averaged(tree)
 
 
