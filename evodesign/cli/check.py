@@ -27,11 +27,12 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem))
-    show_notes(notes(built))
+    said = notes(built)
+    show_notes(said)
     found, differences = preflight(built), rule_differences(built)
     if json:
         tried, rules = [asdict(each) for each in found], [asdict(each) for each in differences]
-        print_json({**model_json(built), "inertia_rules": rules, "preflight": tried})
+        print_json({**model_json(built), "notes": said, "inertia_rules": rules, "preflight": tried})
     else:
         rules_tables = [rules_table(differences)] if differences else []
         for table in (*model_tables(built), *rules_tables, findings_table(found)):

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from evodesign.body.placement import dot
+from evodesign.errors import listed
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
+from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Joint
 
@@ -22,10 +25,11 @@ PARALLEL = math.cos(math.radians(10.0))
 def notes(problem: DesignProblem) -> tuple[str, ...]:
     """A sentence for each thing that a careful reader of the problem would ask about.
 
-    What was not taken as the URDF files say it, what was averaged to make postures symmetric or why they are
-    whole, and limits of a person's joints that look as if their sign were wrong: only joints with the names
-    of the generated person, in the same T-pose (x forward, y to the left, z up; docs/person.md), and whether
-    or not the problem moves them. Limits do not depend on stature, mass or sex, so any person serves.
+    What was not taken as the URDF files say it, joints that stand where they cannot, what was averaged to
+    make postures symmetric or why they are whole, and limits of a person's joints that look as if their sign
+    were wrong: only joints with the names of the generated person, in the same T-pose (x forward, y to the
+    left, z up; docs/person.md), and whether or not the problem moves them. Limits do not depend on stature,
+    mass or sex, so any person serves.
     """
     people = [scene.human.tree for scene in problem.scenes]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
@@ -38,7 +42,22 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     trees = (problem.scene.robot.tree, *people)
     read = (f"{tree.name}: {sentence}" for tree in trees for sentence in tree.notes)
     wrong = (sentence for sentence in found if sentence)
-    return tuple(dict.fromkeys((*read, *problem.symmetry_notes, *wrong)))
+    agents = (problem.scene.robot, *(scene.human for scene in problem.scenes))
+    still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
+    return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong)))
+
+
+def _still(agent: Agent) -> Iterator[str]:
+    """Sentences on joints that are held where they cannot be, and on moving ones that cannot move."""
+    moving = [agent.tree.joint_by_name[name] for name in agent.tree.actuated]
+    held = [joint for joint in moving if joint.name not in agent.joints]
+    outside = [joint for joint in held if not joint.lower <= 0.0 <= joint.upper]
+    if outside:
+        given = [f"{joint.name} ({joint.lower:g} to {joint.upper:g})" for joint in outside]
+        yield f"held at zero, as `joints` does not name them, but outside of their ranges: {listed(given)}"
+    stuck = [joint.name for joint in moving if joint.name in agent.joints and joint.lower == joint.upper]
+    if stuck:
+        yield f"joints whose limits leave no room to move: {listed(stuck)}"
 
 
 def _turned(person: str, joint: Joint, anatomical: Joint) -> str:

@@ -161,13 +161,11 @@ def tag_of(element: etree._Element) -> str:
 
 def _owner(element: etree._Element) -> str:
     """The name of the link or joint that an element belongs to; empty outside of them."""
-    while element is not None and element.tag not in ("link", "joint"):
-        element = element.getparent()
-    return "" if element is None else shortened(element.get("name", ""))
+    return shortened(_place(element).partition(" ")[2])
 
 
 def _place(element: etree._Element) -> str:
-    owner = element
-    while owner.getparent().getparent() is not None:
-        owner = owner.getparent()
-    return f"{owner.tag} {owner.get('name', '')}" if owner.tag in ("link", "joint") else ""
+    """The link or joint that an element belongs to, as a key of messages."""
+    while element is not None and element.tag not in ("link", "joint"):
+        element = element.getparent()
+    return "" if element is None else f"{element.tag} {element.get('name', '')}"

@@ -87,3 +87,19 @@ def test_a_joint_with_a_name_of_its_own_is_not_judged(problem: DesignProblem) ->
     )
     human = replace(turned.scene.human, tree=replace(tree, joints=renamed), joints=("hip",))
     assert notes(replace(turned, scenes=(replace(turned.scene, human=human),))) == ()
+
+
+def test_a_joint_that_is_held_outside_of_its_range_is_noted(problem: DesignProblem) -> None:
+    held = next(name for name in problem.scene.human.tree.actuated if name not in problem.scene.human.joints)
+    joint = problem.scene.human.tree.joint_by_name[held]
+    sentences = notes(with_joint(problem, replace(joint, lower=0.5, upper=1.0)))
+    said = f"held at zero, as `joints` does not name them, but outside of their ranges: {held} (0.5 to 1)"
+    wanted = f"{problem.scene.human.tree.name}: {said}"
+    assert wanted in sentences
+
+
+def test_a_joint_without_room_to_move_is_noted(problem: DesignProblem) -> None:
+    name = problem.scene.human.joints[-1]
+    joint = problem.scene.human.tree.joint_by_name[name]
+    sentences = notes(with_joint(problem, replace(joint, lower=0.0, upper=0.0)))
+    assert f"{problem.scene.human.tree.name}: joints whose limits leave no room to move: {name}" in sentences

@@ -14,6 +14,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.preflight import preflight
 from evodesign.records import ProblemSource
+from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Joint, Tree
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.guess.humanoid import Build, humanoid
@@ -164,3 +165,22 @@ def test_what_cannot_be_is_one_sentence_with_key_and_remedy(
 ) -> None:
     first, *_ = faults(problem_of(tree, change))
     assert re.match(sentence, first), first
+
+
+def test_a_joint_whose_zero_lies_far_outside_of_its_range_holds_what_it_held() -> None:
+    """An encoder's offset of 4 rad: lower and upper limits of the elbows beyond half a turn."""
+
+    def offset(joint: Joint) -> Joint:
+        place = parent_from_child(joint, -OFFSET)
+        return replace(joint, parent_from_child=place, lower=joint.lower + OFFSET, upper=joint.upper + OFFSET)
+
+    told, plain = [], humanoid(Build())
+    moved = with_joint(plain, "elbow", offset)
+    assert sum(joint not in plain.joints for joint in moved.joints) == 2
+    for tree in (plain, moved):
+        found = {finding.item: finding.found for finding in preflight(problem_of(tree))}
+        told.append(found["holds the load"])
+    assert told[0] == told[1]
+
+
+OFFSET = 4.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from evodesign.errors import InputError
 from evodesign.problem.designs import PopulationFile
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.source import decode_toml
+from evodesign.problem.source import decode_toml, read_source
 
 
 @pytest.mark.parametrize(
@@ -91,3 +92,21 @@ def test_dots_in_texts_and_comments_are_no_parts_of_keys(text: str) -> None:
         name: str
 
     assert decode_toml(text, "x.toml", Named).name == tomllib.loads(text)["name"]
+
+
+def test_a_mark_of_the_byte_order_before_a_file_is_no_part_of_it(tmp_path: Path) -> None:
+    plain = read_source("icub-lifting")
+    (name,) = plain.files
+    (tmp_path / "a.toml").write_text(f"\ufeff{plain.text}", encoding="utf-8")
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text(f"\ufeff{plain.files[name]}", encoding="utf-8")
+    marked = read_source(tmp_path / "a.toml")
+    assert (marked.text, marked.files) == (plain.text, plain.files)
+
+
+def test_a_file_that_is_a_pointer_to_another_is_named(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:aa\nsize 9\n")
+    with pytest.raises(
+        InputError, match=r"wanted a file with its content, found .*a.toml', which is a Git LFS"
+    ):
+        read_source(tmp_path / "a.toml")

@@ -165,7 +165,8 @@ def test_what_a_tree_does_not_have_is_told(tree: Tree) -> None:
         "what these equalities tie together moves freely: loop",
         "no actuator acts directly on: finger, nail",
         "weights that MuJoCo compensates count nevertheless: spinner",
-        "damping, friction and armature of joints are not counted: shoulder_pitch, shoulder_roll, wrist and 2 more",
+        "damping, friction and armature of joints are not counted: "
+        "shoulder_pitch, shoulder_roll, wrist and 2 more",
         "locked where they are while the joints that they mimic are at zero: finger",
     }
 
