@@ -48,16 +48,13 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
 
 
 def _still(agent: Agent) -> Iterator[str]:
-    """Sentences on joints that are held where they cannot be, and on moving ones that cannot move."""
+    """A sentence on joints that are held where they cannot be."""
     moving = [agent.tree.joint_by_name[name] for name in agent.tree.actuated]
     held = [joint for joint in moving if joint.name not in agent.joints]
     outside = [joint for joint in held if not joint.lower <= 0.0 <= joint.upper]
     if outside:
         given = [f"{joint.name} ({joint.lower:g} to {joint.upper:g})" for joint in outside]
         yield f"held at zero, as `joints` does not name them, but outside of their ranges: {listed(given)}"
-    stuck = [joint.name for joint in moving if joint.name in agent.joints and joint.lower == joint.upper]
-    if stuck:
-        yield f"joints whose limits leave no room to move: {listed(stuck)}"
 
 
 def _turned(person: str, joint: Joint, anatomical: Joint) -> str:

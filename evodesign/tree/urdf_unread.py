@@ -9,6 +9,7 @@ Source: wiki.ros.org/urdf/XML; URDF 1.1 and 1.2 of urdfdom; gazebosim.org, SDFor
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 
 from lxml import etree
@@ -64,6 +65,12 @@ GAZEBO: Mapping[str, tuple[str, ...]] = {
 }
 """Children of <gazebo> that change what a robot holds, and what they say where they do not."""
 
+EXPRESSION = re.compile(r"\$[({]")
+"""How expressions and arguments of xacro begin."""
+
+MOST_KINDS = 20
+"""Sentences before the others are counted."""
+
 VERSIONS = ("1", "1.0", "1.1", "1.2")
 """Of URDF, that are known; a file that says none is of version 1.0."""
 
@@ -74,16 +81,13 @@ def refuse_xacro(robot: etree._Element, source: str) -> None:
     Raises:
         ModelError: naming the first of them.
     """
-    for part in robot:
-        for element in part.iter() if part.tag not in HARMLESS["robot"] else ():
-            found = f"<{tag_of(element)}>" if tag_of(element).startswith("xacro:") else ""
-            texts = [*element.attrib.values(), element.text or ""]
-            found = found or next(
-                (repr(shortened(text)) for text in texts if "${" in text or "$(" in text), ""
-            )
-            if found:
-                wanted = "a URDF: expand with xacro (xacro FILE > robot.urdf)"
-                raise ModelError(source, _place(element), wanted, found)
+    parts = (each for part in robot if part.tag not in HARMLESS["robot"] for each in part.iter())
+    for element in (robot, *parts):
+        macro = f"<{tag_of(element)}>" if tag_of(element).startswith("xacro:") else ""
+        texts = [text for text in (*element.attrib.values(), element.text or "") if EXPRESSION.search(text)]
+        if macro or texts:
+            wanted = "a URDF: expand with xacro (xacro FILE > robot.urdf)"
+            raise ModelError(source, _place(element), wanted, macro or repr(shortened(texts[0])))
 
 
 def unread(robot: etree._Element) -> Iterator[str]:
@@ -92,13 +96,13 @@ def unread(robot: etree._Element) -> Iterator[str]:
     Args:
         robot: as parsed, before anything is taken out of it.
     """
-    found: dict[str, list[str]] = {}
+    found: dict[str, dict[str, None]] = {}
     for what, where in (*_unknown(robot), *_of_gazebo(robot), *_of_motion(robot)):
-        places = found.setdefault(what, [])
-        if where not in places:
-            places.append(where)
-    for what, places in found.items():
-        yield f"{what} {listed(places)}"
+        found.setdefault(what, {})[where] = None
+    for what in [*found][:MOST_KINDS]:
+        yield f"{what} {listed([*found[what]])}"
+    if len(found) > MOST_KINDS:
+        yield f"not read: {len(found) - MOST_KINDS} more kinds of elements and attributes"
     if robot.get("version", VERSIONS[0]) not in VERSIONS:
         yield f"version {shortened(robot.get('version'))!r} of URDF is not known: read as {VERSIONS[-1]}"
 
@@ -140,10 +144,10 @@ def _of_motion(robot: etree._Element) -> Iterator[tuple[str, str]]:
     if robot.get("version", VERSIONS[0]) in VERSIONS[:2]:
         for origin in robot.iter("origin"):
             if origin.get("quat_xyzw"):
-                told = (
-                    "quat_xyzw is read, though the file does not say version 1.1 and others ignore it there:"
+                yield (
+                    "quat_xyzw is read, which others ignore where a file does not say version 1.1:",
+                    _owner(origin),
                 )
-                yield told, _owner(origin)
 
 
 def _is_not_zero(text: str) -> bool:

@@ -96,10 +96,3 @@ def test_a_joint_that_is_held_outside_of_its_range_is_noted(problem: DesignProbl
     said = f"held at zero, as `joints` does not name them, but outside of their ranges: {held} (0.5 to 1)"
     wanted = f"{problem.scene.human.tree.name}: {said}"
     assert wanted in sentences
-
-
-def test_a_joint_without_room_to_move_is_noted(problem: DesignProblem) -> None:
-    name = problem.scene.human.joints[-1]
-    joint = problem.scene.human.tree.joint_by_name[name]
-    sentences = notes(with_joint(problem, replace(joint, lower=0.0, upper=0.0)))
-    assert f"{problem.scene.human.tree.name}: joints whose limits leave no room to move: {name}" in sentences

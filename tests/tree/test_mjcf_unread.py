@@ -17,7 +17,8 @@ READ_OR_TOLD = {
         "gravity wind density viscosity",
         "timestep tolerance ls_tolerance noslip_tolerance ccd_tolerance sleep_tolerance impratio",
         "integrator cone jacobian solver iterations ls_iterations noslip_iterations ccd_iterations",
-        "sdf_iterations sdf_initpoints magnetic o_margin o_solref o_solimp o_friction actuatorgroupdisable apirate collision",
+        "sdf_iterations sdf_initpoints magnetic o_margin o_solref o_solimp o_friction",
+        "actuatorgroupdisable apirate collision",
     ),
     "tendon": (
         "stiffness springlength springyield limited range frictionloss damping armature",

@@ -255,11 +255,17 @@ def test_what_is_not_read_or_looks_wrong_is_told_in_one_sentence(case: str) -> N
     assert tree.mass > 0.0
 
 
+def test_of_very_many_kinds_the_others_are_counted() -> None:
+    tree = read(changed((LIMIT, LIMIT + "".join(f"<x{number}/>" for number in range(30)))))
+    assert len(tree.notes) == 21
+    assert tree.notes[-1] == "not read: 10 more kinds of elements and attributes"
+
+
 def test_a_quaternion_that_others_ignore_is_read_and_told() -> None:
     text = changed(('rpy="0.1 0.2 0.3"', 'quat_xyzw="1 0 0 1"'), (' version="1.1"', ""))
     tree = read(text)
     (note,) = tree.notes
-    assert note.startswith("quat_xyzw is read, though")
+    assert note.startswith("quat_xyzw is read, which others ignore")
     assert np.array(tree.joint_by_name["shoulder"].parent_from_child.rotation)[2, 1] == pytest.approx(1.0)
 
 
@@ -283,6 +289,7 @@ REFUSED = {
         r"expand with xacro .*, found <xacro:head>",
     ),
     "a macro in a link": ("<inertial>", "<inertial><xacro:box/>", r"link trunk: .* found <xacro:box>"),
+    "a name": ('name="small"', 'name="${name}"', r"small.urdf: .*expand with xacro .*found '\$\{name\}'"),
     "an expression": (
         'value="2"',
         'value="${mass}"',
