@@ -2,7 +2,8 @@
 
     angle     a turning joint's limit beyond two turns, unless it stands for none; or no joint of several that
               turns by more than 11 degrees, as where MJCF gives radians without saying so
-    length    a joint's origin, a shape or a mesh longer than 10 m
+    length    a joint's origin, a centre of mass, a shape or a mesh further or longer than 10 m
+    inertia   a radius of gyration beyond 2 m, sqrt(I / m) for the largest entry I of the tensor's diagonal
     size      a link of more than 10 g whose shapes or meshes all span less than 2 mm
     mass      a link of more than 500 kg
 
@@ -14,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
+from evodesign.body.inertia import Inertia
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import listed
 from evodesign.tree.mesh_write import vertices_of
@@ -25,8 +27,8 @@ FURTHEST, NO_LIMIT = 4.0 * math.pi * 1.01, 3600.0
 """A limit beyond two turns [rad], and one that stands for none."""
 NARROW, SEVERAL = 0.2, 4
 """A narrow range [rad], and how many joints do not all have one."""
-LONGEST, SHORTEST = 10.0, 0.002
-"""Of a part of a robot that can hold a load with a person [m]."""
+LONGEST, SHORTEST, WIDEST = 10.0, 0.002, 2.0
+"""Of a part of a robot that can hold a load with a person, and its radius of gyration [m]."""
 HEAVIEST, LIGHTEST = 500.0, 0.01
 """Masses of a link [kg] that seem to be grams, and that are more than a speck's."""
 
@@ -42,12 +44,17 @@ def unit_doubts(links: Iterable[Link], joints: Iterable[Joint]) -> Iterator[str]
     yield from _angles([joint for joint in joints if joint.kind is JointKind.REVOLUTE])
     apart = {joint.name: math.hypot(*joint.parent_from_child.translation) for joint in joints}
     yield from _long("joints", apart)
+    heavy = [link for link in links if link.mass > 0.0]
+    yield from _long("centres of mass", {link.name: math.hypot(*link.inertia.center) for link in heavy})
+    wide = [f"{link.name} ({span:.3g} m)" for link in heavy if (span := _gyration(link.inertia)) > WIDEST]
+    if wide:
+        yield f"radii of gyration of more than {WIDEST:g} m, which look like kg mm^2: {listed(wide)}"
     spans = {link.name: list(map(_span, _shapes(link))) for link in links}
     yield from _long("links with shapes", {name: max(each, default=0.0) for name, each in spans.items()})
     yield from _short((link, spans[link.name]) for link in links if not link.meshes)
-    heavy = [f"{link.name} ({link.mass:g} kg)" for link in links if link.mass > HEAVIEST]
-    if heavy:
-        yield f"links heavier than {HEAVIEST:g} kg, which look like grams: {listed(heavy)}"
+    too_heavy = [f"{link.name} ({link.mass:g} kg)" for link in heavy if link.mass > HEAVIEST]
+    if too_heavy:
+        yield f"links heavier than {HEAVIEST:g} kg, which look like grams: {listed(too_heavy)}"
 
 
 def _angles(turning: Sequence[Joint]) -> Iterator[str]:
@@ -69,6 +76,11 @@ def mesh_doubts(links: Iterable[Link]) -> Iterator[str]:
     spans = {link.name: [_mesh_span(mesh) for mesh in link.shown] for link in known}
     yield from _long("links with meshes", {name: max(each) for name, each in spans.items()})
     yield from _short((link, spans[link.name]) for link in known)
+
+
+def _gyration(inertia: Inertia) -> float:
+    """About the one of the link's axes about which it is the largest [m]."""
+    return math.sqrt(max(0.0, *(inertia.about_center[i][i] for i in range(3))) / inertia.mass)
 
 
 def _long(nouns: str, spans: dict[str, float]) -> Iterator[str]:

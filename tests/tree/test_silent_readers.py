@@ -239,6 +239,14 @@ NOTED = {
         ('size="0.1 0.2 0.3"', 'size="1e-4 2e-4 3e-4"'),
         r"links of less than 2 mm, .* arm \(0.3 mm",
     ),
+    "a centre in millimetres": (
+        ('<origin xyz="0.01 0.02 0.03"/>', '<origin xyz="10 20 30"/>'),
+        r"centres of mass of more than 10 m, which look like millimetres: trunk",
+    ),
+    "a tensor in kg mm^2": (
+        (TENSOR, '<inertia ixx="1e4" ixy="0" ixz="0" iyy="2e4" iyz="0" izz="2.5e4"/>'),
+        r"radii of gyration of more than 2 m, which look like kg mm\^2: trunk \(112 m\)",
+    ),
     "grams": (
         ('<mass value="2"/>', '<mass value="2000"/>'),
         r"heavier than 500 kg, which look like grams: trunk",
