@@ -33,8 +33,8 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, scale
 from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
-from evodesign.tree.mjcf_coupled import Coupled, coupled_joints
 from evodesign.tree.mjcf_effort import effort_limit
+from evodesign.tree.mjcf_followers import FollowerRule, follower_rules
 from evodesign.tree.mjcf_geoms import add_geoms, placement, vector
 from evodesign.tree.mjcf_unread import Unread
 from evodesign.tree.model import Joint, JointKind
@@ -168,7 +168,7 @@ class _Translation:
             link = etree.SubElement(robot, "link", name=name)
             add_inertial(link, self._inertia(body))
             meshes |= add_geoms(link, self.mujoco, self.model, body, self.touching)
-        coupled = coupled_joints(self.mujoco, self.model, self.joints)
+        coupled = follower_rules(self.mujoco, self.model, self.joints)
         root = next(iter(self.links))
         turned = placement((0.0, 0.0, 0.0), self.model.body_quat[root])
         if turned != Placement():
@@ -235,7 +235,7 @@ class _Translation:
     def _ref(self, joint: int) -> float:
         return float(self.model.qpos0[self.model.jnt_qposadr[joint]])
 
-    def _add(self, robot: etree._Element, joint: Joint, coupled: Mapping[str, Coupled]) -> None:
+    def _add(self, robot: etree._Element, joint: Joint, coupled: Mapping[str, FollowerRule]) -> None:
         """A joint, and its child where that is no body's."""
         if joint.child not in self.links.values():
             etree.SubElement(robot, "link", name=joint.child)
@@ -248,7 +248,7 @@ class _Translation:
             slope, offset = numbers_text([rule.slope]), numbers_text([rule.offset])
             etree.SubElement(element, "mimic", joint=rule.leader, multiplier=slope, offset=offset)
 
-    def _notes(self, coupled: Mapping[str, Coupled]) -> Iterator[str]:
+    def _notes(self, coupled: Mapping[str, FollowerRule]) -> Iterator[str]:
         """Sentences on what a tree does not have."""
         held = [name for name, rule in coupled.items() if not rule.leader]
         yield from self.said

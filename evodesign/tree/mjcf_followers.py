@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Coupled", "coupled_joints"]
+__all__ = ["FollowerRule", "follower_rules"]
 
 Rules = Mapping[int, tuple[int, NDArray[np.float64]]]
 """Leader, -1 for none, and coefficients by the joint that is moved."""
 
 
 @dataclass(frozen=True, slots=True)
-class Coupled:
+class FollowerRule:
     """A joint that does not move by itself.
 
     Args:
@@ -44,7 +44,7 @@ class Coupled:
         return self.position - self.slope * self.leader_position
 
 
-def coupled_joints(mujoco: Any, model: Any, joints: Mapping[int, str]) -> dict[str, Coupled]:
+def follower_rules(mujoco: Any, model: Any, joints: Mapping[int, str]) -> dict[str, FollowerRule]:
     """The coupled ones of a robot's joints, by name.
 
     Args:
@@ -63,7 +63,7 @@ def coupled_joints(mujoco: Any, model: Any, joints: Mapping[int, str]) -> dict[s
         position, moves = _position(joint, rules, model, joints, ())
         name = joints[leader] if moves else ""
         at = _position(leader, rules, model, joints, ())[0] if moves else 0.0
-        found[joints[joint]] = Coupled(name, float(coefficients[1]), position, at)
+        found[joints[joint]] = FollowerRule(name, float(coefficients[1]), position, at)
     return found
 
 
