@@ -36,6 +36,8 @@ class Variable:
         labels: words for the rows; none: they are counted from zero.
         drawn: whether a random start draws it from between its bounds.
         key: by which those who assemble the program find it again.
+        least, most: what the lower and upper bounds are to those who assemble the program: nothing, the same
+            for all rows, or one each.
     """
 
     name: str
@@ -47,6 +49,8 @@ class Variable:
     labels: tuple[str, ...] = ()
     drawn: bool = False
     key: Hashable = None
+    least: tuple[Any, ...] = ()
+    most: tuple[Any, ...] = ()
 
     @property
     def value(self) -> Expression:
@@ -65,13 +69,15 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class ConstraintBlock:
-    """A named block of constraints lower <= expression <= upper; labels as for a variable."""
+    """A named block of constraints lower <= expression <= upper; labels, least and most as for a variable."""
 
     name: str
     expression: Expression
     lower: float
     upper: float
     labels: tuple[str, ...] = ()
+    least: tuple[Any, ...] = ()
+    most: tuple[Any, ...] = ()
 
 
 class Switches(Protocol):

@@ -33,6 +33,7 @@ from evodesign.posture.terms.base import (
     SystemTerm,
     Unknown,
     both_hands,
+    bounds_of,
 )
 from evodesign.posture.terms.collisions import CLEAR, PARTING, directed
 from evodesign.posture.terms.grasp import hand_unknowns, moment_cost
@@ -287,11 +288,11 @@ class _Assembler:
             hands[free.name] = both_hands({side: found[f"{side}_hand"] for side in free.sides})
         for name, body in bodies.items():
             rows = [row for term in self._body_terms for row in term.rows(body)]
-            self._add(rows, f"{prefix}{name}.", again=again)
+            self._add(rows, f"{prefix}{name}.", name, again=again)
         accelerated = self._case.load_acceleration
         coupled = Coupled(scene, bodies, hands, self._symmetric, disturbance, accelerated)
         rows = [row for term in self._system_terms for row in term.rows(coupled)]
-        self._add(rows, prefix, again=again)
+        self._add(rows, prefix, "", again=again)
         everyone: list[tuple[Sequence[Any], Any]] = [
             *((self._enforced_ones(self._body_terms), body) for body in bodies.values()),
             (self._enforced_ones(self._system_terms), coupled),
@@ -333,14 +334,22 @@ class _Assembler:
             held = made.lower == made.upper  # what a symmetric posture does not have
             lower, upper = np.where(held, made.lower, -np.inf), np.where(held, made.upper, np.inf)
             made = replace(made, lower=lower, upper=upper)
-        key = replace(slot, part=unknown.part)
-        self._variables.append(replace(made, labels=unknown.labels, drawn=unknown.drawn, key=key))
+        key, least, most = replace(slot, part=unknown.part), *bounds_of(unknown, slot.party)
+        named = replace(made, labels=unknown.labels, drawn=unknown.drawn, key=key)
+        self._variables.append(replace(named, least=least, most=most))
         return made.value
 
-    def _add(self, rows: Iterable[Row], prefix: str, *, again: bool) -> None:
-        """Constraints of rows that are enforced, and not said before."""
+    def _add(self, rows: Iterable[Row], prefix: str, agent: str, *, again: bool) -> None:
+        """Constraints of an agent's rows, or the system's, that are enforced, and not said before."""
         self._constraints += [
-            ConstraintBlock(f"{prefix}{row.name}", row.expression, row.lower, row.upper, row.labels)
+            ConstraintBlock(
+                f"{prefix}{row.name}",
+                row.expression,
+                row.lower,
+                row.upper,
+                row.labels,
+                *bounds_of(row, agent),
+            )
             for row in rows
             if self._enforced.covers(row.group) and not (again and row.posture_only)
         ]

@@ -53,6 +53,11 @@ class Form:
             return (1.0,) * len(self.joints)
         return tuple(1.0 if self.mirror.joints[name] == name else 2.0 for name in self.joints)
 
+    def words_of(self, joint: str) -> str:
+        """A variable joint in words, with its twin where it stands for a pair."""
+        twin = joint if self.mirror is None else self.mirror.joints[joint]
+        return joint if twin == joint else f"{joint} and {twin}"
+
     @property
     def trunk(self) -> tuple[str, ...]:
         """The agent's trunk frames that the form holds."""

@@ -255,3 +255,23 @@ def checker_of(scene: Scene) -> Checker:
     return Checker(
         scene, AgentModel.of(scene.robot, scene.robot.tree), AgentModel.of(scene.human, scene.human.tree)
     )
+
+
+SAID = {LimitGroup.STANCE, LimitGroup.CONTACT, LimitGroup.JOINT_LIMITS, LimitGroup.COLLISIONS}
+"""Groups of limits that a user may set, or has from a robot's file."""
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_rows_with_limits_say_which_these_are(
+    problem: DesignProblem, forms: tuple[Form, Form], name: str
+) -> None:
+    """In words, and in units that a price can be per; those of the stance with their keys."""
+    scene = scene_of(problem)
+    for _, row in seen_rows(TERMS[name], scene, forms):
+        for limit, bounds in ((row.lower, row.least), (row.upper, row.most)):
+            if row.lower == row.upper or not np.isfinite(limit) or row.group not in SAID:
+                continue
+            assert len(bounds) in (1, row.expression.numel())
+            assert {bound.unit for bound in bounds} <= {"m", "rad", "N", "N m", "1"}
+            assert all(bound.name for bound in bounds)
+            assert row.group is not LimitGroup.STANCE or all(bound.key for bound in bounds)

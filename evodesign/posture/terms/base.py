@@ -12,7 +12,7 @@ A new term is a file with a `Term` in it, and a line in `terms/registry.py`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -38,6 +38,7 @@ __all__ = [
     "TORQUE_UNIT",
     "Body",
     "BodyTerm",
+    "Bound",
     "Coupled",
     "Held",
     "MeasuredBody",
@@ -46,6 +47,8 @@ __all__ = [
     "Row",
     "SystemTerm",
     "Unknown",
+    "both_ways",
+    "bounds_of",
     "hand_wrench",
 ]
 
@@ -64,6 +67,37 @@ UNDISTURBED = Disturbance("none")
 
 
 @dataclass(frozen=True, slots=True)
+class Bound:
+    """A number that bounds rows or numbers of a term from one side, as a user knows it.
+
+    Args:
+        name: what is bounded, in words.
+        value: SI units; a number, or an expression where a design chooses it.
+        unit: of the value: `m`, `rad`, `N`, `N m` or `1`; empty where nobody says.
+        at_most: whether it is the most that is allowed; otherwise the least.
+        moves: derivative of the row's bound less its expression, by the value: in units of the row's
+            expression, or in SI units for numbers that a term asks for. A number or an expression.
+        key: where the problem file has it; empty where it has not.
+        part: the joints or bodies that it is about; empty where the name says it all.
+        agent: whose it is; empty for one of robot, person and load together.
+    """
+
+    name: str
+    value: Expression
+    unit: str
+    at_most: bool
+    moves: Expression = 1.0
+    key: str = ""
+    part: str = ""
+    agent: str = ""
+
+
+def both_ways(most: Bound) -> tuple[Bound, Bound]:
+    """The bounds of rows from below and above whose size is bounded, from that above."""
+    return replace(most, moves=-most.moves), most
+
+
+@dataclass(frozen=True, slots=True)
 class Unknown:
     """Numbers of an agent that a term asks the solver for.
 
@@ -75,6 +109,8 @@ class Unknown:
         posture_only: whether they are the same in all load cases.
         labels: words for the rows.
         drawn: whether random starts draw them from between their bounds.
+        least, most: what the bounds are to a user, the same for all rows or one each; left out, they have the
+            part's name.
     """
 
     part: str
@@ -86,6 +122,8 @@ class Unknown:
     posture_only: bool = False
     labels: tuple[str, ...] = ()
     drawn: bool = False
+    least: tuple[Bound, ...] = ()
+    most: tuple[Bound, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +152,8 @@ class Row:
         group: to which they belong.
         posture_only: whether they are the same in all load cases.
         labels: words for the rows.
+        least, most: what the limits are to a user, the same for all rows or one each; left out, they have the
+            row's name.
     """
 
     name: str
@@ -125,6 +165,26 @@ class Row:
     group: LimitGroup = LimitGroup.ALWAYS
     posture_only: bool = False
     labels: tuple[str, ...] = ()
+    least: tuple[Bound, ...] = ()
+    most: tuple[Bound, ...] = ()
+
+
+def bounds_of(bounded: Unknown | Row, agent: str) -> tuple[tuple[Bound, ...], tuple[Bound, ...]]:
+    """What bounds an agent's numbers or rows from below and from above; where nobody says, by their name.
+
+    Args:
+        bounded: the numbers or rows.
+        agent: its name; empty for robot, person and load together.
+    """
+    if isinstance(bounded, Row):
+        name, moves = bounded.name, 1.0 / bounded.unit
+        lower, upper = [bounded.lower * bounded.unit], [bounded.upper * bounded.unit]
+    else:
+        name, moves, lower, upper = bounded.part, 1.0, [*bounded.lower], [*bounded.upper]
+    words = name.replace("_", " ")
+    least = bounded.least or tuple(Bound(words, value, "", False, moves) for value in lower)
+    most = bounded.most or tuple(Bound(words, value, "", True, moves) for value in upper)
+    return tuple(replace(x, agent=agent) for x in least), tuple(replace(x, agent=agent) for x in most)
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ part boxes: Gottschalk, Lin and Manocha, OBBTree (1996). The residual is coal's.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 import casadi as ca
@@ -43,6 +43,7 @@ from evodesign.posture.terms.base import (
     UNDISTURBED,
     Body,
     BodyTerm,
+    Bound,
     Held,
     MeasuredSystem,
     Residual,
@@ -232,20 +233,23 @@ def rows(body: Body) -> Iterator[Row]:
             for one, other in pairs:
                 apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0]) + spare
                 found[MeetingKind.DIRECTION].append((meeting.label, apart))
-    for kind, name, least in (
-        (MeetingKind.MIDDLE, "clear_of_mirror_image", rules.margin),
-        (MeetingKind.PLANE, "clear_of_plane", rules.margin / 2.0),
-        (MeetingKind.DIRECTION, CLEAR, rules.margin),
+    for kind, name, share in (
+        (MeetingKind.MIDDLE, "clear_of_mirror_image", 1.0),
+        (MeetingKind.PLANE, "clear_of_plane", 0.5),
+        (MeetingKind.DIRECTION, CLEAR, 1.0),
     ):
-        yield from _column(name, found[kind], least)
+        yield from _column(name, found[kind], share, rules.margin)
 
 
-def _column(name: str, found: Sequence[tuple[str, Expression]], least: float) -> Iterator[Row]:
+def _column(name: str, found: Sequence[tuple[str, Expression]], share: float, margin: float) -> Iterator[Row]:
+    """Rows of one kind, which keep a share of the margin [m]."""
     if found:
         labels = tuple(label for label, _ in found)
-        column = ca.vertcat(*[expression for _, expression in found])
-        group = LimitGroup.COLLISIONS
-        yield Row(name, column, least, np.inf, ("overlap",), group=group, posture_only=True, labels=labels)
+        column, least = ca.vertcat(*[expression for _, expression in found]), share * margin
+        key, group = "collisions.margin_m", LimitGroup.COLLISIONS
+        bounds = tuple(Bound("bodies apart", margin, "m", False, share, key, label) for label in labels)
+        row = Row(name, column, least, np.inf, ("overlap",), group=group, posture_only=True)
+        yield replace(row, labels=labels, least=bounds)
 
 
 def residuals(system: MeasuredSystem) -> Iterator[Residual]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from evodesign.posture.limit_groups import LimitGroup
-from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 
 __all__ = ["COUPLED_JOINTS"]
 
@@ -25,7 +25,14 @@ def rows(body: Body) -> Iterator[Row]:
         positions = [body.values["joints"][place[name]] for name in each.joints if name in place]
         if positions:
             limits, found, group = (each.lower, each.upper), ("coupled_joints",), LimitGroup.JOINT_LIMITS
-            yield Row(each.name, sum(positions), *limits, found, group=group, posture_only=True)
+            lower, upper = (
+                (Bound("range that joints share", limit, "rad", at_most, part=each.name),)
+                for limit, at_most in zip(limits, (False, True), strict=True)
+            )
+            shared = sum(positions)
+            yield Row(
+                each.name, shared, *limits, found, group=group, posture_only=True, least=lower, most=upper
+            )
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:

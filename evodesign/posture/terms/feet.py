@@ -8,25 +8,30 @@ Source: Sartore et al. 2022, Eq. 14 e to g; contact: `mechanics.contact`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.contact import foot_margins
-from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.mechanics.scene import ROBOT, SIDES, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
     FORCE_UNIT,
     Body,
     BodyTerm,
+    Bound,
     Coupled,
+    Expression,
     MeasuredBody,
     Residual,
     Row,
     SystemTerm,
     Unknown,
+    both_ways,
 )
 
 __all__ = ["FEET", "UPRIGHT"]
@@ -63,9 +68,33 @@ def rows(body: Body) -> Iterator[Row]:
             ("foot_contact",),
             MARGIN_UNIT,
             LimitGroup.CONTACT,
+            least=_contact_bounds(body, body.feet[side][2]),
         )
         turn, stance = ca.atan2(sole.rotation[1, 0], sole.rotation[0, 0]), LimitGroup.STANCE
-        yield Row(f"{side}_foot_yaw", turn, -most, most, ("feet_yaw",), group=stance, posture_only=True)
+        row = Row(f"{side}_foot_yaw", turn, -most, most, ("feet_yaw",), group=stance, posture_only=True)
+        right, left = both_ways(Bound("foot yaw", most, "rad", True, key="limits.foot_yaw_rad"))
+        yield replace(row, least=(right,), most=(left,))
+
+
+def _contact_bounds(body: Body, pressing: Expression) -> tuple[Bound, ...]:
+    """What bounds each of a foot's margins, which is no less than zero.
+
+    Args:
+        body: whose foot it is.
+        pressing: normal force of the foot [N]; a larger friction or sole widens the margins in proportion.
+    """
+    ground, sole, name = body.scene.ground, body.agent.sole_size, "centre of pressure"
+    share, key = -pressing / MARGIN_UNIT, "robot.soles.size_m" if body.agent.name == ROBOT else ""
+    lifted = Bound(
+        "foot force", ground.least_force, "N", False, 1.0 / MARGIN_UNIT, "limits.least_foot_force_n"
+    )
+    slipping = Bound("friction", ground.friction, "1", True, share / math.sqrt(2.0), "limits.friction")
+    turning = "limits.torsional_friction_m"
+    twisting = Bound("torsional friction", ground.torsional_friction, "m", True, share, turning)
+    pitching = Bound(name, sole.length, "m", True, share / 2.0, key, "length of the sole")
+    rolling = Bound(name, sole.width, "m", True, share / 2.0, key, "width of the sole")
+    pairs = (slipping, slipping, twisting, pitching, rolling)
+    return (lifted, *(bound for bound in pairs for _ in range(2)))
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:

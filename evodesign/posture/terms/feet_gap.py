@@ -15,7 +15,7 @@ import numpy as np
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.scene import SIDES
 from evodesign.posture.limit_groups import LimitGroup
-from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import Expression
 
 __all__ = ["FEET_GAP"]
@@ -33,7 +33,9 @@ def rows(body: Body) -> Iterator[Row]:
         apart = [left - right for left, right in product(inner["left"], inner["right"])]
     else:
         apart = [2.0 * left for left in inner["left"]]
-    yield Row(NAME, ca.vertcat(*apart), gap, np.inf, (NAME,), group=LimitGroup.STANCE, posture_only=True)
+    group, least = LimitGroup.STANCE, Bound("gap between the feet", gap, "m", False, key="limits.feet_gap_m")
+    column = ca.vertcat(*apart)
+    yield Row(NAME, column, gap, np.inf, (NAME,), group=group, posture_only=True, least=(least,))
 
 
 def _inner_corners(body: Body, side: str) -> list[Expression]:

@@ -6,7 +6,7 @@ Source: Sartore et al. 2022, Eq. 14, whose variable q_b, s they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import casadi as ca
 import numpy as np
@@ -14,9 +14,9 @@ import numpy as np
 from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.base import BodyTerm, MeasuredBody, Residual, Unknown
+from evodesign.posture.terms.base import BodyTerm, Bound, MeasuredBody, Residual, Unknown, both_ways
 from evodesign.tree.kinematics import Pose, forward
-from evodesign.tree.model import Joint
+from evodesign.tree.model import Joint, JointKind
 
 __all__ = ["FLOATING_BASE", "joint_ranges"]
 
@@ -33,6 +33,7 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
         _standing(form.agent, scene),
         posture_only=True,
     )
+    back, forth = both_ways(Bound("base tilt", tilt, "rad", True, key="limits.base_tilt_rad"))
     yield Unknown(
         "base_angles",
         [-turn, -tilt, -turn],
@@ -40,6 +41,8 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
         [0.0] * 3,
         group=LimitGroup.STANCE,
         posture_only=True,
+        least=(back,),
+        most=(forth,),
     )
     yield Unknown(
         "joints",
@@ -50,7 +53,16 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
         posture_only=True,
         labels=form.joints,
         drawn=True,
+        least=tuple(_range_bounds(form, lower, at_most=False)),
+        most=tuple(_range_bounds(form, upper, at_most=True)),
     )
+
+
+def _range_bounds(form: Form, ends: Sequence[float], *, at_most: bool) -> Iterator[Bound]:
+    """One end of every joint's range; of a half, it is that of the pair."""
+    for name, end in zip(form.joints, ends, strict=True):
+        unit = "m" if form.agent.tree.joint_by_name[name].kind is JointKind.PRISMATIC else "rad"
+        yield Bound("joint range", end, unit, at_most, part=form.words_of(name))
 
 
 def joint_ranges(form: Form) -> list[tuple[float, float]]:

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.posture.limit_groups import LimitGroup
-from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import vector
 
 __all__ = ["GAZE"]
@@ -30,7 +30,9 @@ def rows(body: Body) -> Iterator[Row]:
         head = body.poses[gaze.link]
         away = ca.vertcat(0.0, 0.0, body.load_height) - head.point(vector(gaze.place))
         within = ca.dot(head.rotation[:, 0], away) / ca.norm_2(away) - math.cos(gaze.cone)
-        yield Row(NAME, within, 0.0, np.inf, (NAME,), group=LimitGroup.STANCE, posture_only=True)
+        group, key = LimitGroup.STANCE, "human.gaze_cone_deg"
+        most = Bound("gaze cone", gaze.cone, "rad", True, -math.sin(gaze.cone), key)
+        yield Row(NAME, within, 0.0, np.inf, (NAME,), group=group, posture_only=True, least=(most,))
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:

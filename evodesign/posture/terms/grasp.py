@@ -8,6 +8,7 @@ Source: Sartore et al. 2022, Eq. 14 c and d.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -20,11 +21,13 @@ from evodesign.posture.terms.base import (
     REGULARISATION,
     Body,
     BodyTerm,
+    Bound,
     Expression,
     MeasuredBody,
     Residual,
     Row,
     Unknown,
+    both_ways,
 )
 from evodesign.tree.kinematics import vector
 
@@ -45,9 +48,14 @@ def hand_unknowns(sides: Sequence[str], payload: Payload) -> Iterator[Unknown]:
     """The free numbers of hands [N, N m]: a force, and with rigid grasps a moment."""
     moment = min(STRONGEST, payload.hand_moment)
     limit = ([STRONGEST] * 3 + [moment] * 3)[: GRASP_ROWS[payload.grasp]]
+    force = Bound("hand force", STRONGEST, "N", True)
+    turning = Bound("hand moment", moment, "N m", True, key="payload.hand_moment_n_m")
+    bounds = [both_ways(each) for each in (force, force, force, turning, turning, turning)[: len(limit)]]
+    below, above = zip(*bounds, strict=True)
     for side in sides:
         least, rest = [-x for x in limit], [0.0] * len(limit)
-        yield Unknown(f"{side}_hand", least, limit, rest, HAND_UNIT, LimitGroup.CONTACT)
+        asked = Unknown(f"{side}_hand", least, limit, rest, HAND_UNIT, LimitGroup.CONTACT)
+        yield replace(asked, least=below, most=above)
 
 
 def moment_cost(hands: Mapping[str, Expression], payload: Payload) -> Expression:

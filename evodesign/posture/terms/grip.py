@@ -18,7 +18,7 @@ from evodesign.body.placement import Vector
 from evodesign.mechanics.elbow import Elbow, elbow
 from evodesign.mechanics.scene import SIDES, Agent, Payload
 from evodesign.posture.limit_groups import LimitGroup
-from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import vector
 
 __all__ = ["GRIP"]
@@ -41,8 +41,9 @@ def rows(body: Body) -> Iterator[Row]:
             vector(bent.place)
         )
         within = ca.dot(vector(axis), forearm) / ca.norm_2(forearm) - math.cos(payload.grasp_cone)
-        found = ("grasp_direction",)
-        yield Row(f"{side}_forearm", within, 0.0, np.inf, found, group=group, posture_only=True)
+        found, cone, key = ("grasp_direction",), payload.grasp_cone, "payload.grasp_cone_deg"
+        most = (Bound("grasp cone", cone, "rad", True, -math.sin(cone), key),)
+        yield Row(f"{side}_forearm", within, 0.0, np.inf, found, group=group, posture_only=True, least=most)
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:

@@ -30,13 +30,25 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.posture.limit_groups import LimitGroup
-from evodesign.posture.terms.base import UNDISTURBED, Coupled, MeasuredSystem, Residual, Row, SystemTerm
+from evodesign.posture.terms.base import (
+    UNDISTURBED,
+    Bound,
+    Coupled,
+    MeasuredSystem,
+    Residual,
+    Row,
+    SystemTerm,
+    both_ways,
+)
 from evodesign.tree.kinematics import Expression, vector
 
-__all__ = ["LOAD", "LOAD_UNIT", "PUSH", "any_load", "force_along_x", "turned_to_world"]
+__all__ = ["INTERNAL_FORCE", "LOAD", "LOAD_UNIT", "PUSH", "any_load", "force_along_x", "turned_to_world"]
 
 PUSH = "load.push"
 """Name of the row that bounds the internal force."""
+
+INTERNAL_FORCE = "internal force"
+"""What its bound is called."""
 
 LOAD_UNIT = 10.0  # [N] and [N m] per unit of the load's balance rows
 
@@ -76,15 +88,19 @@ def rows(coupled: Coupled) -> Iterator[Row]:
     limit = scene.stance.push / LOAD_UNIT
     balance = ("load.force_balance", "load.moment_balance")
     yield Row("load.balance", unbalanced / LOAD_UNIT, 0.0, 0.0, balance, LOAD_UNIT)
-    row = internal / LOAD_UNIT
-    yield Row(PUSH, row, -limit, limit, (PUSH,), LOAD_UNIT, LimitGroup.STANCE)
+    most = Bound(INTERNAL_FORCE, scene.stance.push, "N", True, 1.0 / LOAD_UNIT, "limits.push_n")
+    apart, together = both_ways(most)
+    row = Row(PUSH, internal / LOAD_UNIT, -limit, limit, (PUSH,), LOAD_UNIT, LimitGroup.STANCE)
+    yield replace(row, least=(apart,), most=(together,))
     whole = -force[2]
     if scene.robot_share is not None:
         missing = (carried - scene.robot_share * whole) / LOAD_UNIT
         yield Row("load.share", missing, 0.0, 0.0, ("load.share",), LOAD_UNIT)
     elif scene.payload.grasp is Grasp.RIGID:
-        parts = ca.vertcat(carried, whole - carried) / LOAD_UNIT
-        yield Row("load.share", parts, 0.0, np.inf, ("load.share",), LOAD_UNIT)
+        parts, share = ca.vertcat(carried, whole - carried) / LOAD_UNIT, "robot's share of the load"
+        per_share = whole / LOAD_UNIT
+        ends = Bound(share, 0.0, "1", False, per_share), Bound(share, 1.0, "1", True, -per_share)
+        yield Row("load.share", parts, 0.0, np.inf, ("load.share",), LOAD_UNIT, least=ends)
 
 
 def _disturbed(scene: Scene, disturbance: Disturbance) -> Scene:

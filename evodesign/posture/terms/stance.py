@@ -7,13 +7,14 @@ load.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.scene import SIDES, Scene
 from evodesign.posture.limit_groups import LimitGroup
-from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
+from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row, both_ways
 
 __all__ = ["STANCE"]
 
@@ -24,17 +25,31 @@ def rows(body: Body) -> Iterator[Row]:
     soles = [body.poses[form.agent.soles[side]].position for side in form.sides]
     if form.trunk:
         trunk = ca.vertcat(*[body.poses[frame].position[0] for frame in form.trunk])
-        yield _row("trunk_clear", trunk, -np.inf, _nearest(body.scene), form.trunk)
+        key, clear = "limits.trunk_clearance_m", stance.trunk_clearance
+        bounds = [Bound("trunk clearance", clear, "m", False, -1.0, key, frame) for frame in form.trunk]
+        row = _row("trunk_clear", trunk, -np.inf, _nearest(body.scene), most=tuple(bounds))
+        yield replace(row, labels=form.trunk)
+    (least, most), name, key = stance.feet_apart, "feet apart", "limits.feet_apart_m"
+    ends = Bound(name, least, "m", False, key=key), Bound(name, most, "m", True, key=key)
     if form.sides != SIDES:  # the right sole is the left one's mirror image
-        yield _row("feet_apart", 2.0 * soles[0][1], *stance.feet_apart)
+        yield _row("feet_apart", 2.0 * soles[0][1], least, most, ends[:1], ends[1:])
         return
-    yield _row("feet_apart", soles[0][1] - soles[1][1], *stance.feet_apart)
-    yield _row("feet_stagger", soles[0][0] - soles[1][0], -stance.feet_stagger, stance.feet_stagger)
+    yield _row("feet_apart", soles[0][1] - soles[1][1], least, most, ends[:1], ends[1:])
+    most = stance.feet_stagger
+    back, forth = both_ways(Bound("feet stagger", most, "m", True, key="limits.feet_stagger_m"))
+    yield _row("feet_stagger", soles[0][0] - soles[1][0], -most, most, (back,), (forth,))
 
 
-def _row(name: str, expression: object, lower: float, upper: float, labels: tuple[str, ...] = ()) -> Row:
-    group = LimitGroup.STANCE
-    return Row(name, expression, lower, upper, (name,), group=group, posture_only=True, labels=labels)
+def _row(
+    name: str,
+    expression: object,
+    lower: float,
+    upper: float,
+    least: tuple[Bound, ...] = (),
+    most: tuple[Bound, ...] = (),
+) -> Row:
+    group, found = LimitGroup.STANCE, (name,)
+    return Row(name, expression, lower, upper, found, group=group, posture_only=True, least=least, most=most)
 
 
 def _nearest(scene: Scene) -> float:

@@ -13,6 +13,7 @@ Source: Sartore et al. 2022, Eq. 14 b and Eq. 5 at rest; docs/model.md.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -30,11 +31,13 @@ from evodesign.posture.terms.base import (
     TORQUE_UNIT,
     Body,
     BodyTerm,
+    Bound,
     Expression,
     MeasuredBody,
     Residual,
     Row,
     Unknown,
+    both_ways,
 )
 from evodesign.posture.terms.load import turned_to_world
 from evodesign.tree.equip import rated_torques
@@ -46,6 +49,9 @@ Array = NDArray[np.float64]
 
 LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit
 
+LIMITS_KEY = "robot.torque_limits_n_m"
+"""Where a problem file has torque limits in place of the URDF's."""
+
 
 def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
     """The torques of the form's joints [N m]; a pair exerts what its weaker joint can."""
@@ -56,7 +62,13 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
         for name in form.joints
     ]
     least, rest = [-x for x in most], [0.0] * len(most)
-    yield Unknown("torques", least, most, rest, TORQUE_UNIT, labels=form.joints)
+    pairs_of_bounds = [
+        both_ways(Bound("torque limit", limit, "N m", True, key=LIMITS_KEY, part=form.words_of(name)))
+        for name, limit in zip(form.joints, most, strict=True)
+    ]
+    below, above = zip(*pairs_of_bounds, strict=True)
+    asked = Unknown("torques", least, most, rest, TORQUE_UNIT, labels=form.joints)
+    yield replace(asked, least=below, most=above)
 
 
 def effort(body: Body) -> Expression:
@@ -82,15 +94,20 @@ def rows(body: Body) -> Iterator[Row]:
 
 def _within_rated(body: Body) -> Iterator[Row]:
     """Torques within what the design's actuators can hold for ever."""
-    rated = rated_torques(body.part)
+    rated, form = rated_torques(body.part), body.form
     shares = {
         joint: body.values["torques"][place] / rated[joint]
-        for place, joint in enumerate(body.form.joints)
+        for place, joint in enumerate(form.joints)
         if joint in rated
     }
     if shares:
         within = ca.vertcat(*shares.values())
-        yield Row("rated_torques", within, -1.0, 1.0, ("torque_limits",), labels=tuple(shares))
+        bounds = tuple(
+            Bound("rated torque", rated[joint], "N m", True, share / rated[joint], part=form.words_of(joint))
+            for joint, share in shares.items()
+        )
+        row = Row("rated_torques", within, -1.0, 1.0, ("torque_limits",), labels=tuple(shares))
+        yield replace(row, least=bounds, most=bounds)
 
 
 def _contacts(body: Body) -> Iterator[AppliedWrench]:
