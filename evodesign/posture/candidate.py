@@ -43,12 +43,14 @@ class Candidate:
         instants: its postures; none unless the solver succeeded.
         residuals: what the check found.
         raw: the solve; the robot's, where the person's is another one.
+        person: the person's solve where it is another one.
     """
 
     attempt: Attempt
     instants: tuple[Instant, ...]
     residuals: tuple[Residual, ...]
     raw: RawSolution
+    person: RawSolution | None = None
 
     @property
     def solved(self) -> bool:
@@ -183,4 +185,5 @@ def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:
         attempts=attempts,
         attempt=best.attempt,
         raw=best.raw,
+        person=best.person,
     )

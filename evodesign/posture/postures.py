@@ -27,7 +27,7 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.records import Status
+from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Task, TaskRecord
 
 __all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "WORTH", "PostureProblem", "Symmetry"]
@@ -189,6 +189,14 @@ class PostureProblem:
         name, task = solution.attempt.formulation, solution.case.task
         formulation = self._formulation(name, task, self._methods(name)[0])
         return formulation.derivative(design, solution, exact=exact)
+
+    def active_limits(self, design: Sequence[float], solution: CaseSolution) -> tuple[ActiveLimit, ...]:
+        """Which limits hold a solved posture, and what they cost; none where nobody knows."""
+        if solution.attempt is None:
+            return ()
+        name, task = solution.attempt.formulation, solution.case.task
+        formulation = self._formulation(name, task, self._methods(name)[0])
+        return formulation.active_limits(design, solution)
 
     def landscape(
         self, task: Task, checker_of: Callable[[Sequence[float]], Checker] | None = None

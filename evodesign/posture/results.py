@@ -111,6 +111,7 @@ class CaseSolution:
         attempts: every start tried, in order.
         attempt: that led to the postures; None unless solved.
         raw: the solve that gave the instants; the robot's, where the person's is another one.
+        person: the person's solve where it is another one.
     """
 
     case: Case
@@ -121,6 +122,7 @@ class CaseSolution:
     attempts: tuple[Attempt, ...] = ()
     attempt: Attempt | None = None
     raw: RawSolution | None = None
+    person: RawSolution | None = None
 
     @property
     def solved(self) -> bool:

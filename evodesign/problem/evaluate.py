@@ -27,12 +27,14 @@ from evodesign.problem.judge import is_judged
 from evodesign.problem.objectives import objective_values
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import (
+    ActiveLimit,
     AgentDetail,
     Assessed,
     Assessment,
     CaseDetail,
     CaseOutcome,
     Genome,
+    Hold,
     InstantDetail,
     LoadCaseDetail,
     ProblemSource,
@@ -111,8 +113,20 @@ class Evaluator:
         return self._assessed(values, self.solve(values))
 
     def _assessed(self, values: Sequence[float], result: DesignResult) -> Assessed:
-        details = tuple(detail_of(solution) for solution in result.cases if solution.solved)
-        return Assessed(assessment=self.assessment(values, result), cases=details)
+        return Assessed(assessment=self.assessment(values, result), cases=self.details(result))
+
+    def details(self, result: DesignResult) -> tuple[CaseDetail, ...]:
+        """The postures of a design's solved cases, with the limits that hold them."""
+        return tuple(
+            detail_of(solution, self._active_limits(result, solution))
+            for solution in result.cases
+            if solution.solved
+        )
+
+    def _active_limits(self, result: DesignResult, solution: CaseSolution) -> tuple[ActiveLimit, ...]:
+        if not isinstance(solution.case.task, Hold):
+            return ()
+        return self.inner.postures[solution.case.pair].active_limits(result.program_values, solution)
 
     def assessment(self, values: Sequence[float], result: DesignResult) -> Assessment:
         """A design's results in short, as they are logged."""
@@ -184,9 +198,15 @@ def case_outcome(solution: CaseSolution, *, native: bool = False) -> CaseOutcome
     )
 
 
-def detail_of(solution: CaseSolution) -> CaseDetail:
-    """The postures of a case, as they are logged."""
-    return CaseDetail(case=solution.case, instants=tuple(map(_instant_detail, solution.instants)))
+def detail_of(solution: CaseSolution, limits: tuple[ActiveLimit, ...] = ()) -> CaseDetail:
+    """The postures of a case, as they are logged.
+
+    Args:
+        solution: of the case.
+        limits: that hold the postures.
+    """
+    instants = tuple(map(_instant_detail, solution.instants))
+    return CaseDetail(case=solution.case, instants=instants, limits=limits)
 
 
 def _instant_detail(instant: Instant) -> InstantDetail:

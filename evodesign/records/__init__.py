@@ -32,7 +32,14 @@ from evodesign.records.parameters import (
     materials_of,
     middle_of,
 )
-from evodesign.records.postures import AgentDetail, CaseDetail, InstantDetail, LoadCaseDetail, evenly
+from evodesign.records.postures import (
+    ActiveLimit,
+    AgentDetail,
+    CaseDetail,
+    InstantDetail,
+    LoadCaseDetail,
+    evenly,
+)
 from evodesign.records.runs import (
     FORMAT_VERSION,
     SUM,
@@ -48,6 +55,7 @@ __all__ = [
     "FORMAT_VERSION",
     "NO_SECONDS",
     "SUM",
+    "ActiveLimit",
     "AgentDetail",
     "Assessed",
     "Assessment",

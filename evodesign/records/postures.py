@@ -60,11 +60,70 @@ def evenly(count: int, most: int) -> tuple[int, ...]:
     return tuple(dict.fromkeys(round((count - 1) * share / (most - 1)) for share in range(most)))
 
 
-class CaseDetail(Record, frozen=True):
-    """The postures of an undisturbed case that was solved: one instant of a hold, many of a lift."""
+STEPS = {"m": (0.01, "cm"), "rad": (math.pi / 180.0, "degree"), "1": (0.01, "0.01")}
+"""By unit, a small change of a limit, and what it is called; of other units it is one."""
+
+PLURALS = {"degree": "degrees"}
+
+
+class ActiveLimit(Record, frozen=True):
+    """A limit that holds the postures of a case where they are, and what it costs.
+
+    Attributes:
+        name: what is limited, in words, such as `feet apart`.
+        value: of the limit, in `unit`: `m`, `rad`, `N`, `N m` or `1`; empty where a term does not say.
+        price_n_m: derivative of the case's effort by the value [N m per unit] (`posture.active_limits`):
+            negative where a larger value saves effort.
+        at_most: whether the value is the most that is allowed; otherwise the least.
+        agent: whose limit it is; empty for one of robot, person and load together.
+        part: joints or bodies that it is about; of a mirrored pair both, whose price is that of both.
+        key: where the problem file has it, if it does.
+    """
+
+    name: str
+    value: float
+    unit: str
+    price_n_m: float
+    at_most: bool = False
+    agent: str = ""
+    part: str = ""
+    key: str = ""
+
+    @property
+    def step(self) -> tuple[float, str]:
+        """A small change of the value, and what it is called, such as `cm`."""
+        return STEPS.get(self.unit, (1.0, self.unit or "unit"))
+
+    @property
+    def change_n_m(self) -> float:
+        """By how much the effort changes with such a step more [N m], to first order."""
+        return self.price_n_m * self.step[0]
+
+    @property
+    def words(self) -> str:
+        """What is limited, and at which value, such as `feet apart, at most 50 cm`."""
+        size, unit = self.step
+        whole = (
+            f"{self.value:.3g}" if self.unit == "1" else f"{self.value / size:.3g} {PLURALS.get(unit, unit)}"
+        )
+        whose = f"{self.name} of {self.part}" if self.part else self.name
+        return f"{whose}, at {'most' if self.at_most else 'least'} {whole}"
+
+    @property
+    def identity(self) -> tuple[str, str, str, bool]:
+        """What tells it from the other limits of a case."""
+        return self.agent, self.name, self.part, self.at_most
+
+
+class CaseDetail(Record, frozen=True, omit_defaults=True):
+    """The postures of an undisturbed case that was solved: one instant of a hold, many of a lift.
+
+    `limits` are those that hold the postures, the most expensive first; a lift has none.
+    """
 
     case: Case
     instants: tuple[InstantDetail, ...]
+    limits: tuple[ActiveLimit, ...] = ()
 
     @property
     def agents(self) -> dict[str, AgentDetail]:
@@ -94,7 +153,9 @@ class CaseDetail(Record, frozen=True):
     @property
     def moments(self) -> tuple[CaseDetail, ...]:
         """Its instants, each for itself."""
-        return tuple(CaseDetail(case=self.case, instants=(instant,)) for instant in self.instants)
+        return tuple(
+            CaseDetail(case=self.case, instants=(instant,), limits=self.limits) for instant in self.instants
+        )
 
     @property
     def hardest(self) -> CaseDetail:
@@ -104,7 +165,8 @@ class CaseDetail(Record, frozen=True):
     def thinned(self, most: int) -> CaseDetail:
         """The same with so many instants at most: both ends, and what lies evenly between."""
         places = evenly(len(self.instants), most)
-        return CaseDetail(case=self.case, instants=tuple(self.instants[place] for place in places))
+        kept = tuple(self.instants[place] for place in places)
+        return CaseDetail(case=self.case, instants=kept, limits=self.limits)
 
     @property
     def few_moments(self) -> tuple[CaseDetail, ...]:

@@ -23,7 +23,7 @@ from evodesign.posture.candidate import Trial
 from evodesign.posture.check import Checker
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
-from evodesign.records import Task
+from evodesign.records import ActiveLimit, Task
 
 __all__ = ["NO_PART_OF_PROGRAMS", "Formulation", "Setting", "program_key"]
 
@@ -93,6 +93,9 @@ class Formulation(Protocol):
         self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
     ) -> PostureDerivative | NotDifferentiable:
         """How a solution that this formulation found moves with the design (`SolutionSensitivity.at`)."""
+
+    def active_limits(self, design: Sequence[float], solution: CaseSolution) -> tuple[ActiveLimit, ...]:
+        """Which limits hold a solution that this formulation found, and what they cost."""
 
 
 def program_key(formulation: str, *parts: object) -> str:

@@ -22,7 +22,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.nlp.landscape import NEAR, Landscape
@@ -30,6 +29,7 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Array, Program, Start
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity, no_limits
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
+from evodesign.posture.active_limits import LimitSlopes, merge, priced
 from evodesign.posture.assemble import CaseSymbols, Embodied, Slot, assemble, free_hands_beside, total
 from evodesign.posture.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.check import Checker, Unchecked
@@ -45,10 +45,10 @@ from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.load import PUSH, any_load, force_along_x
+from evodesign.posture.terms.load import INTERNAL_FORCE, PUSH, any_load, force_along_x
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import Layout, instants_of, layout_of, start_from
-from evodesign.records import Status, Task, worst_status
+from evodesign.records import ActiveLimit, Status, Task, worst_status
 
 __all__ = ["DecoupledPostures", "robot_program"]
 
@@ -96,12 +96,20 @@ class DecoupledPostures:
         return {**layout_of(self._robot.program, ROBOT), **layout_of(self._human.program, HUMAN)}
 
     @cached_property
+    def _left_hand(self) -> str:
+        return _left_hand(self._robot.program)
+
+    @cached_property
     def _fixed(self) -> tuple[Start, ...]:
         return fixed_starts(self._robot.program)
 
     @cached_property
     def _sensitivities(self) -> tuple[SolutionSensitivity, SolutionSensitivity]:
         return SolutionSensitivity(self._robot), SolutionSensitivity(self._human.solver)
+
+    @cached_property
+    def _limit_slopes(self) -> tuple[LimitSlopes, LimitSlopes]:
+        return LimitSlopes(self._robot.program), LimitSlopes(self._human.program)
 
     def _robot_program(self) -> Program:
         return robot_program(self._forms[0], self._setting)
@@ -184,7 +192,7 @@ class DecoupledPostures:
                 return Candidate(checked(self.name, start, both, ()), (), (), robot)
             instants = instants_of(self._layout, self._forms, self._setting.scene, both.values)
             residuals = checker.task_residuals(instants, task.heights)
-            return Candidate(checked(self.name, start, both, residuals), instants, residuals, robot)
+            return Candidate(checked(self.name, start, both, residuals), instants, residuals, robot, human)
 
         finishing = Finishing(
             lambda raw: self._robot.settled(parameters, raw),
@@ -194,7 +202,7 @@ class DecoupledPostures:
         return cheapest(self.name, ends, finishing)
 
     def _internal_force(self, robot: RawSolution) -> float:
-        hand = robot.values[_left_hand(self._robot.program)]
+        hand = robot.values[self._left_hand]
         force, limit = float(self._force(hand)), self._setting.scene.stance.push
         return float(np.copysign(limit, force)) if abs(force) > limit - AT_LIMIT else force
 
@@ -218,8 +226,7 @@ class DecoupledPostures:
         if isinstance(person, NotDifferentiable):
             return person
         human = person.along("internal_force", change[None, :])
-        expected = Chebyshev(value.coefficients, domain=[-value.push, value.push])
-        surprise = -float(expected.deriv()(internal)) * change
+        surprise = -value.slope(internal) * change
         derivative = PostureDerivative(
             layout={**layout_of(robots.program, ROBOT), **layout_of(humans.program, HUMAN)},
             forms=self._forms,
@@ -227,12 +234,31 @@ class DecoupledPostures:
             times=solution.case.task.times,
             values={**robot.values, **human.values},
             slopes={**robot.slopes, **human.slopes},
-            cost=robot.cost - float(expected(internal)) + human.cost,
+            cost=robot.cost - float(value.cost(internal)) + human.cost,
             cost_slope=robot.cost_slope + human.cost_slope + surprise,
             compared=robot.cost,
             limits=robot.limits + human.limits,
         )
         return found_again(derivative, solution)
+
+    def active_limits(self, design: Sequence[float], solution: CaseSolution) -> tuple[ActiveLimit, ...]:
+        """Which limits hold a posture that this pair of programs found, and what they cost.
+
+        At the largest internal force its limit costs what it costs the robot, who knows V'(X), and what the
+        person's own slope differs from that.
+        """
+        if solution.raw is None or solution.person is None or solution.attempt is None:
+            return ()
+        (robots, humans), task = self._limit_slopes, solution.case.task
+        value, internal = self._values[task], self._internal_force(solution.raw)
+        robot = robots.of({"design": design, **self._beside(task)}, solution.raw)
+        human = humans.of(self._human.parameters(task.heights[0], internal), solution.person)
+        surprise = float(solution.person.cost_slope[self._human.program.columns["internal_force"]][0])
+        surprise -= value.slope(internal)
+        for bound, force, _ in [*robot.values()]:
+            if bound.name == INTERNAL_FORCE:
+                merge(robot, bound, force, surprise * float(np.sign(internal)))
+        return priced([robot, human], solution.attempt.cost)
 
     def _person(
         self, solution: CaseSolution, internal: float, *, held: bool, exact: bool

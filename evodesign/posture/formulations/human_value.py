@@ -22,6 +22,7 @@ import casadi as ca
 import msgspec
 import numpy as np
 from numpy.polynomial import Chebyshev
+from numpy.polynomial.chebyshev import chebder, chebval
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.program import Array, ConstraintBlock, Program
@@ -77,6 +78,10 @@ class HumanValue(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename
         """V at a push X [N], a number or an expression."""
         return chebyshev_sum(self.coefficients, push / self.push)
 
+    def slope(self, push: float) -> float:
+        """Derivative of V at a push X [N]."""
+        return float(chebval(push / self.push, chebder(self.coefficients))) / self.push
+
     def nearest(self, push: float) -> list[Mapping[str, Array]]:
         """Starting values, those from the node nearest to a push [N] first."""
         return [start for _, start in sorted(self.starts, key=lambda start: abs(start[0] - push))]
@@ -116,7 +121,8 @@ class HumanProblem:
         """What is solved."""
         return self.solver.program
 
-    def _parameters(self, height: float, push: float) -> Mapping[str, float]:
+    def parameters(self, height: float, push: float) -> Mapping[str, float]:
+        """The program's, for a height [m] and a push [N]."""
         return {"height": height, "mass": self._mass, "internal_force": push}
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
@@ -124,7 +130,7 @@ class HumanProblem:
         return self._settled(self.solver, height, push, start)
 
     def _settled(self, solver: Solver, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
-        parameters = self._parameters(height, push)
+        parameters = self.parameters(height, push)
         return self.solver.settled(parameters, solver.solve(parameters, start))
 
     def best(self, height: float, push: float, value: HumanValue) -> RawSolution:

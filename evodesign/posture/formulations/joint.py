@@ -28,6 +28,7 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache, after
+from evodesign.posture.active_limits import LimitSlopes, priced
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
 from evodesign.posture.candidate import DISTINCT, Candidate, Finishing, Trial, cheapest, checked
@@ -43,7 +44,7 @@ from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, instants_of, layout_of, start_from
-from evodesign.records import Status
+from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Hold, Task, TaskRecord
 
 __all__ = ["JointPostures", "posture_program"]
@@ -123,6 +124,10 @@ class JointPostures:
     @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
         return SolutionSensitivity(self._solver)
+
+    @cached_property
+    def _limit_slopes(self) -> LimitSlopes:
+        return LimitSlopes(self._solver.program)
 
     def _program(self) -> Program:
         return posture_program(self._forms, self._setting, self._kind)
@@ -226,6 +231,13 @@ class JointPostures:
             limits=own.limits,
         )
         return found_again(derivative, solution)
+
+    def active_limits(self, design: Sequence[float], solution: CaseSolution) -> tuple[ActiveLimit, ...]:
+        """Which limits hold a posture that this program found, and what they cost."""
+        if solution.raw is None:
+            return ()
+        parameters = {"design": design, **self._beside(solution.case.task)}
+        return priced([self._limit_slopes.of(parameters, solution.raw)], solution.raw.cost)
 
     def _instants(self, raw: RawSolution, task: Task) -> tuple[Instant, ...]:
         layout, scene = layout_of(self._solver.program), self._setting.scene

@@ -1,0 +1,55 @@
+"""Prices of limits are what other numbers in the file save: the default problem, and a G1 from `init`."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from evodesign.problem.build import build_problem
+from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.factory import evaluator_of
+from evodesign.problem.guess.problem_text import guessed_problem
+from evodesign.problem.source import read_source, source_of
+from evodesign.records import CaseDetail
+from evodesign.tree.urdf_read import InertiaRule, read_urdf
+from tests.posture.resolved import prices, slope, with_number
+from tests.robots import HUMANOIDS
+
+WITHIN = 0.01
+
+QUICK = {"start_portfolio": False, "compile": False}
+
+
+def check_prices(evaluator: Evaluator, wanted: int) -> None:
+    """That all numbers of the file that hold the unscaled robot's first cases cost what a change saves."""
+    problem = evaluator.problem
+    result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
+    values = result.program_values
+    details: dict[object, CaseDetail] = {detail.case: detail for detail in evaluator.details(result)}
+    solved = [solution for solution in result.cases if solution.solved]
+    assert len(solved) >= wanted
+    for solution in solved[-wanted:]:
+        active = prices(details[solution.case].limits)
+        assert active
+        for number, (price, step) in active.items():
+            found = slope(evaluator, partial(with_number, problem, number), step, values, solution)
+            assert price == pytest.approx(found, rel=WITHIN), (solution.case.name, number)
+
+
+@pytest.mark.slow
+def test_prices_of_the_default_problem_agree_with_differences(repository: Path) -> None:
+    """With sized actuators, which keep their sizes, a disturbance, and bodies that keep apart."""
+    check_prices(
+        evaluator_of(build_problem(read_source(repository / "problems" / "icub_lifting.toml")), 2), 3
+    )
+
+
+@pytest.mark.needs_robots
+def test_prices_of_a_g1_agree_with_differences() -> None:
+    urdf = HUMANOIDS["g1"]
+    tree = read_urdf(urdf.read_text(encoding="utf-8"), str(urdf), InertiaRule.AUTO)
+    tables = tomllib.loads(guessed_problem(tree, str(urdf)).text) | {"solver": QUICK}
+    check_prices(Evaluator(build_problem(source_of(tables))), 2)
