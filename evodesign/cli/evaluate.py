@@ -52,10 +52,11 @@ def evaluate(
     result = evaluator.solve(values)
     assessment = evaluator.assessment(values, result)
     sensitivities = Sensitivities(built, evaluator.known).at(values, result).sensitivities()
+    solved = evaluator.details(result)
     if json:
-        print_json(evaluation_json(built, values, result, assessment, sensitivities))
+        print_json(evaluation_json(built, values, result, assessment, sensitivities, solved))
         return
-    for table in design_tables(built, chosen, result, assessment, sensitivities):
+    for table in design_tables(built, chosen, result, assessment, sensitivities, solved):
         console().print(table)
     show_notes(overlaps(solved_distances(result).items()))
 

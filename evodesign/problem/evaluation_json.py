@@ -19,6 +19,11 @@ they are apart, negative where they overlap:
 
     {"bodies": ["robot l_foot", "robot r_foot"], "distance_m": -0.01}
 
+`limits` lists the limits that hold a posture, with what each costs [N m per unit] (`posture.active_limits`):
+
+    {"name": "feet apart", "value": 0.5, "unit": "m", "price_n_m": -3.9, "at_most": true, "agent": "robot",
+     "part": "", "key": "limits.feet_apart_m"}
+
 Where the problem has disturbances, a solved case's `disturbed` holds, by their names, torques and wrenches
 of the same posture under each. Residuals of such a case carry its name.
 
@@ -54,9 +59,8 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import distance_json, solved_distances
 from evodesign.problem.design_result import DesignResult
 from evodesign.problem.ergonomics import ergonomics, ergonomics_json
-from evodesign.problem.evaluate import detail_of
 from evodesign.problem.sensitivities import ObjectiveSensitivity
-from evodesign.records import Assessment, Hold, materials_of, task_names
+from evodesign.records import Assessment, CaseDetail, Hold, materials_of, task_names
 from evodesign.violations import constraints_json
 
 __all__ = ["evaluation_json"]
@@ -68,14 +72,27 @@ def evaluation_json(
     result: DesignResult,
     assessment: Assessment,
     sensitivities: Mapping[str, ObjectiveSensitivity],
+    details: Sequence[CaseDetail],
 ) -> dict[str, Any]:
-    """The JSON object of one design."""
+    """The JSON object of one design.
+
+    Args:
+        problem: whose design it is.
+        values: one number per parameter.
+        result: of its evaluation.
+        assessment: the same in short.
+        sensitivities: of its objectives and constrained quantities.
+        details: the postures of its solved cases, with the limits that hold them.
+    """
     design = dict(problem.space.named(values))
     materials = materials_of(problem.space.records, design)
     gaps = solved_distances(result)
-    details = [detail_of(solution) for solution in result.cases if solution.solved]
+    by_case = {detail.case: detail for detail in details}
     bill = bill_of_materials(problem, result.tree, details)
-    shown = [_shown(solution, result, gaps.get(solution.case)) for solution in result.cases]
+    shown = [
+        _shown(solution, result, gaps.get(solution.case), by_case.get(solution.case))
+        for solution in result.cases
+    ]
     return {
         "problem": problem.name,
         "design": design,
@@ -108,7 +125,9 @@ def evaluation_json(
     }
 
 
-def _shown(solution: CaseSolution, result: DesignResult, gap: BodyDistance | None) -> dict[str, Any]:
+def _shown(
+    solution: CaseSolution, result: DesignResult, gap: BodyDistance | None, detail: CaseDetail | None
+) -> dict[str, Any]:
     """All of a case but its name."""
     shown: dict[str, Any] = {
         "status": str(solution.status),
@@ -116,9 +135,10 @@ def _shown(solution: CaseSolution, result: DesignResult, gap: BodyDistance | Non
         "start": solution.attempt.name if solution.attempt else "",
         "solver": _solver(solution),
     }
-    if solution.solved:
+    if detail is not None:
         if isinstance(solution.case.task, Hold):
             shown |= _instant(solution.instants[0])
+            shown["limits"] = msgspec.to_builtins(detail.limits)
         else:
             shown["instants"] = [
                 {"time_s": each.time, "load_height_m": each.height, **_instant(each)}
@@ -127,7 +147,7 @@ def _shown(solution: CaseSolution, result: DesignResult, gap: BodyDistance | Non
         shown["residuals"] = dict(solution.residuals)
         if gap is not None:
             shown["clearance"] = distance_json(gap)
-        person, posture = result.scene_of(solution.case).human, detail_of(solution).hardest.agents[HUMAN]
+        person, posture = result.scene_of(solution.case).human, detail.hardest.agents[HUMAN]
         shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
     return shown
 

@@ -273,11 +273,12 @@ def test_evaluate_tells_constraints_in_json_and_tables(lights: Evaluator) -> Non
     values = problem.space.unscaled(problem.scene.robot.tree)
     result = lights.solve(values)
     assessment = lights.assessment(values, result)
-    told = evaluation_json(problem, values, result, assessment, {})
+    solved = lights.details(result)
+    told = evaluation_json(problem, values, result, assessment, {}, solved)
     mass, reach = (assessment.constrained[name] for name in ("mass", "reach_height"))
     assert [(each["value"], each["violation"]) for each in told["constraints"]] == [(mass, 0.0), (reach, 0.0)]
     shown = io.StringIO()
-    for table in design_tables(problem, "unscaled", result, assessment, {}):
+    for table in design_tables(problem, "unscaled", result, assessment, {}, solved):
         Console(file=shown, width=120).print(table)
     assert f"│ {mass:.4g} │" in shown.getvalue()
     assert "at least 1.35 m" in shown.getvalue()

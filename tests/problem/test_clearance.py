@@ -84,7 +84,8 @@ def test_overlapping_bodies_are_told_with_how_deep_they_are(
 def test_evaluate_tells_the_nearest_bodies_of_each_case(problem: DesignProblem, free: DesignResult) -> None:
     evaluator = Evaluator(problem)
     values = problem.space.unscaled(problem.scene.robot.tree)
-    told = evaluation_json(problem, values, free, evaluator.assessment(values, free), {})
+    assessment, solved = evaluator.assessment(values, free), evaluator.details(free)
+    told = evaluation_json(problem, values, free, assessment, {}, solved)
     distances = solved_distances(free)
     assert len(distances) == len(told["cases"])
     for case, found in zip(told["cases"], distances.values(), strict=True):

@@ -165,7 +165,8 @@ def test_records_hold_the_load_cases_and_nothing_where_there_are_none(result: De
 def test_the_result_shows_torques_and_wrenches_of_every_case(
     shaken: DesignProblem, exact: Evaluator, values: tuple[float, ...], result: DesignResult
 ) -> None:
-    whole = evaluation_json(shaken, values, result, exact.assessment(values, result), {})
+    assessment, solved = exact.assessment(values, result), exact.details(result)
+    whole = evaluation_json(shaken, values, result, assessment, {}, solved)
     (told,), (case,) = whole["heights"], whole["cases"]
     names = {"person": "", "payload": "", "task": {"kind": "hold", "height_m": told["height_m"]}}
     assert case | {"height_m": told["height_m"]} == told | names

@@ -13,6 +13,8 @@ from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
+from evodesign.cli.tables.limits import TITLE as TITLE_OF_LIMITS
+from evodesign.cli.tables.limits import limits_table
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
@@ -62,6 +64,8 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, A
     elif moments:
         sections["largest joint torques [N m]"] = torques_by_height(moments)
         sections["contact forces [N]"] = forces_by_height(moments)
+    if any(detail.limits for detail in opened.cases):
+        sections[TITLE_OF_LIMITS] = limits_table(opened.cases, "")
     if asked:
         cases = [*zip((detail.case for detail in opened.cases), asked, strict=True)]
         sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)

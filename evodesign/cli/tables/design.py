@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from rich.markup import escape
 
@@ -10,6 +10,7 @@ from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
+from evodesign.cli.tables.limits import TITLE, limits_table
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.mechanics.scene import HUMAN
@@ -19,7 +20,7 @@ from evodesign.problem.design_result import DesignResult
 from evodesign.problem.ergonomics import ergonomics
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.sensitivities import ObjectiveSensitivity
-from evodesign.records import Assessment
+from evodesign.records import Assessment, CaseDetail
 
 __all__ = ["design_tables"]
 
@@ -33,14 +34,25 @@ def design_tables(
     result: DesignResult,
     assessment: Assessment,
     sensitivities: Mapping[str, ObjectiveSensitivity],
+    solved: Sequence[CaseDetail],
 ) -> Iterator[FittedTable]:
-    """One design: its results, what they ask of the people, and what would change them."""
+    """One design: its results, what they ask of the people, and what would change them.
+
+    Args:
+        problem: whose design it is.
+        name: of the design.
+        result: of its evaluation.
+        assessment: the same in short.
+        sensitivities: of its objectives and constrained quantities.
+        solved: the postures of its solved cases, with the limits that hold them.
+    """
     yield from _assessment_tables(problem, name, result, assessment)
-    solved = [detail_of(solution) for solution in result.cases if solution.solved]
     if bill := bill_of_materials(problem, result.tree, solved):
         yield actuators_table(bill, mass_title(bill))
     if solved:
         yield _people_table(result)
+    if any(each.limits for each in solved):
+        yield limits_table(solved, TITLE)
     if sensitivities:
         yield _sensitivity_table(problem, sensitivities)
 

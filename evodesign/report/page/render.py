@@ -49,6 +49,7 @@ SCRIPTS = (
     "motion.js",
     "ingredients.js",
     "hardware.js",
+    "limits.js",
     "reach.js",
     "downloads.js",
     "card.js",

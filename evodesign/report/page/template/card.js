@@ -112,6 +112,7 @@ const drawWithPostures = (row, design) => {
   const torques = torqueSection(state.selected, design);
   const motion = motionSection(design);
   const cases = caseSection(design);
+  const limits = limitSection(design);
   const wrenches = element("div");
   const mass = massOf(treeOf("robot", design));
   fillCard([
@@ -123,6 +124,7 @@ const drawWithPostures = (row, design) => {
     fold("Parameters", `${parameters.length}`, parameterTable(row)),
     torques.section,
     motion?.section,
+    limits?.section,
     ...hardwareSections(design),
     fold("Masses", `robot ${figure(mass)} kg`, massTable(design)),
     fold("Contact wrenches", "", wrenches),
@@ -139,6 +141,7 @@ const drawWithPostures = (row, design) => {
     if (task !== taskTexts[state.height]) motion?.draw();
     task = taskTexts[state.height];
     cases?.draw();
+    limits?.draw();
     const posture = postureAt(design, shownCase());
     const missing = () =>
       element("p", { class: "plain", text: `No posture ${severalPairs ? "in this case" : "at this height"}.` });
