@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.growth import growth
 from evodesign.analysis.run_state import exhausted
 from evodesign.cli.front import print_front
@@ -25,6 +26,7 @@ def show_result(run: RunLog, *, json: bool) -> None:
         show_notes([f"ended after {len(run.evaluations)} of {run.header.budget} evaluations: {_why(run)}"])
     if known is not None:
         show_notes([known.sentence])
+    show_notes(each.sentence for each in frequent_limits(run))
     if json:
         print_front(run, json=True)
         return

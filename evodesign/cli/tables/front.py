@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
+from evodesign.analysis.active_limits import frequent_limits, limits_json
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.analysis.failures import causes, failures
 from evodesign.cli.output import printable
@@ -34,6 +35,7 @@ def front_json(run: RunLog, choice: Choice, chosen: Chosen) -> dict[str, Any]:
         "front": len(chosen.front),
         "order": choice.order,
         "where": [str(condition) for condition in choice.where],
+        "limits": limits_json(frequent_limits(run)),
         "statuses": Counter(str(evaluation.assessment.status) for evaluation in run.evaluations),
         "designs": [
             {

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from msgspec.structs import replace
 
+from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.families import families, families_json
 from evodesign.analysis.front import front
@@ -112,6 +113,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
             *_unscaled_note(run, problem, marked),
             *_thinned_note(run, shown),
             *more_notes,
+            *(each.sentence for each in frequent_limits(run)),
         ),
     )
 
