@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 import pytest
 
+from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
@@ -128,7 +129,7 @@ def test_what_is_left_out_is_said(
     monkeypatch.setattr(gather, "MOST_POSTURES", 1)
     monkeypatch.setattr(gather, "MOST_POINTS", 6)
     small = page_content(real_run)
-    assert content.notes == ()
+    assert content.notes == tuple(each.sentence for each in frequent_limits(real_run))
     assert any(note.startswith("6 of 12 evaluations") for note in small.notes)
     assert any("postures of" in note for note in small.notes)
     assert small.facts == content.facts, "the run's own figures count everything"
