@@ -57,7 +57,7 @@ def front(
 ) -> None:
     """The Pareto front of a run, or a choice of its designs."""
     from evodesign.analysis.active_limits import frequent_limits
-    from evodesign.cli.output import show_notes, write_text
+    from evodesign.cli.output import printable, show_notes, write_text
     from evodesign.runlog.run import read_run
 
     if json and csv:
@@ -68,7 +68,7 @@ def front(
         raise InputError(asked[0], "", "one way to choose", f"{' and '.join(asked[1:])} too")
     opened = read_run(run)
     choice = _choice(opened, asked, near, where or (), limit)
-    show_notes([*opened.notes, *(each.sentence for each in frequent_limits(opened))])
+    show_notes([*opened.notes, *(printable(each.sentence) for each in frequent_limits(opened))])
     if plot is not None:
         from evodesign.report.front_figure import front_html  # plotly takes its time to load
 

@@ -26,7 +26,7 @@ def show_result(run: RunLog, *, json: bool) -> None:
         show_notes([f"ended after {len(run.evaluations)} of {run.header.budget} evaluations: {_why(run)}"])
     if known is not None:
         show_notes([known.sentence])
-    show_notes(each.sentence for each in frequent_limits(run))
+    show_notes(printable(each.sentence) for each in frequent_limits(run))
     if json:
         print_front(run, json=True)
         return

@@ -46,7 +46,7 @@ def limits_table(cases: Sequence[CaseDetail], title: str) -> FittedTable:
         for identity in own:
             limit, found = known[identity], changes[identity]
             cells = [_text(change) for change in found] if few else _summary(found)
-            table.add_row(agent or "both", markup(limit.words), limit.step[1], *cells)
+            table.add_row(markup(agent or "both"), markup(limit.words), markup(limit.step[1]), *cells)
         table.add_section()
     return table
 

@@ -51,6 +51,8 @@ def test_many_cases_are_summed_up() -> None:
     ]  # fmt: skip
 
 
-def test_names_of_a_file_are_shown_as_they_stand() -> None:
+def test_names_of_a_file_are_shown_as_they_stand_and_control_characters_as_escapes() -> None:
+    lines = printed([case(0.8, limit("\x1b[2Jfeet", -5.0, "\x1brobot"))])
+    assert not any("\x1b" in line for line in lines)
     lines = printed([case(0.8, limit("joint range", -5.0, "robot", unit="rad", part="[red]arm"))])
     assert any("[red]arm" in line for line in lines)
