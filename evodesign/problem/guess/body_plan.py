@@ -9,27 +9,31 @@ heading    across the line between the hips; forward is from where a bent knee t
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from evodesign.body.placement import Placement, Vector
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import SIDES
 from evodesign.problem.file import Facing
+from evodesign.problem.guess.limbs import (
+    FEWEST_JOINTS,
+    Limb,
+    height_of,
+    limb_from,
+    limb_pairs,
+    lowest_of,
+    lowest_of_all,
+    mass_of,
+    shares_bodies,
+)
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
-__all__ = ["BodyPlan", "Limb", "body_plan"]
-
-FEWEST_JOINTS = 3
-"""Joints of a limb."""
-
-LOPSIDED = 0.02
-"""Largest distance of a limb's beginning from the mirror image of the other's [m]."""
+__all__ = ["BodyPlan", "body_plan"]
 
 SIGNIFICANT = 0.005
 """Distance [m] below which feet and knees say nothing of the heading."""
@@ -39,37 +43,6 @@ BEND = 0.5
 
 ONE_WAY = 1.3
 """How much larger a knee's range must be in one direction than in the other."""
-
-GRASPING = re.compile(r"finger|thumb|gripper|claw|jaw|palm_joint|index|middle|ring|pinky", re.IGNORECASE)
-"""Names of what is moved by a hand, and no part of an arm."""
-
-
-@dataclass(frozen=True, slots=True)
-class Limb:
-    """The bodies of a leg or an arm, from hip or shoulder to foot or hand."""
-
-    bodies: tuple[WeldedBody, ...]
-
-    @property
-    def joints(self) -> tuple[str, ...]:
-        """Names of the joints that move them."""
-        return tuple(body.joint.name for body in self.bodies if body.joint is not None)
-
-    @property
-    def end(self) -> WeldedBody:
-        """Foot or hand."""
-        return self.bodies[-1]
-
-    @property
-    def bend(self) -> int:
-        """Index of the body that knee or elbow moves: its joint is farthest from both ends."""
-        first, last = self.bodies[0].origin, self.end.inertia.center
-        return max(
-            range(1, len(self.bodies)),
-            key=lambda i: min(
-                math.dist(self.bodies[i].origin, first), math.dist(self.bodies[i].origin, last)
-            ),
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,92 +80,26 @@ def body_plan(tree: Tree) -> BodyPlan:
         ModelError: it has no two legs.
     """
     welded = WeldedTree(tree)
-    pairs = sorted(_pairs(welded), key=lambda pair: _lowest(welded, pair))
-    if not pairs or _lowest(welded, pairs[0]) > _lowest_of_all(welded) + 0.1 * _height(welded):
+    pairs = sorted(limb_pairs(welded), key=lambda pair: lowest_of(welded, pair))
+    if not pairs or lowest_of(welded, pairs[0]) > lowest_of_all(welded) + 0.1 * height_of(welded):
         wanted = f"two legs, mirror images of each other, of at least {FEWEST_JOINTS} joints to a lowest link"
         lowest = min(welded.bodies.values(), key=lambda body: body.inertia.center[2])
         raise ModelError(tree.name, "", wanted, f"none (the lowest link is '{lowest.name}')")
-    legs, others = pairs[0], [pair for pair in pairs[1:] if not _shares(welded, pair, pairs[0])]
-    if any(_lowest(welded, pair) < _lowest(welded, legs) + 0.1 * _height(welded) for pair in others):
+    legs, others = pairs[0], [pair for pair in pairs[1:] if not shares_bodies(welded, pair, pairs[0])]
+    if any(lowest_of(welded, pair) < lowest_of(welded, legs) + 0.1 * height_of(welded) for pair in others):
         raise ModelError(tree.name, "", "two legs", "four or more")
-    arms = max(others, key=lambda pair: _mass(welded, pair[0]), default=None)
-    leg_limbs = [_limb(welded, name, low=True) for name in legs]
+    arms = max(others, key=lambda pair: mass_of(welded, pair[0]), default=None)
+    leg_limbs = [limb_from(welded, name, low=True) for name in legs]
     facing, why = _facing(welded, leg_limbs)
     look = (facing or Facing.FORWARD).ahead
     return BodyPlan(
         welded,
         _by_side(leg_limbs, look),
-        {} if arms is None else _by_side([_limb(welded, name, low=False) for name in arms], look),
+        {} if arms is None else _by_side([limb_from(welded, name, low=False) for name in arms], look),
         _trunk(welded, legs[0], None if arms is None else arms[0]),
         facing,
         why,
     )
-
-
-def _pairs(welded: WeldedTree) -> Iterator[tuple[str, str]]:
-    """Bodies of one parent that begin chains of joints at mirrored places, across x or y."""
-    for names in welded.children.values():
-        for one, other in itertools.combinations(names, 2):
-            if min(_depth(welded, one), _depth(welded, other)) < FEWEST_JOINTS:
-                continue
-            if any(
-                _mirrored(welded.bodies[one].origin, welded.bodies[other].origin, axis) for axis in (0, 1)
-            ):
-                yield one, other
-
-
-def _mirrored(one: Vector, other: Vector, axis: int) -> bool:
-    """Whether a point is the mirror image of another across an axis of the root, and off its plane."""
-    image = [-value if i == axis else value for i, value in enumerate(one)]
-    return math.dist(image, other) < LOPSIDED and abs(one[axis] - other[axis]) > LOPSIDED
-
-
-def _depth(welded: WeldedTree, name: str) -> int:
-    return 1 + max((_depth(welded, child) for child in welded.children[name]), default=0)
-
-
-def _mass(welded: WeldedTree, name: str) -> float:
-    return sum(float(body.inertia.mass) for body in welded.beyond(name))
-
-
-def _lowest(welded: WeldedTree, pair: tuple[str, str]) -> float:
-    """The lowest centre of mass of a pair's bodies [m]."""
-    return max(min(float(body.inertia.center[2]) for body in welded.beyond(name)) for name in pair)
-
-
-def _lowest_of_all(welded: WeldedTree) -> float:
-    return min(float(body.inertia.center[2]) for body in welded.bodies.values() if body.inertia.mass)
-
-
-def _height(welded: WeldedTree) -> float:
-    heights = [float(body.inertia.center[2]) for body in welded.bodies.values() if body.inertia.mass]
-    return max(heights) - min(heights)
-
-
-def _shares(welded: WeldedTree, pair: tuple[str, str], legs: tuple[str, str]) -> bool:
-    """Whether a pair is part of a leg, or carries the legs."""
-    bodies = {body.name for name in legs for body in welded.beyond(name)}
-    return any(body.name in bodies for name in pair for body in welded.beyond(name))
-
-
-def _limb(welded: WeldedTree, name: str, *, low: bool) -> Limb:
-    """The bodies from a limb's first to its foot (the lowest way) or its hand (where it divides)."""
-    bodies = [welded.bodies[name]]
-    while children := welded.children[bodies[-1].name]:
-        if low:
-            below = {
-                child: min(body.inertia.center[2] for body in welded.beyond(child)) for child in children
-            }
-            bodies.append(welded.bodies[min(children, key=below.__getitem__)])
-        elif len(children) == 1 and not _grasps(welded.bodies[children[0]]):
-            bodies.append(welded.bodies[children[0]])
-        else:
-            break
-    return Limb(tuple(bodies))
-
-
-def _grasps(body: WeldedBody) -> bool:
-    return body.joint is not None and any(GRASPING.search(name) for name in (body.name, body.joint.name))
 
 
 def _trunk(welded: WeldedTree, leg: str, arm: str | None) -> tuple[WeldedBody, ...]:

@@ -29,7 +29,8 @@ from evodesign.body.placement import (
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.mechanics.scene import SIDES
 from evodesign.problem.file import Facing
-from evodesign.problem.guess.body_plan import BodyPlan, Limb
+from evodesign.problem.guess.body_plan import BodyPlan
+from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.mesh_write import vertices_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 

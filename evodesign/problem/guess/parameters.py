@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from evodesign.body.placement import Vector, add, dot, scale
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import SIDES
-from evodesign.problem.guess.body_plan import BodyPlan, Limb
+from evodesign.problem.guess.body_plan import BodyPlan
+from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.resize import growth_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
