@@ -1,7 +1,8 @@
 """Legs, arms, trunk and heading of a humanoid, from the places of its joints and the masses of its links.
 
-limbs      two bodies of one parent whose joints are mirror images of each other, with chains of at least
-           three joints: legs are those that reach lowest, arms the heaviest others, joined higher up
+limbs      two chains of at least three joints on one parent that are mirror images of each other (`limbs`):
+           legs are those that reach lowest, arms the heaviest others. Legs begin at the trunk's lower end and
+           point down; what begins at its upper end are arms, of a robot without legs
 trunk      the bodies from the one that the legs are joined to to the one that the arms are joined to
 heading    across the line between the hips; forward is from where a bent knee takes the foot away, what
            makes the side called left the left one, and where the feet reach beyond the ankles
@@ -11,24 +12,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from evodesign.body.inertia import total
 from evodesign.body.placement import Placement, Vector
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import SIDES
 from evodesign.problem.file import Facing
-from evodesign.problem.guess.limbs import (
-    FEWEST_JOINTS,
-    Limb,
-    height_of,
-    limb_from,
-    limb_pairs,
-    lowest_of,
-    lowest_of_all,
-    mass_of,
-    shares_bodies,
-)
+from evodesign.problem.guess.limbs import FEWEST_JOINTS, Limb, LimbPair, limb_from, limb_pairs
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.welded import WeldedBody, WeldedTree
@@ -37,6 +29,12 @@ __all__ = ["BodyPlan", "body_plan"]
 
 SIGNIFICANT = 0.005
 """Distance [m] below which feet and knees say nothing of the heading."""
+
+DOWN = 0.5
+"""Least cosine between the way from hips to feet and down, and between the ways of two limbs."""
+
+HANGING = 0.2
+"""Lengths of a limb by which the trunk reaches below shoulders, but not below hips."""
 
 BEND = 0.5
 """Angle by which a knee is bent to see where the foot goes [rad]."""
@@ -77,29 +75,64 @@ def body_plan(tree: Tree) -> BodyPlan:
     """The body plan of a robot of numbers.
 
     Raises:
-        ModelError: it has no two legs.
+        ModelError: it has no two legs, or does not stand on them with z up.
     """
     welded = WeldedTree(tree)
-    pairs = sorted(limb_pairs(welded), key=lambda pair: lowest_of(welded, pair))
-    if not pairs or lowest_of(welded, pairs[0]) > lowest_of_all(welded) + 0.1 * height_of(welded):
-        wanted = f"two legs, mirror images of each other, of at least {FEWEST_JOINTS} joints to a lowest link"
-        lowest = min(welded.bodies.values(), key=lambda body: body.inertia.center[2])
-        raise ModelError(tree.name, "", wanted, f"none (the lowest link is '{lowest.name}')")
-    legs, others = pairs[0], [pair for pair in pairs[1:] if not shares_bodies(welded, pair, pairs[0])]
-    if any(lowest_of(welded, pair) < lowest_of(welded, legs) + 0.1 * height_of(welded) for pair in others):
-        raise ModelError(tree.name, "", "two legs", "four or more")
-    arms = max(others, key=lambda pair: mass_of(welded, pair[0]), default=None)
-    leg_limbs = [limb_from(welded, name, low=True) for name in legs]
-    facing, why = _facing(welded, leg_limbs)
+    pairs = sorted(limb_pairs(welded), key=lambda pair: pair.lowest)
+    legs = _legs(welded, pairs)
+    others = [pair for pair in pairs if pair.axis == legs.axis and not pair.bodies & legs.bodies]
+    arms = max(others, key=lambda pair: pair.mass, default=None)
+    leg_limbs = [limb_from(welded, name, low=True) for name in legs.names]
+    facing, why = _facing(welded, leg_limbs, legs.axis)
     look = (facing or Facing.FORWARD).ahead
     return BodyPlan(
         welded,
         _by_side(leg_limbs, look),
-        {} if arms is None else _by_side([limb_from(welded, name, low=False) for name in arms], look),
-        _trunk(welded, legs[0], None if arms is None else arms[0]),
+        {} if arms is None else _by_side([limb_from(welded, name, low=False) for name in arms.names], look),
+        _trunk(welded, legs.names[0], None if arms is None else arms.names[0]),
         facing,
         why,
     )
+
+
+def _legs(welded: WeldedTree, pairs: Sequence[LimbPair]) -> LimbPair:
+    """The pair of limbs that reaches lowest, or the reason why it carries no humanoid."""
+    solid = [body for body in welded.bodies.values() if body.inertia.mass]
+    lowest = min(solid, key=lambda body: float(body.inertia.center[2]))
+    bottom = float(lowest.inertia.center[2])
+    near = 0.1 * (max(float(body.inertia.center[2]) for body in solid) - bottom)
+    wanted = f"two legs, mirror images of each other, of at least {FEWEST_JOINTS} joints to a lowest link"
+    if not pairs or pairs[0].lowest > bottom + near:
+        lies = any(math.hypot(*pair.direction) > DOWN for pair in limb_pairs(welded, (2,)))
+        why = (
+            "limbs are mirror images across z, which is to be up"
+            if lies
+            else f"the lowest link is '{lowest.name}'"
+        )
+        raise ModelError(welded.tree.name, "", wanted, f"none ({why})")
+    legs = pairs[0]
+    first, second = legs.names
+    if -legs.direction[2] < DOWN:
+        wanted = "legs that point down while all joints are at zero, with z up in the root link"
+        raise ModelError(welded.tree.name, "", wanted, f"'{first}' and '{second}', which do not")
+    if any(pair.lowest < legs.lowest + near and not pair.bodies & legs.bodies for pair in pairs):
+        raise ModelError(welded.tree.name, "", "two legs", "four or more")
+    if (below := _trunk_below(welded, pairs)) is not None:
+        why = f"'{first}' and '{second}' are arms, which begin above '{below.name}'"
+        raise ModelError(welded.tree.name, "", wanted, f"none ({why})")
+    return legs
+
+
+def _trunk_below(welded: WeldedTree, pairs: Sequence[LimbPair]) -> WeldedBody | None:
+    """The lowest body of the trunk if the lowest limbs are arms: hips are at its lower end, shoulders not."""
+    legs, limbs = pairs[0], frozenset().union(*(pair.bodies for pair in pairs))
+    trunk = [body for name, body in welded.bodies.items() if name not in limbs and body.inertia.mass]
+    if not trunk:
+        return None
+    lowest = min(trunk, key=lambda body: float(body.inertia.center[2]))
+    depth = legs.begins - float(lowest.inertia.center[2])
+    middle = float(total([body.inertia for body in trunk]).center[2])
+    return lowest if middle < legs.begins and depth > HANGING * legs.limbs[0].length else None
 
 
 def _trunk(welded: WeldedTree, leg: str, arm: str | None) -> tuple[WeldedBody, ...]:
@@ -112,16 +145,13 @@ def _trunk(welded: WeldedTree, leg: str, arm: str | None) -> tuple[WeldedBody, .
 
 def _by_side(limbs: list[Limb], look: Vector) -> dict[str, Limb]:
     """Limbs by side: left is the side to which (-look_y, look_x) points."""
-    ordered = sorted(
-        limbs, key=lambda limb: look[1] * limb.bodies[0].origin[0] - look[0] * limb.bodies[0].origin[1]
-    )
+    ordered = sorted(limbs, key=lambda limb: look[1] * limb.middle[0] - look[0] * limb.middle[1])
     return dict(zip(SIDES, ordered, strict=True))
 
 
-def _facing(welded: WeldedTree, legs: list[Limb]) -> tuple[Facing | None, str]:
+def _facing(welded: WeldedTree, legs: list[Limb], lateral: int) -> tuple[Facing | None, str]:
     """The heading for which most of knees, names and feet speak; knees count most, feet least."""
-    one, other = (leg.bodies[0].origin for leg in legs)
-    lateral = 0 if abs(one[0] - other[0]) > abs(one[1] - other[1]) else 1
+    one, other = (leg.middle for leg in legs)
     choices = (Facing.FORWARD, Facing.BACK) if lateral == 1 else (Facing.LEFT, Facing.RIGHT)
     ahead = choices[0].ahead
     to_the_left = (-ahead[1], ahead[0], 0.0)

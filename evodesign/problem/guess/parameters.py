@@ -24,6 +24,10 @@ ALIGNED = 0.7
 """Cosine between a segment and the direction in which its link grows that makes it longer."""
 
 
+BESIDE = 0.05
+"""Lengths of a limb by which its shoulder is beside the other's."""
+
+
 @dataclass(frozen=True, slots=True)
 class Group:
     """Links that share a length multiplier; their length [m], or why there are none."""
@@ -142,7 +146,7 @@ def load_guess(plan: BodyPlan, ground: float) -> LoadGuess:
         ground: height of the soles in the root's frame [m].
     """
     arms = plan.arms or plan.legs
-    shoulders = [arms[side].bodies[0].origin for side in SIDES]
+    shoulders = _beginnings(arms)
     hips = plan.legs["left"].bodies[0].origin[2] - ground
     top = shoulders[0][2] - ground
     arm = _way([body.origin for body in arms["left"].bodies])
@@ -151,6 +155,13 @@ def load_guess(plan: BodyPlan, ground: float) -> LoadGuess:
     mass = sum(float(body.inertia.mass) for body in plan.welded.bodies.values())
     heights = tuple(dict.fromkeys(_rounded(hips + share * (top - hips), 0.05) for share in (0.0, 0.5, 1.0)))
     return LoadGuess((depth, width, 0.05), min(max(_rounded(0.05 * mass, 0.5), 1.0), 5.0), heights)
+
+
+def _beginnings(limbs: Mapping[str, Limb]) -> tuple[Vector, Vector]:
+    """The first joints of two limbs that are not both on the plane between them."""
+    pairs = [*zip(*(limbs[side].points for side in SIDES), strict=False)]
+    apart = BESIDE * min(limb.length for limb in limbs.values())
+    return next((pair for pair in pairs if math.dist(*pair) > apart), pairs[-1])
 
 
 def _way(points: Sequence[Vector]) -> float:
