@@ -98,8 +98,9 @@ class SolidBodies:
         Args:
             frames: world_from_body, by name; of numbers.
         """
-        turns = np.array([frames[name].rotation for name in self.names], float)
-        return self.placed_at(turns, np.array([frames[name].translation for name in self.names], float))
+        turns = np.array([frames[name].rotation for name in self.names], float).reshape(-1, 3, 3)
+        origins = np.array([frames[name].translation for name in self.names], float).reshape(-1, 3)
+        return self.placed_at(turns, origins)
 
     @cached_property
     def links(self) -> tuple[tuple[str, ...], Indices]:
@@ -126,17 +127,17 @@ class SolidBodies:
     @cached_property
     def half_sides(self) -> Array:
         """Of the boxes about the solids, shape (n, 3) [m]."""
-        return np.array([solid.half_sides for solid in self.solids])
+        return np.array([solid.half_sides for solid in self.solids]).reshape(-1, 3)
 
     @cached_property
     def _local(self) -> tuple[Array, Array]:
         """Rotations, and the middles of geometries, balls and boxes, in the bodies' frames."""
-        rotations = np.array([solid.rotation for solid in self.solids])
+        rotations = np.array([solid.rotation for solid in self.solids]).reshape(-1, 3, 3)
         points = [
             (solid.position, solid.centre, solid.position + solid.rotation @ solid.middle)
             for solid in self.solids
         ]
-        return rotations, np.array(points)
+        return rotations, np.array(points).reshape(-1, 3, 3)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

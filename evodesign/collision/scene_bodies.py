@@ -97,7 +97,7 @@ class SceneBodies:
         turns, origins = [], []
         for name, (sign, of) in poses.items():
             links, places = self._links[name]
-            found = of(links)[places] * np.array([sign, sign, 1.0, 1.0])[:, None]
+            found = of(links).reshape(-1, 4, 4)[places] * np.array([sign, sign, 1.0, 1.0])[:, None]
             turns.append(found[:, :3, :3])
             origins.append(found[:, :3, 3])
         turns.append(np.eye(3)[None])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import mujoco
@@ -12,6 +13,8 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, matrix_from_rpy
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.collision.clearance import PlacedSolids, SolidBodies, places_of
+from evodesign.collision.pairs import checked_pairs
+from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.collision.shapes import solids_of
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.surface import surface_of
@@ -155,3 +158,37 @@ def test_the_nearest_of_many_is_found_and_the_overlapping_ones() -> None:
         assert nearest.distance == min(each.values()) == each[nearest.first, nearest.second]
         overlapping = {(gap.first, gap.second): gap.distance for gap in placed.overlapping(places)}
         assert overlapping == {p: found for p, found in each.items() if found < 0.0}
+
+
+def test_an_agent_without_any_shape_touches_nothing_and_leaves_the_others_what_they_are() -> None:
+    joint = Joint("joint", JointKind.REVOLUTE, "one", "other", Placement(), (0.0, 1.0, 0.0), -1.0, 1.0)
+    links = (Link("one", own_inertia=Inertia(1.0)), Link("other", own_inertia=Inertia(1.0)))
+    tree = Tree("bare", links, (joint,))
+    bare = SolidBodies.of_tree(tree)
+    frames = {"one": Placement(), "other": Placement()}
+    placed = bare.placed(frames)
+    assert placed.overlapping(places_of(placed.names, [("one", "other")])) == []
+    assert checked_pairs(tree, ["joint"], {"left": "other"}, {"left": "one"}) == ()
+    two = SolidBodies(("a", "b"), tuple(solid for link in map(_ball, "ab") for solid in solids_of(link)))
+    there = {"a": Placement(), "b": Placement(translation=(0.3, 0.0, 0.0))}
+    both = placed.beside(two.placed(there))
+    assert both.nearest(places_of(both.names, [("a", "b"), ("one", "a")])).distance == pytest.approx(0.1)
+
+
+def test_a_scene_with_an_agent_without_any_shape_finds_what_the_others_overlap_with() -> None:
+    bare = CheckedBodies.of(Tree("bare", (Link("one", own_inertia=Inertia(1.0)),), ()), [])
+    ball = CheckedBodies.of(Tree("ball", (_ball("a"),), ()), [("a", "load"), ("a", "floor")])
+    scene = SceneBodies({"robot": bare, "human": ball}, (0.2, 0.2, 0.2))
+
+    def at(links: Sequence[str]) -> np.ndarray:
+        return np.array([np.eye(4) for _ in links])
+
+    found = scene.near({"robot": (1.0, at), "human": (-1.0, at)}, 0.15)
+    assert {(gap.first, gap.second): pytest.approx(gap.distance) for gap in found} == {
+        ("human a", "load"): -0.05,
+        ("human a", "floor"): -0.1,
+    }
+
+
+def _ball(name: str) -> Link:
+    return body(name, Sphere(0.1))
