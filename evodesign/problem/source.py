@@ -24,6 +24,7 @@ from evodesign.problem.file import ProblemFile
 from evodesign.problem.meshes import mesh_texts
 from evodesign.problem.named_files import read_robot, read_text
 from evodesign.problem.shipped import SHIPPED, problem_path
+from evodesign.problem.table import FILL_IN
 from evodesign.records import ProblemSource
 
 __all__ = ["copy_source", "decode_toml", "read_source", "source_of"]
@@ -157,6 +158,9 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
     for key, value in _leaves(raw, ""):
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(source, key, "a finite number", repr(value))
+    if unknown := [key for key, value in _leaves(raw, "") if value == FILL_IN]:
+        wanted = "what could not be guessed (the comment beside it has the reason)"
+        raise InputError(source, ", ".join(unknown), wanted, f"'{FILL_IN}'")
     try:
         return msgspec.convert(raw, table)
     except msgspec.ValidationError as error:

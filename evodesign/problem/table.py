@@ -7,7 +7,10 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-__all__ = ["Name", "NotNegative", "Point", "Positive", "Share", "Table"]
+__all__ = ["FILL_IN", "Name", "NotNegative", "Point", "Positive", "Share", "Table"]
+
+FILL_IN = "FILL IN"
+"""Stands in a file that `init` wrote for what could not be guessed; no value of any key."""
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]

@@ -84,7 +84,7 @@ def test_what_cannot_be_guessed_is_marked_and_named_by_check(
     assert "FILL IN" in capsys.readouterr().out
     assert run("check", file) == 2
     error = capsys.readouterr().err
-    assert "robot.hands.left: wanted the name of a link of 'humanoid', found 'FILL IN'" in error
+    assert "robot.hands.left, robot.hands.right: wanted what could not be guessed" in error
 
 
 @pytest.mark.parametrize(

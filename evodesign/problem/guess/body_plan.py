@@ -63,6 +63,14 @@ class BodyPlan:
     why: str
 
     @property
+    def stature(self) -> float:
+        """From the lowest to the highest joint or centre of mass of a body [m]."""
+        solid = [body for body in self.welded.bodies.values() if body.inertia.mass]
+        heights = [float(body.inertia.center[2]) for body in solid]
+        heights += [float(body.origin[2]) for body in solid if body.joint is not None]
+        return max(heights) - min(heights)
+
+    @property
     def joints(self) -> tuple[str, ...]:
         """Names of the joints between hands and feet, in the file's order."""
         moving = {joint for limb in (*self.legs.values(), *self.arms.values()) for joint in limb.joints}

@@ -2,9 +2,11 @@
 
     sole   the rectangle under the lowest two centimetres of the foot's shapes and meshes; without any, under
            a box of the foot's mass and moments of inertia
-    palm   a bare frame of such a name; otherwise the centre of mass of the hand with all that it moves
+    palm   a bare frame of such a name, if it is not at the wrist; otherwise the centre of mass of the hand
+           with all that it moves; at the far end of a forearm that no wrist moves
 
-Left and right are made mirror images of each other, as long as they nearly are.
+Left and right are made mirror images of each other, as long as they nearly are. Soles that no robot of its
+stature has are none.
 """
 
 from __future__ import annotations
@@ -39,11 +41,20 @@ __all__ = ["Contacts", "GuessedContact", "contacts", "frame_xyz_rpy"]
 SLAB = 0.02
 """Height above a foot's lowest point up to which it counts as its sole [m]."""
 
+LARGEST_SOLE = 1.0 / 3.0
+"""Largest length of a sole in statures: a person's is 0.15, of robots with large feet 0.28."""
+
+SMALLEST_SOLE = 0.005
+"""Least width of a sole [m]."""
+
 LIKENESS = 0.03
 """Largest distance of a point from the mirror image of the other side's that is a matter of accuracy [m]."""
 
-PALM = re.compile(r"palm|hand$|hand_frame|grasp|tcp|tool", re.IGNORECASE)
+PALM = re.compile(r"palm|grasp|tcp|tool", re.IGNORECASE)
 """Names of frames that meet a load."""
+
+HAND = re.compile(r"hand$|hand_frame", re.IGNORECASE)
+"""Names of frames that meet a load, or are where a hand begins."""
 
 CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
@@ -65,7 +76,13 @@ class GuessedContact:
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
-    """Palms and soles by side, the size of a sole [m] along x and y, and how they were found, in words."""
+    """Palms and soles by side, the size of a sole [m] along x and y, and how they were found, in words.
+
+    Args:
+        hands, soles: none where nothing believable was found.
+        sole_size: length and width [m].
+        why_hands, why_soles: how they were found, or why they were not.
+    """
 
     hands: Mapping[str, GuessedContact]
     soles: Mapping[str, GuessedContact]
@@ -101,6 +118,8 @@ def _soles(plan: BodyPlan, facing: Facing) -> tuple[dict[str, GuessedContact], t
         sizes.append(most - least)
     centres = _alike(centres)
     length, width = (round(float(extent), 3) for extent in np.mean(sizes, axis=0)[:2])
+    if doubt := _doubt(plan, (length, width), centres):
+        return {}, (0.0, 0.0), f"{doubt} ({why.partition(':')[0]})"
     soles = {
         side: _new_frame(plan.welded, leg, f"{side}_sole", rotate(turn, centres[side]), turn)
         for side, leg in plan.legs.items()
@@ -108,36 +127,71 @@ def _soles(plan: BodyPlan, facing: Facing) -> tuple[dict[str, GuessedContact], t
     return soles, (length, width), why
 
 
+def _doubt(plan: BodyPlan, size: tuple[float, float], centres: Mapping[str, Vector]) -> str:
+    """Why no robot of this stature has such soles; nothing if one may."""
+    most = LARGEST_SOLE * plan.stature
+    if max(size) > most:
+        return f"{size[0]:g} x {size[1]:g} m is more than a third of the robot's {plan.stature:.2f} m"
+    if min(size) < SMALLEST_SOLE:
+        return f"{size[0]:g} x {size[1]:g} m is no sole to stand on"
+    deep = max(leg.end.origin[2] - centres[side][2] for side, leg in plan.legs.items())
+    found = f"{deep:.3g} m below the last joints is deeper than the robot's {plan.stature:.2f} m"
+    return found if deep > plan.stature else ""
+
+
 def _hands(plan: BodyPlan, facing: Facing) -> tuple[dict[str, GuessedContact], str]:
     if not plan.arms:
         return {}, "no two arms"
     turn = facing.axes
-    named = {side: _named(plan.welded, arm.end) for side, arm in plan.arms.items()}
+    named = {side: _named(plan.welded, arm) for side, arm in plan.arms.items()}
     for left, left_at in named["left"].items():
         for right, right_at in named["right"].items():
             places = [rotate(transpose(turn), at) for at in (left_at, right_at)]
             if math.dist(places[0], mirrored_point(places[1])) < LIKENESS:
                 return {"left": GuessedContact(left), "right": GuessedContact(right)}, "frames of such a name"
-    centres = {
-        side: rotate(
-            transpose(turn), total([body.inertia for body in plan.welded.beyond(arm.end.name)]).center
-        )
-        for side, arm in plan.arms.items()
-    }
+    wristless = all(arm.bend == len(arm.bodies) - 1 for arm in plan.arms.values())
+    palm = _far_end if wristless else _hand_center
+    centres = {side: rotate(transpose(turn), palm(plan.welded, arm)) for side, arm in plan.arms.items()}
     centres = _alike(centres)
     found = {
         side: _new_frame(plan.welded, arm, f"{side}_palm", rotate(turn, centres[side]), turn)
         for side, arm in plan.arms.items()
     }
-    return found, "the centres of mass of the hands"
+    return (
+        found,
+        "the far ends of forearms without wrists" if wristless else "the centres of mass of the hands",
+    )
 
 
-def _named(welded: WeldedTree, hand: WeldedBody) -> dict[str, Vector]:
-    """Places in the root's frame of the bare frames of a hand whose names say that they meet a load."""
+def _hand_center(welded: WeldedTree, arm: Limb) -> Vector:
+    """Centre of mass of a hand with all that it moves, in the root's frame [m]."""
+    return total([body.inertia for body in welded.beyond(arm.end.name)]).center
+
+
+def _far_end(welded: WeldedTree, arm: Limb) -> Vector:
+    """Where the last body of an arm ends on the way from its joint to its centre of mass and beyond [m]."""
+    way = np.array(arm.end.inertia.center, dtype=float) - arm.end.origin
+    points = _points(welded, arm.end)
+    farthest = (
+        float(((points - arm.end.origin) @ way).max() / max(float(way @ way), 1e-12)) if len(points) else 2.0
+    )
+    x, y, z = (arm.end.origin + farthest * way).tolist()
+    return x, y, z
+
+
+def _named(welded: WeldedTree, arm: Limb) -> dict[str, Vector]:
+    """Places in the root's frame of the bare frames of a hand whose names say that they meet a load.
+
+    One that is only called a hand is where the hand begins if it is nearer to the wrist than to the hand's
+    centre of mass.
+    """
+    center, wrist = _hand_center(welded, arm), arm.end.origin
+    bare = [name for name in arm.end.links if not welded.tree.link_by_name[name].inertia.mass]
+    places = {name: welded.places[name].translation for name in bare}
     return {
-        name: welded.places[name].translation
-        for name in hand.links
-        if PALM.search(name) and not welded.tree.link_by_name[name].inertia.mass
+        name: at
+        for name, at in places.items()
+        if PALM.search(name) or (HAND.search(name) and math.dist(at, wrist) > math.dist(at, center))
     }
 
 

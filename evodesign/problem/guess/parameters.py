@@ -124,7 +124,9 @@ def _trunk(plan: BodyPlan) -> Group:
     top = scale(0.5, add(shoulders[0].origin, shoulders[1].origin))
     ends = [*(body.origin for body in plan.trunk[1:]), top]
     nexts = [*plan.trunk[1:], shoulders[0]]
-    rises = [end[2] - body.origin[2] for body, end in zip(plan.trunk, ends, strict=True)]
+    hips = max(leg.bodies[0].origin[2] for leg in plan.legs.values())
+    lows = [max(plan.trunk[0].origin[2], hips), *(body.origin[2] for body in plan.trunk[1:])]
+    rises = [end[2] - low for low, end in zip(lows, ends, strict=True)]
     for i in sorted(range(len(rises)), key=lambda i: -rises[i]):
         if rises[i] < SHORTEST:
             break

@@ -1,6 +1,6 @@
 """A problem file for a robot, from what its file says and what was guessed; each guess with its reason.
 
-What could not be guessed is `FILL IN` in the file, which no link is called, so that `check` names its key.
+What could not be guessed is `FILL IN` in the file, which no key may be, so that `check` names its key.
 """
 
 from __future__ import annotations
@@ -14,13 +14,11 @@ from evodesign.problem.file import Facing
 from evodesign.problem.guess.body_plan import BodyPlan, body_plan
 from evodesign.problem.guess.contacts import Contacts, GuessedContact, contacts, frame_xyz_rpy
 from evodesign.problem.guess.parameters import Group, LoadGuess, groups, load_guess
+from evodesign.problem.table import FILL_IN
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_read import InertiaRule
 
 __all__ = ["FILL_IN", "Guess", "GuessedProblem", "guessed_problem", "inertia_rule"]
-
-FILL_IN = "FILL IN"
-"""Stands for what could not be guessed."""
 
 LOWER, UPPER = 0.6, 1.6
 """Bounds of length multipliers."""
@@ -68,7 +66,9 @@ def guessed_problem(tree: Tree, urdf: str) -> GuessedProblem:
 
 
 def _ground(plan: BodyPlan, found: Contacts) -> float:
-    """Height of the soles in the root's frame [m]."""
+    """Height of the soles in the root's frame [m], or of the lowest joint where they are not known."""
+    if not found.soles:
+        return min(float(leg.end.origin[2]) for leg in plan.legs.values())
     heights = []
     for side in SIDES:
         sole = found.soles[side]
@@ -102,15 +102,23 @@ def _robot(plan: BodyPlan, found: Contacts) -> Iterable[str]:
     hands = {side: found.hands[side].frame if found.hands else FILL_IN for side in SIDES}
     marked = "" if found.hands else f"  # {FILL_IN}: {found.why_hands}"
     yield f"hands = {_inline(hands)}{marked}"
-    soles = {side: found.soles[side].frame for side in SIDES}
-    length, width = found.sole_size
-    yield f"soles = {_inline(soles)[:-2]}, size_m = [{length:g}, {width:g}] }}  # length, width"
+    yield _soles(plan, found)
     yield f"trunk = {json.dumps(_trunk_frames(plan))}  # keeps a distance from the load"
     yield "joints = ["
     yield from (f"    {json.dumps(name)}," for name in plan.joints)
     yield "]"
     contacts_made = (*found.hands.values(), *found.soles.values())
     yield from (line for contact in contacts_made if contact.link for line in _frame(contact))
+
+
+def _soles(plan: BodyPlan, found: Contacts) -> str:
+    soles = {side: found.soles[side].frame if found.soles else FILL_IN for side in SIDES}
+    length, width = found.sole_size
+    if found.soles:
+        return f"soles = {_inline(soles)[:-2]}, size_m = [{length:g}, {width:g}] }}  # length, width"
+    feet = " and ".join(plan.legs[side].end.name for side in SIDES)
+    why = f"{FILL_IN} frames under {feet}, such as [[robot.frames]], and length and width: {found.why_soles}"
+    return f'soles = {_inline(soles)[:-2]}, size_m = "{FILL_IN}" }}  # {why}'
 
 
 def _inline(names: dict[str, str]) -> str:
@@ -182,17 +190,18 @@ def _guesses(plan: BodyPlan, found: Contacts, load: LoadGuess) -> Iterable[Guess
     length, width = found.sole_size
     hands = ", ".join(contact.frame for contact in found.hands.values())
     heights = ", ".join(f"{height:g}" for height in load.heights)
-    why = "links are meshes" if inertia_rule(plan.welded.tree) is InertiaRule.FILE else "links are shapes"
+    why = "links are meshes" if inertia_rule(plan.welded.tree) is InertiaRule.FILE else "no link is a mesh"
     yield Guess("robot.inertia", inertia_rule(plan.welded.tree), why)
     yield Guess("robot.facing", str(plan.facing or ""), plan.why)
     yield Guess("robot.hands", hands, found.why_hands)
-    yield Guess("robot.soles", f"{length:g} x {width:g} m", found.why_soles)
+    yield Guess("robot.soles", f"{length:g} x {width:g} m" if found.soles else "", found.why_soles)
     yield Guess("robot.trunk", ", ".join(_trunk_frames(plan)), "what hips and shoulders are joined to")
     yield Guess("robot.joints", f"{len(plan.joints)} joints", "those between hands and feet")
     yield Guess(
         "payload", f"{load.mass:g} kg, {load.size[1]:g} m wide", "a twentieth of the mass; the shoulders"
     )
-    yield Guess("task.heights_m", heights, "from the hips to the shoulders")
+    above = "" if found.soles else ", above the ankles"
+    yield Guess("task.heights_m", heights, f"from the hips to the shoulders{above}")
 
 
 def _guess_of_group(group: Group) -> Guess:
