@@ -22,10 +22,32 @@ HUMANOIDS = {
 MJCF_HUMANOIDS = {"gr1": ROBOSUITE / "gr1" / "robot.xml"}
 """MJCF files of others."""
 
-NO_HUMANOID = SHARED / "tiago_description" / "robots" / "tiago.urdf"
-"""A robot on wheels."""
+SHAPELESS = SHARED / "simple_humanoid_description" / "urdf" / "simple_humanoid.urdf"
+"""A humanoid without any shape, and with moments of inertia that no foot has."""
+
+NO_HUMANOIDS = {
+    "tiago": (
+        SHARED / "tiago_description" / "robots" / "tiago.urdf",
+        "the lowest link is 'wheel_right_link'",
+    ),
+    "alex": (
+        SHARED / "alex_description" / "urdf" / "alex_nub_hands.urdf",
+        "are arms, which begin above 'Pelvis'",
+    ),
+    "baxter": (SHARED / "baxter_description" / "urdf" / "baxter.urdf", "the lowest link is 'base'"),
+    "human": (
+        SHARED / "human_description" / "robots" / "human.urdf",
+        "mirror images across z, which is to be up",
+    ),
+    "anymal": (SHARED / "anymal_b_simple_description" / "robots" / "anymal.urdf", "found four or more"),
+    "panda": (SHARED / "panda_description" / "urdf" / "panda.urdf", "the lowest link is 'panda_link0'"),
+}
+"""Robots on wheels, of an upper body, on a stand, on their side, on four legs, of one arm; why in words."""
 
 
 def robots_installed() -> bool:
     """Whether all of them are there."""
-    return all(path.is_file() for path in (*HUMANOIDS.values(), *MJCF_HUMANOIDS.values(), NO_HUMANOID))
+    refused = (path for path, _ in NO_HUMANOIDS.values())
+    return all(
+        path.is_file() for path in (*HUMANOIDS.values(), *MJCF_HUMANOIDS.values(), SHAPELESS, *refused)
+    )

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from evodesign.body.inertia import total
 from evodesign.body.placement import Placement, Vector, rotate
+from evodesign.collision.shapes import solids_of
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.build import DesignProblem
@@ -61,6 +62,7 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
         "faces the load": lambda: _faces(problem),
         "has hands": lambda: _hands(robot, welded),
         "masses and limits": lambda: _masses(robot),
+        "has shapes": lambda: _shapes(robot.tree),
     }
     for index, parameter in enumerate(space.parameters):
         if parameter.links or parameter.joints:
@@ -156,6 +158,14 @@ def _masses(robot: Agent) -> str:
     return f"{mass:.4g} kg, {len(robot.joints)} joints that move"
 
 
+def _shapes(tree: Tree) -> str:
+    """How many links with a mass have a shape or a mesh; what has none meets nothing and is not seen."""
+    heavy = [link for link in tree.links if link.inertia.mass]
+    shaped = sum(bool(solids_of(link)) for link in heavy)
+    without = "" if shaped else ": collisions and pictures leave the robot out"
+    return f"{shaped} of {len(heavy)} links with a mass{without}"
+
+
 def _mass(tree: Tree) -> float:
     return sum(float(link.inertia.mass) for link in tree.links)
 
@@ -201,13 +211,14 @@ def _holds(problem: DesignProblem) -> str:
         wanted = "hands that can hold the load in front of the robot at some height"
         raise InputError("robot.hands", "", wanted, f"none ({reach.reason})")
     within = tuple(task for task in problem.holds if reach.beyond(task.heights) == 0.0)
+    beyond = ", ".join(f"{task.height_m:g}" for task in problem.holds if task not in within)
     found = f"from {reach.lowest:.2f} to {reach.highest:.2f} m"
     if not within:
-        heights = ", ".join(f"{task.height_m:g}" for task in problem.holds)
-        raise InputError("task.heights_m", "", f"a height that the robot reaches, {found}", heights)
+        raise InputError("task.heights_m", "", f"a height that the robot reaches, {found}", beyond)
     if middle not in within:
         (case,) = Evaluator(replace(alone, tasks=within[:1])).solve(unscaled).cases
     if not case.solved:
         wanted = f"a posture with the load at {case.case.task}"
         raise InputError("task.heights_m", "", wanted, f"{case.status}: {case.reason}")
-    return f"{found}; a posture at {case.case.task} is solved"
+    out = f"; out of reach unless a design reaches farther: {beyond} m" if beyond else ""
+    return f"{found}; a posture at {case.case.task} is solved{out}"

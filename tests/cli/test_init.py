@@ -13,7 +13,7 @@ import trimesh
 from evodesign.cli.main import main
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.guess.humanoid import Build, humanoid
-from tests.robots import HUMANOIDS, NO_HUMANOID
+from tests.robots import HUMANOIDS, NO_HUMANOIDS, SHAPELESS
 
 QUICK = "\n[solver]\nstart_portfolio = false\ncompile = false\n"
 
@@ -105,11 +105,42 @@ def test_a_file_of_which_no_problem_can_be_made_is_refused_in_a_sentence(
 
 
 @pytest.mark.needs_robots
-def test_a_robot_on_wheels_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("init", NO_HUMANOID, "--to", tmp_path / "new.toml") == 2
-    assert (
-        "tiago: wanted two legs, mirror images of each other, of at least 3 joints" in capsys.readouterr().err
+@pytest.mark.parametrize("name", NO_HUMANOIDS)
+def test_what_is_no_humanoid_is_refused_in_a_sentence(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, words = NO_HUMANOIDS[name]
+    assert run("init", file, "--to", tmp_path / "new.toml") == 2
+    error = capsys.readouterr().err
+    assert ": wanted two legs" in error
+    assert words in error
+    assert not (tmp_path / "new.toml").exists()
+
+
+@pytest.mark.needs_robots
+def test_a_public_robot_without_shapes_is_left_to_a_person_who_then_evaluates_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "new.toml"
+    assert run("init", SHAPELESS, "--to", file) == 0
+    assert "1.777 x 1.777 m is more than a third of the robot's 1.38 m" in " ".join(file.read_text().split())
+    assert run("check", file) == 2
+    assert "robot.soles.left, robot.soles.right, robot.soles.size_m: wanted" in capsys.readouterr().err
+    lines = re.sub(
+        "(?m)^soles = .*$",
+        'soles = { left = "ls", right = "rs", size_m = [0.24, 0.1] }',
+        re.sub("(?m)^heights_m = .*$", "heights_m = [0.9]", file.read_text()),
     )
+    frames = (
+        f'[[robot.frames]]\nname = "{side}s"\nlink = "{side}_ankle"\nxyz_m = [0.03, 0.0, -0.1]\n'
+        for side in "lr"
+    )
+    file.write_text("\n".join((lines, *frames, QUICK)))
+    assert run("check", file) == 0
+    assert re.search(r"0 of \d+ links with a mass", capsys.readouterr().out)
+    assert run("evaluate", file, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [height["status"] for height in found["heights"]] == ["solved"]
 
 
 @pytest.mark.needs_robots

@@ -15,7 +15,7 @@ from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.preflight import preflight
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import parent_from_child
-from evodesign.tree.model import Joint, Tree
+from evodesign.tree.model import Joint, Link, Tree
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.guess.humanoid import Build, humanoid
 
@@ -59,6 +59,7 @@ def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
         "faces the load",
         "has hands",
         "masses and limits",
+        "has shapes",
         *(f"length.{name} + 10%" for name in ("upper_arm", "forearm", "thigh", "shank", "trunk")),
         "holds the load",
     ]
@@ -67,6 +68,23 @@ def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
     assert found["length.trunk + 10%"].found.startswith("hands by 40 mm, +"), "the box is 0.4 m high"
     assert re.fullmatch(
         r"from 0\.\d\d to 1\.\d\d m; a posture at 1\.05 m is solved", found["holds the load"].found
+    )
+
+
+def test_heights_out_of_reach_are_named_beside_those_within() -> None:
+    text = put("heights_m = [0.8, 1.05, 1.3]", "heights_m = [1.05, 2.5, 3.0]")
+    *_, held = preflight(problem_of(humanoid(Build()), text))
+    assert not held.fault
+    assert held.found.endswith("at 1.05 m is solved; out of reach unless a design reaches farther: 2.5, 3 m")
+
+
+def test_a_robot_without_shapes_passes_and_is_told_what_is_left_out() -> None:
+    tree = humanoid(Build())
+    bare = replace(tree, links=tuple(Link(each.name, own_inertia=each.inertia) for each in tree.links))
+    found = {finding.item: finding for finding in preflight(problem_of(bare))}
+    assert not any(finding.fault for finding in found.values())
+    assert (
+        found["has shapes"].found == "0 of 26 links with a mass: collisions and pictures leave the robot out"
     )
 
 

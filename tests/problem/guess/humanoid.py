@@ -23,8 +23,9 @@ class Build:
         named: what a side is called in names.
         knee: range of the knees [rad], about an axis to the left.
         toe: how far the feet's boxes reach ahead of the ankles' middle [m].
-        arms: whether it has any.
-        toes: whether the legs are doubled, as those of a horse.
+        arms, legs: whether it has any.
+        horse: whether the legs are doubled.
+        midline: whether both shoulders begin on the plane between left and right.
         order: in which links and joints stand in the file.
     """
 
@@ -33,7 +34,9 @@ class Build:
     knee: tuple[float, float] = (-0.05, 2.4)
     toe: float = 0.05
     arms: bool = True
+    legs: bool = True
     horse: bool = False
+    midline: bool = False
     order: Random | None = None
 
 
@@ -49,10 +52,10 @@ def humanoid(build: Build) -> Tree:
     joints.append(_joint("waist", "pelvis", "chest", (0.0, 0.0, 0.1), (0.0, 1.0, 0.0), (-1.0, 1.0)))
     for side, sign in SIDE.items():
         prefix = build.named(side)
-        for shift in (0.3, -0.3) if build.horse else (0.0,):
+        for shift in ((0.3, -0.3) if build.horse else (0.0,)) if build.legs else ():
             _add_leg(links, joints, prefix + ("" if shift <= 0.0 else "front_"), sign, shift, build)
         if build.arms:
-            _add_arm(links, joints, prefix, sign)
+            _add_arm(links, joints, prefix, sign, build)
     if build.order is not None:
         build.order.shuffle(links)
         build.order.shuffle(joints)
@@ -82,7 +85,8 @@ def _add_leg(
     ]
 
 
-def _add_arm(links: list[Link], joints: list[Joint], prefix: str, sign: float) -> None:
+def _add_arm(links: list[Link], joints: list[Joint], prefix: str, sign: float, build: Build) -> None:
+    beside = 0.0 if build.midline else 0.2
     shoulder, upper, fore, hand = (prefix + name for name in ("shoulder", "upper_arm", "forearm", "hand"))
     links += [
         _link(shoulder, (0.0, sign * 0.02, 0.0), (0.06, 0.06, 0.06)),
@@ -96,12 +100,17 @@ def _add_arm(links: list[Link], joints: list[Joint], prefix: str, sign: float) -
             prefix + "shoulder_pitch",
             "chest",
             shoulder,
-            (0.0, sign * 0.2, 0.36),
+            (0.0, sign * beside, 0.36),
             (0.0, 1.0, 0.0),
             (-2.0, 2.0),
         ),
         _joint(
-            prefix + "shoulder_roll", shoulder, upper, (0.0, sign * 0.03, 0.0), (1.0, 0.0, 0.0), (-1.5, 1.5)
+            prefix + "shoulder_roll",
+            shoulder,
+            upper,
+            (0.0, sign * (0.23 - beside), 0.0),
+            (1.0, 0.0, 0.0),
+            (-1.5, 1.5),
         ),
         _joint(prefix + "elbow", upper, fore, (0.0, 0.0, -0.26), (0.0, 1.0, 0.0), (-2.2, 0.0)),
         _joint(prefix + "wrist", fore, hand, (0.0, 0.0, -0.24), (0.0, 0.0, 1.0), (-1.0, 1.0)),

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
+import re
+import tomllib
 from dataclasses import replace
 from random import Random
 
 import numpy as np
 import pytest
 
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, Vector
 from evodesign.body.shape import Sphere
 from evodesign.errors import ModelError
 from evodesign.problem.file import Facing
 from evodesign.problem.guess.body_plan import BodyPlan, body_plan
 from evodesign.problem.guess.contacts import contacts
 from evodesign.problem.guess.parameters import groups, load_guess
+from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.surface import surface_of
@@ -164,6 +167,96 @@ def test_frames_of_the_hands_own_are_taken() -> None:
         "right": "right_palm_frame",
     }
     assert not found.hands["left"].link, "nothing is added"
+
+
+def test_a_frame_called_hand_at_the_wrist_is_no_palm() -> None:
+    tree = humanoid(Build())
+    named = [Link(f"{side}_hand_frame") for side in ("left", "right")]
+
+    def found(down: float) -> dict[str, str]:
+        place = Placement(translation=(0.0, 0.0, -down))
+        joints = [
+            Joint(f"{side}_fixed", JointKind.FIXED, f"{side}_hand", f"{side}_hand_frame", place)
+            for side in ("left", "right")
+        ]
+        built = Tree(tree.name, (*tree.links, *named), (*tree.joints, *joints))
+        return {side: hand.frame for side, hand in contacts(body_plan(built)).hands.items()}
+
+    assert found(0.0) == {"left": "left_palm", "right": "right_palm"}
+    assert found(0.08) == {"left": "left_hand_frame", "right": "right_hand_frame"}
+
+
+@pytest.mark.parametrize("shown", [True, False], ids=["shapes", "no shapes"])
+def test_a_forearm_without_a_wrist_holds_with_its_far_end(shown: bool) -> None:
+    tree = humanoid(Build())
+    gone = {name for link in tree.links if "finger" in (name := link.name) or "hand" in name}
+    links = [link for link in tree.links if link.name not in gone]
+    if not shown:
+        links = [Link(each.name, own_inertia=each.inertia) for each in links]
+    joints = tuple(joint for joint in tree.joints if joint.child not in gone)
+    plan = body_plan(Tree(tree.name, tuple(links), joints))
+    found = contacts(plan)
+    assert found.why_hands == "the far ends of forearms without wrists"
+    hand = found.hands["left"]
+    assert (hand.link, hand.place.translation) == ("left_forearm", pytest.approx((0.0, 0.0, -0.24), abs=1e-9))
+
+
+def without_shapes(tree: Tree, feet_inertia: float) -> Tree:
+    """The robot with nothing but masses; the principal moments of its feet are all the same [kg m^2]."""
+    alike = tuple(tuple(feet_inertia * (i == j) for j in range(3)) for i in range(3))
+    links = [Link(link.name, own_inertia=link.inertia) for link in tree.links]
+    return replace(
+        tree,
+        links=tuple(
+            replace(link, own_inertia=replace(link.inertia, about_center=alike))
+            if link.name.endswith("foot")
+            else link
+            for link in links
+        ),
+    )
+
+
+def test_soles_that_no_robot_of_its_stature_has_are_none_and_heights_stay_below_the_head() -> None:
+    plan = body_plan(without_shapes(humanoid(Build()), 0.3))
+    assert plan.stature == pytest.approx(leg_length() - 0.02 + 0.46), "from the feet to the shoulders"
+    found = contacts(plan)
+    assert (found.soles, found.sole_size) == ({}, (0.0, 0.0))
+    assert re.match(r"1\.\d+ x 1\.\d+ m is more than a third of the robot's 1\.26 m \(boxes", found.why_soles)
+    text = guessed_problem(plan.welded.tree, "robot.urdf").text
+    assert 'soles = { left = "FILL IN", right = "FILL IN", size_m = "FILL IN" }  # FILL IN frames' in text
+    assert "left_sole" not in text
+    heights = tomllib.loads(text)["task"]["heights_m"]
+    assert heights == [0.75, 0.95, 1.2], "above the ankles"
+
+
+def test_a_robot_without_shapes_whose_feet_have_the_inertia_of_feet_stands_on_their_boxes() -> None:
+    found = contacts(body_plan(without_shapes(humanoid(Build()), 0.001)))
+    assert found.soles
+    assert 0.05 < found.sole_size[0] < 0.4
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [
+        ([(-0.4, -0.1, -0.1), (0.4, 0.1, -0.1)], "0.8 x 0.2 m is more than a third"),
+        ([(0.0, 0.0, -0.1), (0.1, 0.0, -0.1)], "0.1 x 0 m is no sole to stand on"),
+        ([(-0.1, -0.1, -2.0), (0.1, 0.1, -2.0)], "2 m below the last joints is deeper than the robot's"),
+    ],
+    ids=["too long", "a line", "in the ground"],
+)
+def test_soles_of_meshes_that_no_foot_has_are_none(points: list[Vector], words: str) -> None:
+    tree = humanoid(Build())
+    surface = surface_of(np.array([*points, points[0]], float), np.array([[0, 1, 2]]), 0.0)
+    feet = {
+        name: Link(
+            name, own_inertia=tree.link_by_name[name].inertia, meshes=(Mesh("foot.stl", surface=surface),)
+        )
+        for name in ("left_foot", "right_foot")
+    }
+    found = contacts(body_plan(with_feet(tree, feet)))
+    assert found.soles == {}
+    assert found.why_soles.startswith(words)
+    assert found.why_soles.endswith("(the lowest 2 cm of the feet's shapes)")
 
 
 def test_a_shape_of_any_kind_makes_a_sole() -> None:
