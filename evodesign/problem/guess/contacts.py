@@ -223,17 +223,16 @@ def frame_xyz_rpy(contact: GuessedContact) -> tuple[tuple[float, ...], tuple[flo
 
 
 def _points(welded: WeldedTree, body: WeldedBody) -> np.ndarray:
-    """Points of a body's shapes and meshes in the root's frame, one per row."""
+    """Points of a body in the root's frame, one per row: of a link's meshes, or else of its shapes."""
     found = [np.empty((0, 3))]
     for name in body.links:
-        link = welded.tree.link_by_name[name]
-        place = welded.places[name]
-        for shape, at in (
-            *((solid.shape, solid.link_from_solid) for solid in link.solids),
-            *((look.shape, look.link_from_look) for look in link.looks),
-        ):
-            found.append(_placed(_outline(shape), place @ at))
-        found += [_placed(vertices_of(mesh), place) for mesh in link.meshes]
+        link, place = welded.tree.link_by_name[name], welded.places[name]
+        shapes = [(solid.shape, solid.link_from_solid) for solid in link.solids]
+        shapes += [(look.shape, look.link_from_look) for look in link.looks]
+        if link.shown:
+            found += [_placed(vertices_of(mesh), place) for mesh in link.shown]
+        else:
+            found += [_placed(_outline(shape), place @ at) for shape, at in shapes]
     return np.vstack(found)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from evodesign.body.placement import Placement, Vector
-from evodesign.body.shape import Sphere
+from evodesign.body.shape import Box, Sphere
 from evodesign.errors import ModelError
 from evodesign.problem.file import Facing
 from evodesign.problem.guess.body_plan import BodyPlan, body_plan
@@ -149,6 +149,9 @@ def test_soles_of_meshes_are_those_of_their_vertices_or_guessed_from_the_inertia
     found = contacts(body_plan(with_feet(tree, shown)))
     assert found.sole_size == (0.3, 0.08), "the toe cap is too high to stand on"
     assert found.soles["left"].place.translation == pytest.approx((0.05, 0.0, -0.08), abs=1e-5)
+    wider = Look(Box(0.4, 0.3, 0.3), Placement())
+    boxed = {name: replace(foot, looks=(wider,)) for name, foot in shown.items()}
+    assert contacts(body_plan(with_feet(tree, boxed))).sole_size == (0.3, 0.08), "the box only collides"
     guessed = contacts(body_plan(with_feet(tree, feet)))
     assert guessed.sole_size == pytest.approx((0.24, 0.1), abs=1e-3), "a box has the box's inertia"
     assert "to be checked" in guessed.why_soles
