@@ -27,6 +27,7 @@ __all__ = [
     "HUMAN",
     "ROBOT",
     "SIDES",
+    "WRIST_MOMENT",
     "Agent",
     "Grasp",
     "GraspDirection",
@@ -39,6 +40,13 @@ __all__ = [
 ROBOT, HUMAN = "robot", "human"
 SIDES = ("left", "right")
 DIAGONAL = math.sqrt(0.5)
+
+WRIST_MOMENT = 7.0
+"""Largest moment of a hand about each axis [N m] that a person's wrists bear, whoever is on the other side.
+
+That of extension, the weakest direction: 7.1 N m, the mean of ten men.
+Source: Delp, Grierson and Buchanan 1996.
+"""
 
 
 class Grasp(StrEnum):

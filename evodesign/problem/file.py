@@ -165,8 +165,9 @@ class GraspsTable(Table, frozen=True):
 class PayloadTable(Table, frozen=True):
     """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height.
 
-    `hand_moment_n_m` bounds each component of the moment that a rigid hand passes. `grasp_direction` says
-    from where forearms may come to the load, within a cone of half angle `grasp_cone_deg`.
+    `hand_moment_n_m` bounds each component of the moment that a rigid hand passes: left out, by what wrists
+    bear; `inf` for no bound. `grasp_direction` says from where forearms may come to the load, within a cone
+    of half angle `grasp_cone_deg`.
     """
 
     size_m: tuple[Positive, Positive, Positive]

@@ -9,7 +9,16 @@ from dataclasses import replace
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
 from evodesign.mechanics.elbow import elbow
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, GraspDirection, Payload
+from evodesign.mechanics.scene import (
+    HUMAN,
+    ROBOT,
+    SIDES,
+    WRIST_MOMENT,
+    Agent,
+    Grasp,
+    GraspDirection,
+    Payload,
+)
 from evodesign.problem.file import DisturbanceTable, PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
 
@@ -72,9 +81,9 @@ def _grasp_cone(key: str, table: PayloadTable, source: ProblemSource) -> float:
 
 
 def _hand_moment(key: str, table: PayloadTable, source: ProblemSource) -> float:
-    """Largest moment of a rigid hand [N m]; without a bound, infinite."""
+    """Largest moment of a hand [N m]: infinite where `inf` is written, and for point grasps."""
     if table.hand_moment_n_m is None:
-        return math.inf
+        return WRIST_MOMENT if table.grasp is Grasp.RIGID else math.inf
     if table.grasp is Grasp.POINT:
         found = f"{table.hand_moment_n_m:g} for point grasps, which pass no moment"
         raise InputError(source.path, f"{key}.hand_moment_n_m", "grasp = 'rigid' with it", found)

@@ -122,6 +122,9 @@ def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
 RENAMED = {"policy": "allocation", "seeds": "start_portfolio"}
 """Keys of earlier versions, and what they are called now."""
 
+UNBOUNDED = frozenset({"hand_moment_n_m"})
+"""Keys whose value may be `inf`: no bound."""
+
 LONGEST_TEXT, LONGEST_LINE, MOST_DOTS = 1_000_000, 10_000, 100_000
 """Letters of a TOML file and of its lines, and dots in all its keys: each takes 1 kB to read."""
 
@@ -156,7 +159,8 @@ def decode_toml(text: str, source: str, table: type[T]) -> T:
     _refuse_depth(raw, source)
     _refuse_unknown_keys(raw, table, source, "")
     for key, value in _leaves(raw, ""):
-        if isinstance(value, float) and not math.isfinite(value):
+        unbounded = value == math.inf and key.rpartition(".")[2] in UNBOUNDED
+        if isinstance(value, float) and not math.isfinite(value) and not unbounded:
             raise InputError(source, key, "a finite number", repr(value))
     if unknown := [key for key, value in _leaves(raw, "") if value == FILL_IN]:
         wanted = "what could not be guessed (the comment beside it has the reason)"

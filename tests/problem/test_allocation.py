@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -113,6 +114,27 @@ def test_contradictory_shares_are_refused_in_a_sentence(
     with pytest.raises(InputError) as raised:
         changed(problem, grasp, task, allocations)
     assert words in str(raised.value)
+
+
+def test_a_rigid_hand_passes_what_wrists_bear_unless_the_file_says_otherwise(problem: DesignProblem) -> None:
+    said = {
+        line: changed(problem, line).scene.payload.hand_moment
+        for line in (
+            'grasp = "rigid"',
+            RIGID.replace("7.0", "inf"),
+            RIGID.replace("7.0", "3"),
+            'grasp = "point"',
+        )
+    }
+    assert [*said.values()] == [7.0, math.inf, 3.0, math.inf]
+
+
+@pytest.mark.parametrize("number", ["-inf", "nan"])
+def test_only_no_bound_may_be_infinite(number: str, problem: DesignProblem) -> None:
+    with pytest.raises(InputError, match=r"payload\.hand_moment_n_m: wanted a finite number"):
+        changed(problem, RIGID.replace("7.0", number))
+    with pytest.raises(InputError, match=r"payload\.grasp_cone_deg: wanted a finite number, found inf"):
+        changed(problem, f"{RIGID}\ngrasp_cone_deg = inf")
 
 
 def test_the_share_that_statics_leaves_may_be_said(problem: DesignProblem) -> None:
