@@ -58,6 +58,7 @@ def front(
     """The Pareto front of a run, or a choice of its designs."""
     from evodesign.analysis.active_limits import frequent_limits
     from evodesign.cli.output import printable, show_notes, write_text
+    from evodesign.problem.left_out import left_out
     from evodesign.runlog.run import read_run
 
     if json and csv:
@@ -68,7 +69,8 @@ def front(
         raise InputError(asked[0], "", "one way to choose", f"{' and '.join(asked[1:])} too")
     opened = read_run(run)
     choice = _choice(opened, asked, near, where or (), limit)
-    show_notes([*opened.notes, *(printable(each.sentence) for each in frequent_limits(opened))])
+    frequent = (printable(each.sentence) for each in frequent_limits(opened))
+    show_notes([*opened.notes, *frequent, *left_out(opened.header.problem)])
     if plot is not None:
         from evodesign.report.front_figure import front_html  # plotly takes its time to load
 

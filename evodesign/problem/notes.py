@@ -11,6 +11,7 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.left_out import left_out
 from evodesign.tree.model import Joint
 
 __all__ = ["notes"]
@@ -26,10 +27,10 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     """A sentence for each thing that a careful reader of the problem would ask about.
 
     What was not taken as the URDF files say it, joints that stand where they cannot, what was averaged to
-    make postures symmetric or why they are whole, and limits of a person's joints that look as if their sign
-    were wrong: only joints with the names of the generated person, in the same T-pose (x forward, y to the
-    left, z up; docs/person.md), and whether or not the problem moves them. Limits do not depend on stature,
-    mass or sex, so any person serves.
+    make postures symmetric or why they are whole, what the model leaves out, and limits of a person's joints
+    that look as if their sign were wrong: only joints with the names of the generated person, in the same
+    T-pose (x forward, y to the left, z up; docs/person.md), and whether or not the problem moves them. Limits
+    do not depend on stature, mass or sex, so any person serves.
     """
     people = [scene.human.tree for scene in problem.scenes]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
@@ -44,7 +45,8 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     wrong = (sentence for sentence in found if sentence)
     agents = (problem.scene.robot, *(scene.human for scene in problem.scenes))
     still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
-    return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong)))
+    left = left_out(problem.source)
+    return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *left)))
 
 
 def _still(agent: Agent) -> Iterator[str]:

@@ -19,6 +19,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import Clearances
 from evodesign.problem.designs import unscaled_genome
 from evodesign.problem.factory import evaluator_of
+from evodesign.problem.left_out import left_out
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Detail, Evaluation, Hold, Lift, Task, evenly
@@ -114,6 +115,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
             *_thinned_note(run, shown),
             *more_notes,
             *(each.sentence for each in frequent_limits(run)),
+            *left_out(run.header.problem),
         ),
     )
 
