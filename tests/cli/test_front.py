@@ -56,6 +56,16 @@ def test_csv_holds_every_number_of_the_log(run: Path, capsys: pytest.CaptureFixt
             assert float(row[name]) == value
 
 
+def test_a_front_tells_what_its_problem_leaves_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = '[payload]\ngrasp = "rigid"\nhand_moment_n_m = inf\n[human]\njoint_ranges = "coupled"\n'
+    source = msgspec.structs.replace(HEADER.problem, text=text)
+    command(logged(tmp_path / "run", msgspec.structs.replace(HEADER, problem=source), RUN))
+    notes = [line for line in capsys.readouterr().err.splitlines() if line.startswith("note: ")]
+    assert [note.split(":")[1] for note in notes] == [" no [collisions]", " hand_moment_n_m = inf"]
+
+
 def of_materials() -> RunHeader:
     """A header whose second parameter is a density of two materials."""
     first, second = HEADER.parameters

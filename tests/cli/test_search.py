@@ -62,6 +62,7 @@ def test_search_prints_its_front_and_where_the_run_lies(whole: tuple[Path, str, 
     assert str(run) in stdout
     assert "robot_torque" in stdout
     assert f"evodesign report {run}\n" in stdout
+    assert stderr.count("note: no [collisions]: bodies may pass through each other") == 1
     lines = [line for line in stderr.splitlines() if line.startswith("generation ")]
     assert len(lines) == BUDGET // POPULATION
     assert "hypervolume" in lines[-1]

@@ -17,6 +17,7 @@ from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import Clearances
+from evodesign.problem.left_out import left_out
 from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html
 from evodesign.report.page.content import Content, Points
@@ -129,7 +130,9 @@ def test_what_is_left_out_is_said(
     monkeypatch.setattr(gather, "MOST_POSTURES", 1)
     monkeypatch.setattr(gather, "MOST_POINTS", 6)
     small = page_content(real_run)
-    assert content.notes == tuple(each.sentence for each in frequent_limits(real_run))
+    frequent = tuple(each.sentence for each in frequent_limits(real_run))
+    assert content.notes == (*frequent, *left_out(real_run.header.problem))
+    assert any(note.startswith("no [collisions]") for note in content.notes)
     assert any(note.startswith("6 of 12 evaluations") for note in small.notes)
     assert any("postures of" in note for note in small.notes)
     assert small.facts == content.facts, "the run's own figures count everything"
