@@ -15,6 +15,7 @@ from evodesign.tree.urdf_write import urdf_text
 from tests.problem.guess.humanoid import Build, humanoid
 from tests.robots import HUMANOIDS, NO_HUMANOIDS, SHAPELESS
 
+BUNDLED = sorted((Path(__file__).parents[2] / "problems" / "robots").glob("*.urdf"))
 QUICK = "\n[solver]\nstart_portfolio = false\ncompile = false\n"
 
 
@@ -61,6 +62,26 @@ def test_a_new_robot_is_checked_and_evaluated_as_it_stands(
     assert run("evaluate", file, "--json") == 0
     found = json.loads(capsys.readouterr().out)
     assert {height["status"] for height in found["heights"]} == {"solved"}
+
+
+@pytest.mark.parametrize("bundled", BUNDLED, ids=lambda path: path.stem)
+def test_a_newcomers_bundled_robot_is_guessed_and_checked(
+    bundled: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What `init` writes leaves nothing out, and every height is one that the robot and both people hold."""
+    file = tmp_path / "mine.toml"
+    assert run("init", bundled, "--to", file) == 0
+    assert file.read_text().endswith("\n")
+    assert "FILL IN" not in file.read_text()
+    capsys.readouterr()
+    assert run("check", file, "--json") == 0
+    shown = capsys.readouterr()
+    for words in ("no [collisions]", "hand_moment_n_m", "joint_ranges"):
+        assert words not in shown.err
+    (held,) = (each for each in json.loads(shown.out)["preflight"] if each["item"] == "holds the load")
+    lowest, highest = map(float, re.findall(r"from (\S+) to (\S+) m", held["found"])[0])
+    heights = json.loads(shown.out)["heights_m"]
+    assert lowest < min(heights) < max(heights) < highest
 
 
 def test_the_file_is_named_after_the_robot_and_never_written_over(

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from evodesign.body.placement import Vector, add, dot, scale
 from evodesign.errors import ModelError
-from evodesign.mechanics.scene import SIDES
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import SIDES, WRIST_MOMENT
 from evodesign.problem.guess.body_plan import BodyPlan
 from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.resize import growth_of
@@ -45,6 +46,17 @@ class LoadGuess:
     size: tuple[float, float, float]
     mass: float
     heights: tuple[float, ...]
+
+    @property
+    def hand_moment(self) -> float:
+        """Largest moment of a hand [N m]: with it either agent may carry three quarters of the load.
+
+            m g (s - 1/2) depth / 4  = m g depth / 16        for a share s = 3/4, by four hands
+
+        More than that would twist the load to hold up forearms, at no cost where wrists stand still.
+        """
+        sharing = self.mass * GRAVITY * self.size[0] / 16.0
+        return min(math.ceil(10.0 * sharing) / 10.0, WRIST_MOMENT)
 
 
 def groups(plan: BodyPlan) -> tuple[Group, ...]:
@@ -141,7 +153,7 @@ def _trunk(plan: BodyPlan) -> Group:
 
 
 def load_guess(plan: BodyPlan, ground: float) -> LoadGuess:
-    """A box wider than the shoulders, of a twentieth of the robot's mass, from the hips to the shoulders.
+    """A box wider than the shoulders, of a tenth of the robot's mass, from the hips to the shoulders.
 
     Args:
         plan: without arms, hips stand for shoulders.
@@ -156,7 +168,7 @@ def load_guess(plan: BodyPlan, ground: float) -> LoadGuess:
     depth = 0.4 if arm > 0.5 else 0.25
     mass = sum(float(body.inertia.mass) for body in plan.welded.bodies.values())
     heights = tuple(dict.fromkeys(_rounded(hips + share * (top - hips), 0.05) for share in (0.0, 0.5, 1.0)))
-    return LoadGuess((depth, width, 0.05), min(max(_rounded(0.05 * mass, 0.5), 1.0), 5.0), heights)
+    return LoadGuess((depth, width, 0.05), min(max(_rounded(0.1 * mass, 0.5), 1.0), 15.0), heights)
 
 
 def _beginnings(limbs: Mapping[str, Limb]) -> tuple[Vector, Vector]:

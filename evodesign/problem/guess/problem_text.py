@@ -6,13 +6,16 @@ What could not be guessed is `FILL IN` in the file, which no key may be, so that
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from evodesign.mechanics.scene import SIDES
 from evodesign.problem.file import Facing
 from evodesign.problem.guess.body_plan import BodyPlan, body_plan
+from evodesign.problem.guess.bounds import LengthBound, length_bounds
 from evodesign.problem.guess.contacts import Contacts, GuessedContact, contacts, frame_xyz_rpy
+from evodesign.problem.guess.hardware_text import hardware_text
+from evodesign.problem.guess.heights import held_heights
 from evodesign.problem.guess.parameters import Group, LoadGuess, groups, load_guess
 from evodesign.problem.table import FILL_IN
 from evodesign.tree.model import Tree
@@ -20,8 +23,6 @@ from evodesign.tree.urdf_read import InertiaRule
 
 __all__ = ["FILL_IN", "Guess", "GuessedProblem", "guessed_problem", "inertia_rule"]
 
-LOWER, UPPER = 0.6, 1.6
-"""Bounds of length multipliers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,16 +54,23 @@ def guessed_problem(tree: Tree, urdf: str) -> GuessedProblem:
     plan = body_plan(tree)
     found = contacts(plan)
     load = load_guess(plan, _ground(plan, found))
-    segments = groups(plan)
-    text = "\n".join(
-        (
-            *_head(tree, urdf),
-            *_robot(plan, found),
-            *_others(plan, load),
-            *(line for group in segments for line in _length(group)),
-        )
+    segments = [_Segment(each, length_bounds(tree, each.links)) for each in groups(plan)]
+    before = [*_head(tree, urdf), *_robot(plan, found)]
+    after = [*_lengths(segments), *hardware_text(plan)]
+    why = "from the hips to the shoulders"
+    draft = _text(before, _others(load, why), after)
+    if held := held_heights(draft, urdf, tree):
+        load = replace(load, heights=held.heights)
+        ends = f"{held.lowest:.2f} to {held.highest:.2f} m"
+        why = f"robot and people hold {ends}; the taller one's hands hang at {held.hanging:.2f} m"
+    return GuessedProblem(
+        _text(before, _others(load, why), after),
+        (*_guesses(plan, found, load, why), *(each.guess() for each in segments)),
     )
-    return GuessedProblem(text, (*_guesses(plan, found, load), *map(_guess_of_group, segments)))
+
+
+def _text(*parts: Iterable[str]) -> str:
+    return "".join(f"{line}\n" for part in parts for line in part)
 
 
 def _ground(plan: BodyPlan, found: Contacts) -> float:
@@ -146,47 +154,82 @@ def _frame(contact: GuessedContact) -> Sequence[str]:
     )
 
 
-def _others(plan: BodyPlan, load: LoadGuess) -> Sequence[str]:
+def _others(load: LoadGuess, why_heights: str) -> Sequence[str]:
     return (
         "",
-        "[human]",
-        "stature_m = 1.75",
-        "mass_kg = 75.0",
-        'sex = "male"',
+        "[[human]]  # the two ends of nine in ten adults: small and weak, tall and heavy",
+        'population = { sex = "female", percentiles = [5] }',
+        'joint_ranges = "coupled"  # joints of the spine share published ranges',
+        "",
+        "[[human]]",
+        'population = { sex = "male", percentiles = [95] }',
+        'joint_ranges = "coupled"',
         "",
         "[payload]",
         f"size_m = {[*load.size]}  # depth (robot to person), width, height",
-        f"mass_kg = {load.mass}",
-        'grasp = "point"',
+        f"mass_kg = {load.mass}  # a tenth of the robot's, from 1 to 15",
+        'grasp = "rigid"  # hands pass moments: either agent may carry more than half',
+        "# So that either carries up to three quarters: mass x g x depth / 16, at most 7, what wrists bear",
+        "# (Delp, Grierson and Buchanan 1996); more than it takes would hold up forearms at no cost.",
+        f"hand_moment_n_m = {load.hand_moment:g}",
         "",
         "[task]",
-        f"heights_m = {[*load.heights]}",
+        f"heights_m = {[*load.heights]}  # {why_heights}",
+        "",
+        "[collisions]  # nothing passes through anything",
         "",
         "[objectives]",
         'minimise = ["robot_torque", "human_torque"]',
-        'maximise = ["reach_height"]',
+        'maximise = ["shared_reach_height"]  # as high as the smaller person also reaches',
         "",
         "[search]",
         'algorithm = "surrogate"',
         "evaluations = 480",
         "seed = 1",
-    )
-
-
-def _length(group: Group) -> Sequence[str]:
-    if not group.links:
-        return ("", f"# no [[design.length]] {group.name}: {group.why_not}")
-    return (
         "",
-        "[[design.length]]",
-        f"name = {json.dumps(group.name)}",
-        f"links = {json.dumps(group.links)}",
-        f"lower = {LOWER}",
-        f"upper = {UPPER}",
+        "[[design.allocation]]  # who carries how much",
+        'name = "effort_ratio"',
+        "lower = -2.0  # of their efforts the robot's counts a hundredth of the person's",
+        "upper = 1.0  # ten times it",
     )
 
 
-def _guesses(plan: BodyPlan, found: Contacts, load: LoadGuess) -> Iterable[Guess]:
+def _lengths(segments: Iterable[_Segment]) -> Iterator[str]:
+    yield ""
+    yield "# Lengths as multiples of the robot's own: from 0.6 to 1.6, and no farther than bodies with two or"
+    yield "# three joints between them stay clear of each other while all joints are at zero."
+    for segment in segments:
+        yield from segment.lines()
+
+
+@dataclass(frozen=True, slots=True)
+class _Segment:
+    """Links that share a length multiplier, and its bounds; none without links."""
+
+    group: Group
+    bounds: tuple[LengthBound, ...]
+
+    def lines(self) -> Iterator[str]:
+        """The parameter's table, or why there is none."""
+        name, links = self.group.name, self.group.links
+        if not links:
+            yield from ("", f"# no [[design.length]] {name}: {self.group.why_not}")
+            return
+        yield from ("", "[[design.length]]", f"name = {json.dumps(name)}", f"links = {json.dumps(links)}")
+        for key, bound in zip(("lower", "upper"), self.bounds, strict=True):
+            reason = f"  # beyond it {' and '.join(bound.overlap)} overlap" if bound.overlap else ""
+            yield f"{key} = {bound.multiplier:g}{reason}"
+
+    def guess(self) -> Guess:
+        """The same for a person."""
+        why = self.group.why_not
+        if self.group.links:
+            lower, upper = (bound.multiplier for bound in self.bounds)
+            why = f"{self.group.length:.3g} m long; {lower:g} to {upper:g} times that"
+        return Guess(f"design.length {self.group.name}", ", ".join(self.group.links), why)
+
+
+def _guesses(plan: BodyPlan, found: Contacts, load: LoadGuess, why_heights: str) -> Iterable[Guess]:
     length, width = found.sole_size
     hands = ", ".join(contact.frame for contact in found.hands.values())
     heights = ", ".join(f"{height:g}" for height in load.heights)
@@ -197,13 +240,8 @@ def _guesses(plan: BodyPlan, found: Contacts, load: LoadGuess) -> Iterable[Guess
     yield Guess("robot.soles", f"{length:g} x {width:g} m" if found.soles else "", found.why_soles)
     yield Guess("robot.trunk", ", ".join(_trunk_frames(plan)), "what hips and shoulders are joined to")
     yield Guess("robot.joints", f"{len(plan.joints)} joints", "those between hands and feet")
+    yield Guess("payload", f"{load.mass:g} kg, {load.size[1]:g} m wide", "a tenth of the mass; the shoulders")
     yield Guess(
-        "payload", f"{load.mass:g} kg, {load.size[1]:g} m wide", "a twentieth of the mass; the shoulders"
+        "payload.hand_moment_n_m", f"{load.hand_moment:g}", "either may carry three quarters of the load"
     )
-    above = "" if found.soles else ", above the ankles"
-    yield Guess("task.heights_m", heights, f"from the hips to the shoulders{above}")
-
-
-def _guess_of_group(group: Group) -> Guess:
-    why = f"{group.length:.3g} m long" if group.links else group.why_not
-    return Guess(f"design.length {group.name}", ", ".join(group.links), why)
+    yield Guess("task.heights_m", heights, why_heights)
