@@ -2,7 +2,7 @@
 
     python -m benchmarks.clear_robots [--robots NAME,...] [--fixed-starts]
 
-Each robot's problem is what `init` writes and the line `[collisions]`, and begins with an empty cache. Told
+Each robot's problem is what `init` writes, and begins with an empty cache. Told
 are the pairs that are checked, of robot and person; those that have rows (of the robot, of its reach, of the
 person); whether all heights are solved; the smallest distance of two bodies by coal, with the table and
 without it; the reach with it; and processor time until the first evaluation begins, compilers included.
@@ -20,8 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
+from benchmarks.clearance import without_table
 from benchmarks.public_robots import timed
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.pool.worker import SerialPool
@@ -43,8 +42,7 @@ def guessed(urdf: Path, folder: Path) -> tuple[DesignProblem, DesignProblem]:
     """The problem that `init` writes for a robot, without and with `[collisions]`."""
     timed(folder, "init", urdf, "--to", "robot.toml")
     source = read_source(folder / "robot.toml")
-    apart = msgspec.structs.replace(source, text=f"{source.text}\n[collisions]\n")
-    return build_problem(source), build_problem(apart)
+    return build_problem(without_table(source)), build_problem(source)
 
 
 def processor_seconds() -> float:
