@@ -32,7 +32,7 @@ class _Person(msgspec.Struct, frozen=True):
     joint_ranges: str = "separate"
 
 
-class _Problem(msgspec.Struct, frozen=True):
+class _Sketch(msgspec.Struct, frozen=True):
     """The tables in question, as in `ProblemFile`."""
 
     payload: _Load | tuple[_Load, ...] = ()
@@ -47,13 +47,13 @@ def left_out(source: ProblemSource) -> tuple[str, ...]:
         source: of a problem; of a text that is no problem file nothing is said.
     """
     try:
-        problem = msgspec.convert(tomllib.loads(source.text), _Problem)
+        problem = msgspec.convert(tomllib.loads(source.text), _Sketch)
     except (tomllib.TOMLDecodeError, msgspec.ValidationError, RecursionError):
         return ()
     return tuple(_sentences(problem))
 
 
-def _sentences(problem: _Problem) -> Iterator[str]:
+def _sentences(problem: _Sketch) -> Iterator[str]:
     if problem.collisions is None:
         yield "no [collisions]: bodies may pass through each other, through the load and the floor"
     loads = problem.payload if isinstance(problem.payload, tuple) else (problem.payload,)

@@ -44,9 +44,9 @@ def length_bounds(tree: Tree, links: Sequence[str]) -> tuple[LengthBound, Length
 
     Args:
         tree: the robot, unscaled.
-        links: that share the multiplier; without any both bounds are the farthest.
+        links: that share the multiplier; without any, or without shapes, both bounds are the farthest.
     """
-    if not links:
+    if not links or not SolidBodies.of_tree(tree).names:
         return LengthBound(LOWER), LengthBound(UPPER)
     clear = _clear(tree)
     return _bound(tree, links, clear, LOWER, -STEP), _bound(tree, links, clear, UPPER, STEP)

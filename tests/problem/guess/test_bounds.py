@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import coal
@@ -61,8 +62,13 @@ def test_what_overlaps_in_the_robot_as_it_is_bounds_nothing() -> None:
     assert [bound.overlap for bound in length_bounds(stack(-0.05), ["rod"])] == [None, None]
 
 
-def test_no_links_have_the_farthest_bounds() -> None:
+def test_no_links_and_no_shapes_have_the_farthest_bounds() -> None:
     assert [bound.multiplier for bound in length_bounds(stack(0.1), [])] == [LOWER, UPPER]
+    tree = stack(0.1)
+    shapeless = (replace(link, solids=(), own_inertia=link.inertia) for link in tree.links if link.solids)
+    others = (link for link in tree.links if not link.solids)
+    bare = Tree(tree.name, (*shapeless, *others), tree.joints)
+    assert [bound.multiplier for bound in length_bounds(bare, ["rod"])] == [LOWER, UPPER]
 
 
 @pytest.mark.parametrize("names", [("chest",), ("left_upper_arm", "right_upper_arm")])
