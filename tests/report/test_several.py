@@ -25,14 +25,15 @@ from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.logged_posture import logged_posture
 from evodesign.problem.progress import SILENT
+from evodesign.records import Detail
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.opened_design import open_design
-from evodesign.report.page import gather, page_content
+from evodesign.report.page import page_content, postures
 from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
-from tests.report.page.reading import check_to_seven_digits
+from tests.report.page.reading import check_to_seven_digits, leaves
 from tests.report.replay.test_replay import frames
 from tests.report.scenes import random_company
 from tests.report.several import CASES, LOADS, PEOPLE, problem_of_several, write_several
@@ -152,13 +153,31 @@ def test_page_holds_everyone_and_every_case(run: RunLog) -> None:
         check_to_seven_digits(design.postures, run.details[number].cases)
 
 
-def test_page_keeps_fewer_designs_of_many_pairs(
+def test_every_design_of_a_front_has_its_robot_with_everyone(several: DesignProblem, tmp_path: Path) -> None:
+    many = write_several(several, tmp_path / "run", designs=80)
+    content = page_content(many)
+    assert content.facts.front == 80
+    assert {number: len(design.postures) for number, design in content.designs.items()} == dict.fromkeys(
+        range(80), len(CASES)
+    )
+    assert not any("postures" in note for note in content.notes)
+
+
+def numbers_of(detail: Detail) -> int:
+    """How many numbers of postures a design has: every leaf but those of cases and times."""
+    agents = [
+        agent for case in detail.cases for instant in case.instants for agent in instant.agents.values()
+    ]
+    return sum(len(leaves(agent)) for agent in agents)
+
+
+def test_page_keeps_as_many_designs_as_have_room_with_all_their_pairs(
     several: DesignProblem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     many = write_several(several, tmp_path / "run", designs=12)
-    monkeypatch.setattr(gather, "MOST_POSTURES", 32)
+    monkeypatch.setattr(postures, "MOST_NUMBERS", 8 * numbers_of(many.details[0]))
     content = page_content(many)
-    assert sum(bool(design.postures) for design in content.designs.values()) == 32 / 4
+    assert sum(bool(design.postures) for design in content.designs.values()) == 8
     assert any(note.startswith("postures of 8 of 12 designs") for note in content.notes)
 
 

@@ -263,8 +263,8 @@ class DesignContent(Part, frozen=True):
         gradients: of each objective by parameter; empty when the log has none.
         hardware: bill of materials; None where the problem has no hardware, or postures are left out.
         slices: through a marked design, as in `analysis.importance_json`.
-        urdf: of the robot: lines that differ from the unscaled one's by their place, or the whole text where
-            it has another number of lines.
+        urdf: of the robot: lines that differ from the unscaled one's by their place, each as its texts and
+            numbers in turn, or the whole text where it has another number of lines.
         replay: MCAP file of a marked design, as base64; empty when it is left out.
     """
 
@@ -278,7 +278,7 @@ class DesignContent(Part, frozen=True):
     gradients: dict[str, dict[str, float]] = {}
     hardware: HardwareContent | None = None
     slices: list[dict[str, Any]] = []
-    urdf: dict[int, str] | str = {}
+    urdf: dict[int, tuple[str | float, ...]] | str = {}
     replay: str = ""
 
 

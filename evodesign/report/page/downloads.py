@@ -31,7 +31,7 @@ MOST_BYTES = 300_000
 DIGITS = 7
 """Of the numbers of a design that can be opened: a micrometre in ten metres."""
 
-NUMBER = re.compile(r'(?<=[" ])-?\d+\.\d+(?:e-?\d+)?(?=[" ])')
+NUMBER = re.compile(r'(?<=[" ])(-?\d+\.\d+(?:e-?\d+)?)(?=[" ])')
 """In a line of a URDF."""
 
 
@@ -43,7 +43,7 @@ def rounded(design: DesignContent) -> DesignContent:
 def _rounded(part: Any) -> Any:
     match part:
         case float():
-            return _number(part)
+            return float(f"{part:.{DIGITS}g}")
         case dict():
             return {key: _rounded(value) for key, value in part.items()}
         case list() | tuple():
@@ -51,8 +51,9 @@ def _rounded(part: Any) -> Any:
     return part
 
 
-def _number(number: float) -> float:
-    return float(f"{number:.{DIGITS}g}")
+def _parts(line: str) -> tuple[str | float, ...]:
+    """A line of a URDF as its texts and, in between, its numbers."""
+    return tuple(float(part) if place % 2 else part for place, part in enumerate(NUMBER.split(line)))
 
 
 class Downloads:
@@ -67,18 +68,14 @@ class Downloads:
         self._problem, self._run = problem, run
         self._unscaled = urdf_text(problem.scene.robot.tree).splitlines()
 
-    def urdf(self, robot: Tree) -> dict[int, str] | str:
+    def urdf(self, robot: Tree) -> dict[int, tuple[str | float, ...]] | str:
         """A robot's URDF as `DesignContent` tells it."""
         text = urdf_text(robot)
         lines = text.splitlines()
         if len(lines) != len(self._unscaled):
             return text
         pairs = enumerate(zip(lines, self._unscaled, strict=True))
-        return {
-            place: NUMBER.sub(lambda found: repr(_number(float(found[0]))), line)
-            for place, (line, before) in pairs
-            if line != before
-        }
+        return {place: _parts(line) for place, (line, before) in pairs if line != before}
 
     def replay(self, robot: Tree, detail: Detail) -> str:
         """A design's replay as base64; empty if it is too large, or of strangers to the problem."""

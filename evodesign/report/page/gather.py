@@ -37,18 +37,13 @@ from evodesign.report.page.content import (
 from evodesign.report.page.downloads import Downloads, rounded
 from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
+from evodesign.report.page.postures import MOMENTS, details_shown, shown_cases
 from evodesign.report.page.static_torques import StaticTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["MOST_POSTURES", "Gradients", "gradients_of", "page_content", "with_gradients"]
-
-MOST_POSTURES = 250
-"""Designs whose postures are in the page: the marked ones, then the front, evenly."""
-
-MOMENTS = 9
-"""Moments of a lift that are in the page."""
+__all__ = ["Gradients", "gradients_of", "page_content", "with_gradients"]
 
 MOST_LEARNT = 2_000
 """Evaluations that tell what matters in the page; beyond this number they are thinned out evenly."""
@@ -76,7 +71,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     if len(needed | elites) < MOST_POINTS:
         needed |= elites
     shown = chosen_points(run.evaluations, on_front, needed, MOST_POINTS)
-    opened, more_notes = _opened(run, marked, shown, on_front)
+    opened, more_notes = details_shown(run.details, marked, shown, on_front)
     found = importance(run.header, subsample(run.evaluations, MOST_LEARNT))
     known = growth(run.generations)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
@@ -113,7 +108,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
             *notes,
             *_unscaled_note(run, problem, marked),
             *_thinned_note(run, shown),
-            *more_notes,
+            *(() if problem is None else more_notes),
             *(each.sentence for each in frequent_limits(run)),
             *left_out(run.header.problem),
         ),
@@ -196,33 +191,6 @@ def _thinned_note(run: RunLog, shown: Sequence[Evaluation]) -> tuple[str, ...]:
     )
 
 
-def _opened(
-    run: RunLog, marked: Sequence[Mark], shown: Sequence[Evaluation], on_front: Collection[int]
-) -> tuple[dict[int, Detail], tuple[str, ...]]:
-    """Details that go into the page, by number, and a note on those that are left out."""
-    known = {detail.evaluation: detail for detail in run.details}
-    first = list(dict.fromkeys(mark.number for mark in marked if mark.number in known))
-    others = [e.number for e in shown if e.number in on_front and e.number in known and e.number not in first]
-    kept = subsample(others, max(0, _most_designs(known.values()) - len(first)))
-    opened = {number: known[number] for number in (*first, *kept)}
-    if len(kept) == len(others):
-        return opened, ()
-    return opened, (
-        f"postures of {len(opened)} of {len(first) + len(others)} designs are in this page; "
-        "evodesign report RUN --designs NUMBER,NUMBER puts in those that you name",
-    )
-
-
-def _most_designs(details: Collection[Detail]) -> int:
-    """How many designs have their postures in the page: fewer of many people, loads and disturbances."""
-    pairs = max((len({each.case.pair for each in detail.cases}) for detail in details), default=1)
-    cases = [each for detail in details for each in detail.cases]
-    lifts = any(isinstance(each.case.task, Lift) for each in cases)
-    disturbed = max((len(instant.disturbed) for each in cases for instant in each.instants), default=0)
-    many = pairs * (1 + disturbed) * (3 if lifts else 1)
-    return MOST_POSTURES if many < 2 else max(MOST_POSTURES // many, MOST_POSTURES // 5)
-
-
 def _designs(
     run: RunLog,
     problem: DesignProblem | None,
@@ -284,7 +252,7 @@ def _design(
     values = space.given(design, assessment.rated_torques)
     links, joints = changes(problem, values)
     robot = problem.space.resized(problem.scene.robot.tree, values)
-    postures = tuple(each.thinned(MOMENTS) for each in detail.cases)
+    postures = shown_cases(detail.cases)
     try:
         found = known.clearances.of(robot, detail.cases)
         static_torques, limits = known.statics.of(robot, postures)

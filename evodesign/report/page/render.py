@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 from plotly.offline import get_plotlyjs
 
+from evodesign.report.page.columns import side_by_side
 from evodesign.report.page.content import Content, DesignContent
 
 __all__ = ["page_html"]
@@ -78,24 +79,13 @@ def page_html(content: Content) -> str:
 
 
 def _in_columns(content: Content) -> dict[str, Any]:
-    """The content with designs by field, then by number: gzip finds what is alike only where it is near."""
+    """The content with designs by field, side by side: gzip finds what is alike only where it is near."""
     told: dict[str, Any] = msgspec.to_builtins(content)
     fields = DesignContent.__struct_fields__
     designs = told["designs"].items()
     columns = {field: {number: design[field] for number, design in designs} for field in fields}
-    told["designs"] = {**columns, "urdf": _by_line(columns["urdf"])}
+    told["designs"] = {field: side_by_side(column) for field, column in columns.items()}
     return told
-
-
-def _by_line(urdfs: dict[int, Any]) -> dict[str, Any]:
-    """URDFs that are told by line with the same line of all designs side by side; whole texts by number."""
-    by_line = {number: lines for number, lines in urdfs.items() if lines and not isinstance(lines, str)}
-    places = sorted({place for lines in by_line.values() for place in lines})
-    return {
-        "numbers": list(by_line),
-        "lines": {place: [lines.get(place) for lines in by_line.values()] for place in places},
-        "whole": {number: text for number, text in urdfs.items() if isinstance(text, str)},
-    }
 
 
 @cache

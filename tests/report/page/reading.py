@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,29 @@ def leaves(part: Any, path: str = "") -> dict[str, Any]:
         case found:
             return {path: found}
     return {at: leaf for key, one in parts for at, leaf in leaves(one, f"{path}/{key}").items()}
+
+
+def apart(groups: Sequence[Mapping[str, Any]]) -> dict[int, Any]:
+    """What `page.columns` wrote side by side, by the design's number."""
+
+    def filled(form: Any, values: Iterator[Any]) -> Any:
+        match form:
+            case dict():
+                return {key: filled(part, values) for key, part in form.items()}
+            case list():
+                return [filled(part, values) for part in form]
+        return next(values)
+
+    def value(group: Mapping[str, Any], place: int, row: int) -> Any:
+        column = group["columns"][place if place >= 0 else -1 - place]
+        found = column[row] if isinstance(column, list | tuple) else column
+        return found if place >= 0 else -found
+
+    return {
+        number: filled(group["form"], (value(group, place, row) for place in group["places"]))
+        for group in groups
+        for row, number in enumerate(group["of"])
+    }
 
 
 def check_to_seven_digits(shown: Any, logged: Any) -> None:

@@ -19,13 +19,13 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.clearance import Clearances
 from evodesign.problem.left_out import left_out
 from evodesign.records import Objective, Sense
-from evodesign.report.page import gather, page_content, page_html
+from evodesign.report.page import gather, page_content, page_html, postures
 from evodesign.report.page.content import Content, Points
 from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
-from tests.report.page.reading import check_to_seven_digits
+from tests.report.page.reading import apart, check_to_seven_digits
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_generation, toy_header
 
 NAME = "</script><script>alert(1)</script>"
@@ -127,7 +127,7 @@ def test_design_that_the_run_does_not_hold_is_refused(real_run: RunLog) -> None:
 def test_what_is_left_out_is_said(
     real_run: RunLog, monkeypatch: pytest.MonkeyPatch, content: Content
 ) -> None:
-    monkeypatch.setattr(gather, "MOST_POSTURES", 1)
+    monkeypatch.setattr(postures, "MOST_NUMBERS", 1)
     monkeypatch.setattr(gather, "MOST_POINTS", 6)
     small = page_content(real_run)
     frequent = tuple(each.sentence for each in frequent_limits(real_run))
@@ -152,17 +152,10 @@ def embedded(page: str) -> Content:
     """The content as a browser finds it: up to the first end of its script element."""
     block = page.split('<script type="text/plain" id="content">')[1].split("</script>")[0]
     told = msgspec.json.decode(gzip.decompress(base64.b64decode(block)))
-    designs: dict[str, dict[str, Any]] = {}
-    urdfs = told["designs"].pop("urdf")
-    for field, column in told["designs"].items():
-        for number, value in column.items():
-            designs.setdefault(number, {"urdf": {}})[field] = value
-    for place, lines in urdfs["lines"].items():
-        for number, line in zip(urdfs["numbers"], lines, strict=True):
-            if line is not None:
-                designs[str(number)]["urdf"][place] = line
-    for number, text in urdfs["whole"].items():
-        designs[number]["urdf"] = text
+    designs: dict[int, dict[str, Any]] = {}
+    for field, groups in told["designs"].items():
+        for number, value in apart(groups).items():
+            designs.setdefault(number, {})[field] = value
     return msgspec.convert({**told, "designs": designs}, Content, strict=False)
 
 

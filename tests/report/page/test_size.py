@@ -1,4 +1,4 @@
-"""How large a page is: a thousand designs, all of them on the front, in less than 4 MB."""
+"""How large a page is: a thousand designs, all of them on the front, in less than 5 MB."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def jittered(part: Any, generator: random.Random) -> Any:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["point_grasp", "icub_hardware"])
-def test_a_page_of_a_thousand_designs_is_smaller_than_4_mb(
+def test_a_page_of_a_thousand_designs_is_smaller_than_5_mb(
     name: str, repository: Path, real_run: RunLog, tmp_path: Path
 ) -> None:
     """Postures are those of the point-grasp problem, whose robot and person that of hardware has too."""
@@ -67,5 +67,5 @@ def test_a_page_of_a_thousand_designs_is_smaller_than_4_mb(
             log.detail(msgspec.structs.replace(detail, evaluation=number))
     content = page_content(read_run(tmp_path / "run"))
     assert len(content.points.number) == DESIGNS
-    assert sum(bool(design.postures) for design in content.designs.values()) >= 200
-    assert len(page_html(content).encode()) < 4_000_000
+    assert sum(bool(design.postures) for design in content.designs.values()) > 800
+    assert len(page_html(content).encode()) < 5_000_000

@@ -57,7 +57,7 @@ const posturesCsv = (design) => {
 const urdfOf = (design) => {
   if (typeof design.urdf === "string") return design.urdf;
   const lines = content.urdf.split("\n");
-  for (const [place, line] of Object.entries(design.urdf)) lines[place] = line;
+  for (const [place, parts] of Object.entries(design.urdf)) lines[place] = parts.join("");
   return lines.join("\n");
 };
 

@@ -8,16 +8,26 @@ const unpacked = (letters) => {
 
 new Function(await unpacked(byId("plotly").textContent)).call(window);
 const content = JSON.parse(await unpacked(byId("content").textContent));
-const { urdf: urdfColumns, ...columnsOfDesigns } = content.designs;
-content.designs = {};
-for (const [field, column] of Object.entries(columnsOfDesigns))
-  for (const [number, value] of Object.entries(column)) (content.designs[number] ??= {})[field] = value;
-for (const design of Object.values(content.designs)) design.urdf = {};
-for (const [place, texts] of Object.entries(urdfColumns.lines))
-  texts.forEach((text, row) => {
-    if (text !== null) content.designs[urdfColumns.numbers[row]].urdf[place] = text;
-  });
-for (const [number, text] of Object.entries(urdfColumns.whole)) content.designs[number].urdf = text;
+
+// A form with values in place of its zeros, in their order.
+const filled = (form, values) => {
+  if (form === 0) return values.next().value;
+  if (Array.isArray(form)) return form.map((part) => filled(part, values));
+  return Object.fromEntries(Object.entries(form).map(([key, part]) => [key, filled(part, values)]));
+};
+
+const designsOf = (fields) => {
+  const designs = {};
+  const at = (column, row) => (Array.isArray(column) ? column[row] : column);
+  for (const [field, groups] of Object.entries(fields))
+    for (const { form, of, columns, places } of groups)
+      of.forEach((number, row) => {
+        const own = places.map((place) => (place < 0 ? -at(columns[-1 - place], row) : at(columns[place], row)));
+        (designs[number] ??= {})[field] = filled(form, own.values());
+      });
+  return designs;
+};
+content.designs = designsOf(content.designs);
 const { objectives, constraints, parameters, points } = content;
 
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
