@@ -30,6 +30,7 @@ SCRIPTS = (
     "theme.js",
     "front.js",
     "front_axes.js",
+    "front_pointer.js",
     "parallel.js",
     "progress.js",
     "failures.js",

@@ -127,6 +127,57 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: RunLog) -> None:
         assert page.value(cell) == shown_as(value)
 
 
+def test_every_point_of_the_front_shows_its_robot(page: Tab, real_run: RunLog) -> None:
+    for number in front_of(real_run):
+        page.value(f"window.evodesign.select({number})")
+        page.wait_for(f"{SHOWN} === 'Design {number}'")
+        page.wait_for(f"{CANVAS}.getAttribute('aria-label').startsWith('Design {number} and the person')")
+
+
+def crowded_run(directory: Path) -> RunLog:
+    """A front of which each design has a dominated one so near that both are one spot on the screen."""
+    header = toy_header()
+    feasible = [each for each in toy_evaluations(header, 60) if each.feasible]
+    with RunWriter(directory, header) as log:
+        for number, evaluation in enumerate(feasible):
+            place, behind = divmod(number, 2)
+            values = {"robot_torque": 30.0 + place**2, "reach_height": 1.0 + 0.1 * place}
+            values["robot_torque"] += 1e-3 * behind
+            found = msgspec.structs.replace(evaluation.assessment, objectives=values)
+            log.evaluation(msgspec.structs.replace(evaluation, number=number, assessment=found))
+    return read_run(directory)
+
+
+def test_a_click_on_a_marked_design_selects_it_whatever_lies_behind(chromium: Tab, tmp_path: Path) -> None:
+    run = crowded_run(tmp_path / "run")
+    open_run(chromium, run)
+    assert set(front_of(run)) == {each.number for each in run.evaluations if each.number % 2 == 0}
+    marked = dict.fromkeys(chromium.value("window.evodesign.content.marks.map(mark => mark.number)"))
+    assert len(marked) >= 2
+    for number in marked:
+        chromium.value(f"window.evodesign.select({number + 1})")
+        x, y = spot(chromium, number)
+        chromium.mouse("mouseMoved", x, y, pressed=False)
+        chromium.wait_for(f"{PLOT}.querySelector('.hovertext')?.textContent.startsWith('Design {number}')")
+        chromium.click(x + 4, y)
+        chromium.wait_for(f"{SHOWN} === 'Design {number}'")
+    assert chromium.complaints() == []
+
+
+def test_a_click_on_a_disc_of_the_front_selects_that_one_and_not_what_it_hides(
+    chromium: Tab, tmp_path: Path
+) -> None:
+    run = crowded_run(tmp_path / "run")
+    open_run(chromium, run)
+    number = next(
+        number
+        for number in front_of(run)
+        if number not in chromium.value("window.evodesign.content.marks.map(mark => mark.number)")
+    )
+    chromium.click(*spot(chromium, number))
+    chromium.wait_for(f"{SHOWN} === 'Design {number}'")
+
+
 def test_the_nearest_bodies_of_the_posture_that_is_shown_are_told(page: Tab) -> None:
     told = page.value(
         "(() => { const { content, state } = window.evodesign, design = content.designs[state.selected];"

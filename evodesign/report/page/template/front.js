@@ -96,11 +96,13 @@ const colourScale = (axis) => {
   };
 };
 
+const MARK_TRACES = ["knee", "best", "asked", "unscaled"];
+
 const markTraces = () => {
   const shapes = drawnIn.solid
     ? { unscaled: "cross", best: "diamond", knee: "square", asked: "circle" }
     : { unscaled: "star", best: "diamond-open", knee: "square-open", asked: "triangle-up-open" };
-  return ["knee", "best", "asked", "unscaled"].flatMap((kind) => {
+  return MARK_TRACES.flatMap((kind) => {
     const marked = content.marks.filter((mark) => mark.kind === kind).map((mark) => rowOf.get(mark.number));
     const drawn = marked.filter(complete);
     if (drawn.length === 0) return [];
@@ -206,8 +208,9 @@ const wireFront = () => {
   const plot = byId("front");
   plot.on("plotly_click", (event) => {
     plot.focus({ preventScroll: true });
-    pick(event.points[0].customdata);
+    pick(pointed(event).customdata);
   });
+  plot.on("plotly_hover", labelPointed);
   plot.on("plotly_relayout", sayOutside);
   plot.on("plotly_selected", (event) => {
     const drawnByHand = event?.range || event?.lassoPoints;
