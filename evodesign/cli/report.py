@@ -35,17 +35,18 @@ def report(
 ) -> None:
     """Write the page of a run: front, parameters, progress, failures, postures; one file, no network."""
     from evodesign.cli.output import print_lines, show_notes, write_text
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.report.opened_design import with_postures
     from evodesign.report.page import page_content, page_html
     from evodesign.runlog.run import read_run
 
     asked = _numbers(designs)
     opened = read_run(run)
-    content = page_content(opened, asked)
-    if sensitivities:
-        from evodesign.cli.progress import precompute_progress
-        from evodesign.report.page.gather import with_gradients  # CasADi takes its time to load
+    with precompute_progress() as progress:
+        content = page_content(with_postures(opened, asked, jobs, progress), asked)
+        if sensitivities:
+            from evodesign.report.page.gather import with_gradients  # CasADi takes its time to load
 
-        with precompute_progress() as progress:
             content = with_gradients(content, opened, jobs, progress)
     show_notes(content.notes)
     path = run / DEFAULT if output is None else output

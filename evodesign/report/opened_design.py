@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from evodesign.analysis.front import front
-from evodesign.errors import InputError, RunError, on_one_line
+from evodesign.errors import EvodesignError, InputError, RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN
-from evodesign.records import Case, CaseDetail, Evaluation, RunHeader
+from evodesign.records import Case, CaseDetail, Detail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import DesignProblem
     from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.problem.evaluate import Evaluator
     from evodesign.problem.progress import PrecomputeProgress
 
-__all__ = ["OpenedDesign", "RebuiltProblem", "open_design"]
+__all__ = ["OpenedDesign", "RebuiltProblem", "open_design", "with_postures"]
 
 
 class RebuiltProblem:
@@ -37,6 +38,14 @@ class RebuiltProblem:
         from evodesign.problem.build import build_problem  # CasADi takes its time to load
 
         return build_problem(self._header.problem)
+
+    @property
+    def can_be_built(self) -> bool:
+        """Whether this evodesign can build it."""
+        try:
+            return bool(self.problem)
+        except EvodesignError:
+            return False
 
     @cached_property
     def people(self) -> Mapping[str, Agent]:
@@ -137,20 +146,48 @@ def open_design(run: RunLog, number: int, jobs: int, progress: PrecomputeProgres
     evaluation = by_number[number]
     rebuilt = RebuiltProblem(run.header)
     logged = {detail.evaluation: detail.cases for detail in run.details}
-    cases = logged[number] if number in logged else _solved(run, evaluation, rebuilt, jobs, progress)
+    cases = logged[number] if number in logged else _solved(run, [evaluation], rebuilt, jobs, progress)[0]
     return OpenedDesign(
         run, evaluation, cases, evaluation in front(run.header.objectives, run.evaluations), rebuilt
     )
 
 
+def with_postures(run: RunLog, numbers: Collection[int], jobs: int, progress: PrecomputeProgress) -> RunLog:
+    """The run with the postures of some designs, solved anew where the log holds none.
+
+    Args:
+        run: that holds them.
+        numbers: of evaluations; those that the run has not are passed over.
+        jobs: that may work out what a solve needs first.
+        progress: is shown what is worked out, and of which designs.
+    Returns:
+        The run; as it is where its problem cannot be built here.
+    """
+    logged = {detail.evaluation for detail in run.details}
+    bare = [each for each in run.evaluations if each.number in numbers and each.number not in logged]
+    rebuilt = RebuiltProblem(run.header)
+    if not bare or not rebuilt.can_be_built:
+        return run
+    solved = _solved(run, bare, rebuilt, jobs, progress)
+    details = (Detail(evaluation=each.number, cases=cases) for each, cases in zip(bare, solved, strict=True))
+    return replace(run, details=(*run.details, *details))
+
+
 def _solved(
-    run: RunLog, evaluation: Evaluation, rebuilt: RebuiltProblem, jobs: int, progress: PrecomputeProgress
-) -> tuple[CaseDetail, ...]:
-    """The postures of a design of which the log holds none."""
+    run: RunLog,
+    bare: Sequence[Evaluation],
+    rebuilt: RebuiltProblem,
+    jobs: int,
+    progress: PrecomputeProgress,
+) -> list[tuple[CaseDetail, ...]]:
+    """The postures of designs of which the log holds none."""
     from evodesign.problem.baseline import Baseline
     from evodesign.problem.factory import evaluator_of  # CasADi takes its time to load
 
-    progress.note(f"the log holds no postures of design {evaluation.number}, so it is solved anew")
+    for evaluation in bare:
+        progress.note(f"the log holds no postures of design {evaluation.number}, so it is solved anew")
     if run.header.search.algorithm == JOINT_STARTS:
-        return Baseline(rebuilt.problem).assess(evaluation.genome).cases
-    return evaluator_of(rebuilt.problem, jobs, progress).assess(evaluation.genome).cases
+        solver: Baseline | Evaluator = Baseline(rebuilt.problem)
+    else:
+        solver = evaluator_of(rebuilt.problem, jobs, progress)
+    return [solver.assess(evaluation.genome).cases for evaluation in bare]

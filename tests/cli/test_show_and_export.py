@@ -14,6 +14,7 @@ from mcap.reader import make_reader
 
 from evodesign.cli.export import export
 from evodesign.cli.output import rounded
+from evodesign.cli.report import report
 from evodesign.cli.show import show
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
@@ -31,6 +32,7 @@ from evodesign.records import (
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
+from tests.report.page.reading import check_to_seven_digits, embedded
 from tests.report.scenes import hold_json, random_detail
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
 
@@ -160,6 +162,17 @@ def test_design_without_logged_postures_is_solved_anew(
     assert captured.err == "note: the log holds no postures of design 1, so it is solved anew\n"
     expected = evaluator.assess(problem.start[1]).cases
     assert json.loads(captured.out)["postures"] == [hold_json(detail) for detail in expected]
+
+
+def test_a_report_shows_postures_of_designs_that_are_asked_for_and_not_in_the_log(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report(run, tmp_path / "page.html", "1", jobs=1)
+    assert "note: the log holds no postures of design 1, so it is solved anew\n" in capsys.readouterr().err
+    show(run, 1, jobs=1, json=True, plot=None)
+    solved = json.loads(capsys.readouterr().out)["postures"]
+    page = embedded((tmp_path / "page.html").read_text(encoding="utf-8"))
+    check_to_seven_digits([hold_json(detail) for detail in page.designs[1].postures], solved)
 
 
 def test_plot_writes_three_figures_twice(

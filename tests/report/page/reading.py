@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 from evodesign.records import AgentDetail
+from evodesign.report.page.content import Content
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from tests.report.page.chromium import Tab
@@ -63,6 +66,17 @@ def apart(groups: Sequence[Mapping[str, Any]]) -> dict[int, Any]:
         for group in groups
         for row, number in enumerate(group["of"])
     }
+
+
+def embedded(page: str) -> Content:
+    """The content as a browser finds it: up to the first end of its script element."""
+    block = page.split('<script type="text/plain" id="content">')[1].split("</script>")[0]
+    told = msgspec.json.decode(gzip.decompress(base64.b64decode(block)))
+    designs: dict[int, dict[str, Any]] = {}
+    for field, groups in told["designs"].items():
+        for number, value in apart(groups).items():
+            designs.setdefault(number, {})[field] = value
+    return msgspec.convert({**told, "designs": designs}, Content, strict=False)
 
 
 def check_to_seven_digits(shown: Any, logged: Any) -> None:

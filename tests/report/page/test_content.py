@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
 import json
 import re
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
@@ -25,7 +22,7 @@ from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
-from tests.report.page.reading import apart, check_to_seven_digits
+from tests.report.page.reading import check_to_seven_digits, embedded
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_generation, toy_header
 
 NAME = "</script><script>alert(1)</script>"
@@ -146,17 +143,6 @@ def test_marked_designs_stay_then_the_front_then_the_feasible() -> None:
     assert {bad[0], *on_front} <= kept
     assert len(kept) == len(on_front) + 3
     assert kept & set(bad) == {bad[0]}, "feasible designs come before others"
-
-
-def embedded(page: str) -> Content:
-    """The content as a browser finds it: up to the first end of its script element."""
-    block = page.split('<script type="text/plain" id="content">')[1].split("</script>")[0]
-    told = msgspec.json.decode(gzip.decompress(base64.b64decode(block)))
-    designs: dict[int, dict[str, Any]] = {}
-    for field, groups in told["designs"].items():
-        for number, value in apart(groups).items():
-            designs.setdefault(number, {})[field] = value
-    return msgspec.convert({**told, "designs": designs}, Content, strict=False)
 
 
 def test_names_are_text_and_come_back_as_they_were(real_run: RunLog, content: Content) -> None:

@@ -76,8 +76,9 @@ const whyNoPosture = (row) => {
   if (!content.bodies) return "The robot cannot be drawn: see the notes at the top.";
   if (points.kind[row] === "front")
     return "The postures of this design are not in this page: see the notes at the top.";
-  if (points.kind[row] === "infeasible") return "The log keeps no postures of a design that is not feasible.";
-  return "The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived.";
+  if (points.kind[row] === "infeasible")
+    return `The log keeps no postures of a design that is not feasible. evodesign report RUN --designs ${points.number[row]} solves anew what can be solved.`;
+  return `The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived. evodesign report RUN --designs ${points.number[row]} solves it anew.`;
 };
 
 const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], gradients: {}, links: {}, joints: {}, hardware: null };
