@@ -15,7 +15,6 @@ and sees a point p at (p . right, p . up), the nearer the larger p . d.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -27,21 +26,17 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from evodesign.body.placement import Placement, Vector
-from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.report.figures.faces import faces_of
 from evodesign.report.figures.mesh_faces import in_world, seen_triangles
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, new_figure
 from evodesign.report.scene_models import ContactWrench, PlacedScene
 
-__all__ = ["Camera", "Face", "faces_of", "posture_figure"]
+__all__ = ["Camera", "posture_figure"]
 
 Array = NDArray[np.float64]
 
 Painted = tuple[float, Array, tuple[float, float, float]]
 """Nearness, outline and colour of a face as it is seen."""
-
-AROUND = 18
-"""Faces around a cylinder or a ball."""
 
 LONGEST = 0.45
 """Length [m] in the scene of the largest force of a kind."""
@@ -59,19 +54,6 @@ HEAD = "-|>,head_width=0.22,head_length=0.45"
 
 COLORS = {True: GROUND_FORCE, False: HAND_FORCE}
 """Of the forces that the ground exerts, and of those that the load does."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Face:
-    """A convex flat face in the world.
-
-    Args:
-        corners: counter-clockwise as seen from outside [m], shape (n, 3).
-        normal: outward unit normal, shape (3,).
-    """
-
-    corners: Array
-    normal: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,65 +85,6 @@ class Camera:
         """Right, up and nearness [m] of points, shape (n, 3) to (n, 3)."""
         found: Array = np.asarray(points) @ self.axes.T
         return found
-
-
-def faces_of(shape: Shape, world_from_shape: Placement) -> list[Face]:
-    """The faces of a shape of numbers, round ones as polyhedra."""
-    rotation: Array = np.array(world_from_shape.rotation)
-    origin: Array = np.array(world_from_shape.translation)
-    faces = []
-    for corners in _outlines(shape):
-        placed = corners @ rotation.T + origin
-        normal = _normal(placed)
-        if normal is not None:
-            faces.append(Face(placed, normal))
-    return faces
-
-
-def _outlines(shape: Shape) -> list[Array]:
-    match shape:
-        case Box():
-            return _box(shape.sides)
-        case Cylinder(radius, length):
-            return _rings([(radius, -length / 2.0), (radius, length / 2.0)])
-        case Sphere(radius):
-            angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, AROUND // 2 + 1)
-            return _rings([(radius * math.cos(angle), radius * math.sin(angle)) for angle in angles])
-
-
-def _box(sides: Vector) -> list[Array]:
-    half = np.array(sides) / 2.0
-    outlines = []
-    for axis in range(3):
-        first, second = (axis + 1) % 3, (axis + 2) % 3
-        for sign in (1.0, -1.0):
-            corners = np.zeros((4, 3))
-            corners[:, axis] = sign
-            corners[:, first] = [-1.0, 1.0, 1.0, -1.0]
-            corners[:, second] = [-sign, -sign, sign, sign]
-            outlines.append(corners * half)
-    return outlines
-
-
-def _rings(rings: list[tuple[float, float]]) -> list[Array]:
-    """A body of revolution about z through rings of (radius, height), from the lowest up, with both ends."""
-    around = np.arange(AROUND) * 2.0 * math.pi / AROUND
-    circle = np.stack([np.cos(around), np.sin(around)], axis=1)
-    levels = [np.column_stack([circle * radius, np.full(AROUND, height)]) for radius, height in rings]
-    outlines = [levels[0][::-1], levels[-1]]
-    for low, high in itertools.pairwise(levels):
-        outlines += [
-            np.array([low[i], low[(i + 1) % AROUND], high[(i + 1) % AROUND], high[i]]) for i in range(AROUND)
-        ]
-    return outlines
-
-
-def _normal(corners: Array) -> Array | None:
-    """Outward unit normal by Newell's sum; None for a face without area."""
-    following = np.roll(corners, -1, axis=0)
-    area = np.cross(corners, following).sum(axis=0)
-    size = float(np.linalg.norm(area))
-    return None if size < 1e-12 else area / size
 
 
 def posture_figure(stages: Sequence[PlacedScene], title: str, camera: Camera | None = None) -> Figure:

@@ -13,9 +13,10 @@ from matplotlib.text import Annotation
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
 from evodesign.records import CaseDetail
+from evodesign.report.figures.faces import faces_of
 from evodesign.report.figures.joint_torques import joint_torques, torque_boxes
 from evodesign.report.figures.paint import write_figure
-from evodesign.report.figures.posture_figure import Camera, faces_of, posture_figure
+from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.scene_models import placed_scene
 from evodesign.tasks import Lift
 from tests.report.scenes import random_cast, random_instant, random_stages
