@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -22,42 +20,25 @@ from PIL import Image
 
 from benchmarks.clearance import with_table
 from evodesign.analysis.front import front
-from evodesign.body.placement import Placement, rotate
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
 from evodesign.problem.evaluate import detail_of
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
-from evodesign.records import CaseDetail
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
-from evodesign.report.scene_models import ContactWrench, PlacedScene, SceneModels, placed_scene
+from evodesign.report.figures.posture_views import alone
+from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import read_run
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
-FRONT, SIDE = Camera(0.0, math.radians(6.0)), Camera(-math.pi / 2.0, math.radians(6.0))
+ABOVE = math.radians(6.0)
+FRONT, SIDE = Camera(0.0, ABOVE), Camera(-math.pi / 2.0, ABOVE)
 PEOPLE = 3
 LARGEST = 150_000
 """Size of a picture's file [byte]."""
-
-
-def alone(models: SceneModels, detail: CaseDetail) -> Iterator[PlacedScene]:
-    """Robot, then person, each without the other and looking along +x."""
-    placed = placed_scene(models, detail)
-    for agent in models.agents:
-        turn = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, -agent.facing))
-        frames = {link: turn @ frame for link, frame in placed.frames[agent.name].items()}
-        own = replace(models, trees={agent.name: models.trees[agent.name]})
-        wrenches = tuple(turned(each, turn) for each in placed.wrenches if each.agent == agent.name)
-        yield replace(placed, models=own, frames={agent.name: frames}, wrenches=wrenches)
-
-
-def turned(wrench: ContactWrench, turn: Placement) -> ContactWrench:
-    """A wrench in a world that is turned."""
-    force, moment = (rotate(turn.rotation, each) for each in (wrench.force, wrench.moment))
-    return replace(wrench, point=turn.apply(wrench.point), force=force, moment=moment)
 
 
 def write(figure: Figure, stem: str) -> None:
@@ -81,7 +62,7 @@ def draw(problem: DesignProblem, result: DesignResult, words: str, stem: str) ->
         models = SceneModels.of(scene, result.tree)
         sides += [placed_scene(models, detail) for detail in ends]
         for detail in ends:
-            for name, placed in zip(fronts, alone(models, detail), strict=True):
+            for name, placed in zip(fronts, alone(placed_scene(models, detail)), strict=True):
                 fronts[name].append(placed)
     write(posture_figure(sides, f"{words}, from the robot's right", SIDE), f"{stem}_side")
     for name, scenes in fronts.items():

@@ -17,7 +17,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, Final
 
-__all__ = ["begun", "is_there", "replacing", "write_folder", "write_whole"]
+from evodesign.errors import InputError
+
+__all__ = ["begun", "is_there", "make_folder", "replacing", "write_folder", "write_whole"]
 
 UNFINISHED: Final = re.compile(r"\.evodesign-[0-9a-f]{16}\.part")
 """Names of files that are being written, or were when their process was killed."""
@@ -113,6 +115,22 @@ def write_whole(path: Path, content: bytes, *, follow: bool = True) -> None:
     """Write a file; see `replacing`."""
     with replacing(path, follow=follow) as file:
         file.write(content)
+
+
+def make_folder(directory: Path, source: str) -> None:
+    """Make a folder that is missing, with those above it.
+
+    Args:
+        directory: the folder.
+        source: who names it, such as `--plot`, for messages.
+    Raises:
+        InputError: it cannot be made.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        found = f"'{directory}' ({error.strerror})"
+        raise InputError(source, "", "a folder that can be written", found) from error
 
 
 def write_folder(directory: Path, contents: Mapping[str, bytes], *, new: bool = False) -> None:

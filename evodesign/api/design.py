@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from evodesign.errors import InputError
+from evodesign.files import make_folder
 from evodesign.records import Assessment, CaseDetail, CaseOutcome, Constraint, ReachOutcome, Status
 from evodesign.runlog.run import RunLog
 from evodesign.violations import violations
@@ -110,3 +111,30 @@ class Design:
             raise InputError("design", "", "a design of a run or of a problem", "one of neither")
         refuse_full(Path(folder))
         return export_logged(self.log(), self.number or 0, Path(folder)).files
+
+    def plot(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write figures, as `evodesign evaluate --plot` and `show --plot` do, each as SVG and PNG.
+
+        Args:
+            folder: made where it is missing; figures of the same names are replaced.
+        Returns:
+            The files: `postures` obliquely, `postures_side` from the robot's right and `postures_front` with
+            robot and person each from the front, both with a scale in metres; `torques` and
+            `torques_by_joint` of the joints [N m].
+        Raises:
+            InputError: the folder cannot be written; or the design is of no problem or run.
+        Example:
+            >>> sorted(file.name for file in run.design(4).plot("figures-4") if file.suffix == ".png")[:3]
+            ['postures.png', 'postures_front.png', 'postures_side.png']
+        """
+        from evodesign.problem.progress import SILENT
+        from evodesign.report.figures.design import write_design_figures  # matplotlib takes its time to load
+        from evodesign.report.opened_design import open_design
+
+        if self.log is None:
+            raise InputError("design", "", "a design of a run or of a problem", "one of neither")
+        make_folder(Path(folder), "folder")
+        log = self.log()
+        opened = open_design(log, self.number or 0, 1, SILENT)
+        name = log.header.problem_name + ("" if self.number is None else f", design {self.number}")
+        return tuple(write_design_figures(name, opened.scene_set(), opened.cases, Path(folder)))

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, SymmetryName
+from evodesign.cli.options import CORES, Jobs, Json, Plot, ProblemPath, SymmetryName
 from evodesign.errors import InputError, nearest_name
+from evodesign.files import make_folder
 
 if TYPE_CHECKING:
     from evodesign.problem.build import DesignProblem
+    from evodesign.problem.design_result import DesignResult
 
 __all__ = ["chosen_design", "evaluate"]
 
@@ -31,6 +33,7 @@ def evaluate(
     symmetry: SymmetryName = None,
     jobs: Jobs = CORES,
     json: Json = False,
+    plot: Plot = None,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals."""
     from evodesign.cli.output import console, print_json, show_notes
@@ -47,10 +50,14 @@ def evaluate(
     built = build_problem(read_source(problem, symmetry))
     show_notes(notes(built))
     chosen, values = chosen_design(built, design, name)
+    if plot is not None:
+        make_folder(plot, "--plot")
     with precompute_progress() as progress:
         evaluator = evaluator_of(built, jobs, progress)
     result = evaluator.solve(values)
     assessment = evaluator.assessment(values, result)
+    if plot is not None:
+        _write_figures(f"{built.name}, {chosen}", result, plot)
     sensitivities = Sensitivities(built, evaluator.known).at(values, result).sensitivities()
     solved = evaluator.details(result)
     if json:
@@ -59,6 +66,18 @@ def evaluate(
     for table in design_tables(built, chosen, result, assessment, sensitivities, solved):
         console().print(table)
     show_notes(overlaps(solved_distances(result).items()))
+
+
+def _write_figures(name: str, result: DesignResult, directory: Path) -> None:
+    """Write figures of a result to an existing directory, and say where."""
+    from evodesign.cli.output import show_notes
+    from evodesign.problem.evaluate import detail_of
+    from evodesign.report.figures.design import write_design_figures  # matplotlib takes its time to load
+    from evodesign.report.scene_models import SceneSet
+
+    cases = [detail_of(case) for case in result.cases if case.solved]
+    written = write_design_figures(name, SceneSet.of(result.scenes, result.tree), cases, directory)
+    show_notes(f"written: {path}" for path in written)
 
 
 def chosen_design(

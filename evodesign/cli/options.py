@@ -39,6 +39,14 @@ NewRun = Annotated[
 ]
 Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+Plot = Annotated[
+    Path | None,
+    typer.Option(
+        "--plot",
+        metavar="DIR",
+        help="Also write figures: postures from the side and the front, torques (SVG and PNG).",
+    ),
+]
 Damaged = Annotated[
     bool, typer.Option("--damaged", help="Exit with 0, not 4, though records of the run are lost.")
 ]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, Plot, RunPath
 from evodesign.errors import InputError
+from evodesign.files import make_folder
 
 if TYPE_CHECKING:
     from evodesign.collision.clearance import BodyDistance
@@ -25,10 +23,7 @@ def show(
     design: Design,
     jobs: Jobs = CORES,
     json: Json = False,
-    plot: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Also write figures of its torques and postures (SVG and PNG)."),
-    ] = None,
+    plot: Plot = None,
     damaged: Damaged = False,
 ) -> None:
     """One design of a run: objectives, parameters, torques, contact forces."""
@@ -40,7 +35,7 @@ def show(
     from evodesign.runlog.run import read_run
 
     if plot is not None:
-        _make(plot)
+        make_folder(plot, "--plot")
     logged = read_run(run)
     show_notes(logged.notes)
     with precompute_progress() as progress:
@@ -48,7 +43,9 @@ def show(
     if plot is not None:
         from evodesign.report.figures.design import write_design_figures  # matplotlib takes its time to load
 
-        show_notes(f"written: {path}" for path in write_design_figures(opened, plot))
+        name = f"{logged.header.problem_name}, design {design}"
+        figures = write_design_figures(name, opened.scene_set(), opened.cases, plot)
+        show_notes(f"written: {path}" for path in figures)
     if json:
         from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
         from evodesign.report.export.design import design_json
@@ -98,11 +95,3 @@ def _distances(opened: OpenedDesign) -> dict[Case, BodyDistance]:
     except InputError as error:
         show_notes([f"how near bodies come to each other is left out ({error})"])
         return {}
-
-
-def _make(directory: Path) -> None:
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        found = f"'{directory}' ({error.strerror})"
-        raise InputError("--plot", "", "a folder that can be written", found) from error

@@ -101,3 +101,25 @@ def test_asymmetric_design_is_solved_whole_with_a_note_and_refused_where_symmetr
     done = evodesign("evaluate", tmp_path / "lame.toml", "--symmetry", "on")
     assert done.returncode == 2
     assert "--symmetry: wanted 'auto', 'off', or a scene that is its own mirror image" in done.stderr
+
+
+@pytest.mark.slow
+def test_figures_of_a_design_need_no_search(quick: Path, cold: tuple[dict, str], tmp_path: Path) -> None:
+    place = tmp_path / "new" / "figures"
+    _, said = evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")}, "--plot", str(place))
+    stems = ("postures", "postures_front", "postures_side", "torques", "torques_by_joint")
+    assert {path.name for path in place.iterdir()} == {
+        f"{s}.{kind}" for s in stems for kind in ("png", "svg")
+    }
+    assert said.count("note: written: ") == 10
+    title = (place / "postures_front.svg").read_text(encoding="utf-8")
+    assert "point-grasp, unscaled: postures from the" in title
+
+
+def test_a_place_for_figures_that_cannot_be_made_is_refused_before_anything_is_solved(
+    quick: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("mine")
+    done = evodesign("evaluate", quick, "--plot", tmp_path / "file")
+    assert done.returncode == 2
+    assert "--plot: wanted a folder that can be written" in done.stderr

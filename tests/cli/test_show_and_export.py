@@ -175,14 +175,14 @@ def test_a_report_shows_postures_of_designs_that_are_asked_for_and_not_in_the_lo
     check_to_seven_digits([hold_json(detail) for detail in page.designs[1].postures], solved)
 
 
-def test_plot_writes_three_figures_twice(
+def test_plot_writes_five_figures_twice(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     show(run, 0, jobs=1, json=False, plot=tmp_path / "new" / "figures")
     names = sorted(path.name for path in (tmp_path / "new" / "figures").iterdir())
-    stems = ("postures", "torques", "torques_by_joint")
+    stems = ("postures", "postures_front", "postures_side", "torques", "torques_by_joint")
     assert names == sorted(f"{stem}.{kind}" for stem in stems for kind in ("png", "svg"))
-    assert capsys.readouterr().err.count("written: ") == 6
+    assert capsys.readouterr().err.count("written: ") == 10
 
 
 def test_export_writes_the_logged_postures(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import wrap
 from typing import Final
 
 import matplotlib as mpl
@@ -18,7 +19,17 @@ from matplotlib.figure import Figure
 from evodesign.errors import InputError
 from evodesign.files import replacing
 
-__all__ = ["GROUND_FORCE", "HAND_FORCE", "INK", "SEQUENCE", "clean", "color_of", "new_figure", "write_figure"]
+__all__ = [
+    "GROUND_FORCE",
+    "HAND_FORCE",
+    "INK",
+    "PALE",
+    "SEQUENCE",
+    "clean",
+    "color_of",
+    "new_figure",
+    "write_figure",
+]
 
 INK: Final = "#24292f"
 PALE: Final = "#d8dce1"
@@ -32,6 +43,9 @@ SEQUENCE: Final = ("#3b6ea5", "#c0504d", "#5a9367", "#8064a2", "#b08d28", "#4b9c
 
 DOTS_PER_INCH: Final = 160
 
+LETTERS_PER_INCH: Final = 10
+"""Of a title that stays within its figure."""
+
 
 def color_of(name: str, position: int) -> str:
     """An agent's colour, or the colour of a position in a series."""
@@ -41,7 +55,8 @@ def color_of(name: str, position: int) -> str:
 def new_figure(width: float, height: float, title: str) -> Figure:
     """An empty figure of a size [inches] with its title, whose parts make room for each other."""
     figure = Figure(figsize=(width, height), layout="constrained", facecolor="white")
-    figure.suptitle(title, color=INK, fontsize=12, parse_math=False)
+    lines = wrap(title, int(width * LETTERS_PER_INCH), break_on_hyphens=False)
+    figure.suptitle("\n".join(lines), color=INK, fontsize=12, parse_math=False)
     return figure
 
 

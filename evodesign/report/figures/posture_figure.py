@@ -15,6 +15,7 @@ and sees a point p at (p . right, p . up), the nearer the larger p . d.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,12 +25,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
+from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.report.figures.faces import faces_of
 from evodesign.report.figures.mesh_faces import in_world, seen_triangles
-from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, new_figure
-from evodesign.report.scene_models import ContactWrench, PlacedScene
+from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, new_figure
+from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene
 
 __all__ = ["Camera", "posture_figure"]
 
@@ -44,13 +48,21 @@ LONGEST = 0.45
 FLOOR = ((-1.05, -0.55), (1.05, -0.55), (1.05, 0.55), (-1.05, 0.55))
 """Corners of the piece of ground that is drawn [m]."""
 
-PANEL = 3.1
-"""Width of a panel [inches]."""
+METRE = 1.45
+"""Length of a metre [inches]."""
+
+LEAST_PANEL = 1.9
+"""Width of a panel in which its title has room [inches]."""
 
 BETWEEN = 0.4
 """Room above each of several rows [inches]."""
 
 HEAD = "-|>,head_width=0.22,head_length=0.45"
+
+LEAST_FIGURE = 4.6
+"""Width of a figure in which its legend has room [inches]."""
+
+WORDS = {ROBOT: "robot", HUMAN: "person", LOAD: "load"}
 
 COLORS = {True: GROUND_FORCE, False: HAND_FORCE}
 """Of the forces that the ground exerts, and of those that the load does."""
@@ -81,6 +93,11 @@ class Camera:
         right = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
         return np.array([right, np.cross(towards, right), towards])
 
+    @property
+    def is_level(self) -> bool:
+        """Whether heights are seen at their true length."""
+        return self.elevation == 0.0
+
     def seen(self, points: Array) -> Array:
         """Right, up and nearness [m] of points, shape (n, 3) to (n, 3)."""
         found: Array = np.asarray(points) @ self.axes.T
@@ -99,8 +116,9 @@ def posture_figure(stages: Sequence[PlacedScene], title: str, camera: Camera | N
     low, high = _limits(stages, view)
     rows, (across, up) = _rows(stages), high - low
     panels = max(len(rows[0]), 1)
-    row = PANEL * up / across + (BETWEEN if len(rows) > 1 else 0.0)
-    figure = new_figure(max(PANEL * panels, 4.2), row * len(rows) + 1.1, title)
+    row = METRE * up + (BETWEEN if len(rows) > 1 else 0.0)
+    width = max(METRE * across, LEAST_PANEL) * panels
+    figure = new_figure(max(width, LEAST_FIGURE), row * len(rows) + 1.1, title)
     axes = figure.subplots(len(rows), panels, squeeze=False)
     longest = {by_ground: _longest(stages, by_ground) for by_ground in COLORS}
     for of_row, in_row in zip(axes, rows, strict=True):
@@ -112,11 +130,14 @@ def posture_figure(stages: Sequence[PlacedScene], title: str, camera: Camera | N
                 if longest[wrench.by_ground]:
                     _arrow(panel, wrench, view, LONGEST / longest[wrench.by_ground])
             panel.set_title(_heading(stage), fontsize=10, color=INK, parse_math=False)
-    for panel in axes.flat:
+    for place, panel in enumerate(axes.flat):
         panel.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        panel.set_axis_off()
+        if view.is_level and stages:
+            _scale(panel, labelled=place % panels == 0)
+        else:
+            panel.set_axis_off()
     if stages:
-        _key(figure, axes[0][0], longest)
+        _key(figure, axes[0][0], stages, longest)
     else:
         axes[0][0].text(0.5, 0.5, "no posture", ha="center", color=INK, transform=axes[0][0].transAxes)
     return figure
@@ -132,14 +153,32 @@ def _rows(stages: Sequence[PlacedScene]) -> list[list[PlacedScene | None]]:
     return [[found.get((pair, moment)) for moment in moments] for pair in pairs]
 
 
-def _moment(stage: PlacedScene) -> tuple[float, str, float]:
-    """Of whatever person and load, in the order of panels."""
-    return stage.task.heights[0], str(stage.task), stage.time
+def _moment(stage: PlacedScene) -> tuple[float, str, float, bool]:
+    """Of whatever person and load, in the order of panels: the robot before a person who is drawn alone."""
+    return stage.task.heights[0], str(stage.task), stage.time, ROBOT not in stage.models.trees
 
 
 def _heading(stage: PlacedScene) -> str:
+    who = stage.models.label
+    if len(stage.models.trees) == 1:
+        (name,) = stage.models.trees
+        who = f"{WORDS[name]} with {who}" if name == ROBOT and who else who or WORDS[name]
     place = f"load at {stage.place}"
-    return f"{stage.models.label}\n{place}" if stage.models.label else place
+    return f"{who}\n{place}" if who else place
+
+
+def _scale(panel: Axes, *, labelled: bool) -> None:
+    """Metres along both axes of a view in which they have their true length, and the ground."""
+    panel.set_axisbelow(True)
+    panel.grid(visible=True, color=PALE, linewidth=0.6)
+    panel.axhline(0.0, color="#8a9097", linewidth=1.0, zorder=0.5)
+    for spine in panel.spines.values():
+        spine.set_visible(False)
+    for axis in (panel.xaxis, panel.yaxis):
+        axis.set_major_locator(MultipleLocator(0.5))
+    panel.tick_params(colors=INK, labelsize=8, length=0, labelbottom=False, labelleft=labelled)
+    if labelled:
+        panel.set_ylabel("height [m]", fontsize=9, color=INK)
 
 
 def _paint(axes: Axes, stage: PlacedScene, view: Camera) -> None:
@@ -205,12 +244,22 @@ def _limits(stages: Sequence[PlacedScene], view: Camera) -> tuple[Array, Array]:
     return seen.min(axis=0) - 0.03, seen.max(axis=0) + 0.03
 
 
-def _key(figure: Figure, axes: Axes, longest: Mapping[bool, float]) -> None:
-    words = {True: "force on the feet", False: "force on the hands"}
-    handles = [
+def _key(figure: Figure, axes: Axes, stages: Sequence[PlacedScene], longest: Mapping[bool, float]) -> None:
+    """Who is who, and how long arrows are."""
+    drawn = {*itertools.chain.from_iterable(stage.models.trees for stage in stages), LOAD}
+    who = [Patch(color=color, label=WORDS[name]) for name, color in AGENTS.items() if name in drawn]
+    kinds = {True: "force on the feet", False: "force on the hands"}
+    arrows = [
         axes.plot(
-            [], [], color=COLORS[kind], linewidth=2.2, label=f"{words[kind]}, the largest {force:.3g} N"
+            [], [], color=COLORS[kind], linewidth=2.2, label=f"{kinds[kind]}, the largest {force:.3g} N"
         )[0]
         for kind, force in longest.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    one_row = figure.get_figwidth() > 7.5
+    figure.legend(
+        handles=[*who, *arrows],
+        loc="outside lower center",
+        ncols=len(who) + len(arrows) if one_row else 2,
+        frameon=False,
+        fontsize=9,
+    )

@@ -1,0 +1,60 @@
+"""Postures from the side and from the front, without perspective, with a scale in metres.
+
+From the front, robot and person would hide each other: each is drawn alone, turned so that it looks at the
+camera with the load between them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from matplotlib.figure import Figure
+
+from evodesign.body.placement import Placement, rotate
+from evodesign.report.figures.posture_figure import Camera, posture_figure
+from evodesign.report.scene_models import ContactWrench, PlacedScene
+
+__all__ = ["FRONT", "SIDE", "alone", "front_figure", "side_figure"]
+
+SIDE = Camera(azimuth=-math.pi / 2.0, elevation=0.0)
+"""From the robot's right: it stands on the left and looks to the right."""
+
+FRONT = Camera(azimuth=0.0, elevation=0.0)
+"""Into the face of whoever looks along +x."""
+
+
+def side_figure(stages: Sequence[PlacedScene], title: str) -> Figure:
+    """Robot, person and load from the robot's right, one panel per height or moment of a lift."""
+    return posture_figure(stages, f"{title} from the robot's right", SIDE)
+
+
+def front_figure(stages: Sequence[PlacedScene], title: str) -> Figure:
+    """Robot and person, each alone with the load and from the front, two panels per height or moment."""
+    return posture_figure(
+        [one for stage in stages for one in alone(stage)],
+        f"{title} from the front, robot and person each without the other",
+        FRONT,
+    )
+
+
+def alone(stage: PlacedScene) -> Iterator[PlacedScene]:
+    """Robot, then person, each without the other and looking along +x."""
+    for agent in stage.models.agents:
+        turn = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, -agent.facing))
+        frames = {link: turn @ frame for link, frame in stage.frames[agent.name].items()}
+        wrenches = tuple(_turned(each, turn) for each in stage.wrenches if each.agent == agent.name)
+        yield replace(
+            stage,
+            models=replace(stage.models, trees={agent.name: stage.models.trees[agent.name]}),
+            frames={agent.name: frames},
+            world_from_load=turn @ stage.world_from_load,
+            wrenches=wrenches,
+        )
+
+
+def _turned(wrench: ContactWrench, turn: Placement) -> ContactWrench:
+    """A wrench in a world that is turned."""
+    force, moment = (rotate(turn.rotation, each) for each in (wrench.force, wrench.moment))
+    return replace(wrench, point=turn.apply(wrench.point), force=force, moment=moment)
