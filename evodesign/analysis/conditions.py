@@ -28,7 +28,17 @@ from operator import attrgetter
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SUM, Case, CaseOutcome, Evaluation, RunHeader, Task
 
-__all__ = ["Condition", "Quantity", "conditions", "described", "meeting", "quantities", "quantity", "total"]
+__all__ = [
+    "Condition",
+    "Quantity",
+    "all_conditions",
+    "conditions",
+    "described",
+    "meeting",
+    "quantities",
+    "quantity",
+    "total",
+]
 
 Quantity = Callable[[Evaluation], float | None]
 """A number of an evaluation; None where it does not exist."""
@@ -176,6 +186,18 @@ def conditions(text: str, known: Mapping[str, Quantity], source: str) -> tuple[C
         InputError: a part is no condition, or names no quantity.
     """
     return tuple(_condition(part, known, source) for part in re.split(r"\s+and\s+", text.strip()))
+
+
+def all_conditions(texts: Sequence[str], known: Mapping[str, Quantity], source: str) -> tuple[Condition, ...]:
+    """The conditions of several texts, all of which must hold.
+
+    Raises:
+        InputError: as in `conditions`, or one of them is no text.
+    """
+    for text in texts:
+        if not isinstance(text, str):
+            raise InputError(source, "", "a condition, or a list of conditions", f"{text!r}")
+    return tuple(condition for text in texts for condition in conditions(text, known, source))
 
 
 def meeting(evaluations: Iterable[Evaluation], wanted: Sequence[Condition]) -> tuple[Evaluation, ...]:

@@ -84,14 +84,14 @@ def _choice(
 ) -> Choice:
     """What the options choose."""
     from evodesign.analysis.choice import Choice, Order
-    from evodesign.analysis.conditions import conditions, quantities
+    from evodesign.analysis.conditions import all_conditions, quantities
     from evodesign.analysis.decision_making import aspiration_of
 
     orders = {"--knee": Order.KNEE, "--different": Order.DIFFERENT, "--near": Order.NEAR}
     order = orders[asked[0]] if asked else Order.FIRST_OBJECTIVE
     known = quantities(run.header, run.evaluations[0] if run.evaluations else None)
     return Choice(
-        where=tuple(condition for text in where for condition in conditions(text, known, "--where")),
+        where=all_conditions(where, known, "--where"),
         order=order,
         aspiration={} if near is None else aspiration_of(run.header.objectives, near, "--near"),
         limit=FEW if order is Order.DIFFERENT and limit is None else limit,

@@ -1,7 +1,7 @@
 import msgspec
 import pytest
 
-from evodesign.analysis.conditions import conditions, meeting, quantities
+from evodesign.analysis.conditions import all_conditions, conditions, meeting, quantities
 from evodesign.errors import InputError
 from evodesign.records import Parameter
 from tests.analysis.designs import numbers
@@ -36,6 +36,15 @@ def test_conditions_joined_by_and_hold_together():
         lambda a: a.objectives["reach_height"] >= 1.2 and a.objectives.get("robot_torque", 99.0) < 40.0
     )
     assert both
+
+
+def test_several_texts_hold_together_as_those_joined_by_and_do():
+    texts = ["reach_height>=1.2", "robot_torque < 40 and arm.1 < 1.5"]
+    found = all_conditions(texts, KNOWN, "where")
+    assert found == conditions(" and ".join(texts), KNOWN, "where")
+    assert all_conditions([], KNOWN, "where") == ()
+    with pytest.raises(InputError, match="where: wanted a condition, or a list of conditions, found 3"):
+        all_conditions(["reach_height>=1.2", 3], KNOWN, "where")
 
 
 def test_a_number_that_does_not_exist_meets_no_condition():
