@@ -83,7 +83,19 @@ def _write_figures(name: str, result: DesignResult, directory: Path) -> None:
 def chosen_design(
     problem: DesignProblem, file: Path | None, name: str | None
 ) -> tuple[str, tuple[float, ...]]:
-    """Name and parameter values of the design that the options ask for."""
+    """Name and parameter values of the design that the options ask for; notes say which are beyond bounds."""
+    from evodesign.cli.output import show_notes
+    from evodesign.problem.designs import beyond_bounds
+
+    chosen, values = _named_design(problem, file, name)
+    show_notes(beyond_bounds(problem.space.records, values).values())
+    return chosen, values
+
+
+def _named_design(
+    problem: DesignProblem, file: Path | None, name: str | None
+) -> tuple[str, tuple[float, ...]]:
+    """The design of a name in a file; without a file the unscaled robot."""
     from evodesign.problem.designs import read_designs
     from evodesign.problem.named_files import read_text
 

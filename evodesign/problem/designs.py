@@ -14,13 +14,14 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.source import decode_toml
 from evodesign.problem.table import Name, Positive, Table
-from evodesign.records import Genome
+from evodesign.records import Genome, Parameter
 from evodesign.tree.model import Tree
 
 __all__ = [
     "DesignEntry",
     "PopulationFile",
     "alike",
+    "beyond_bounds",
     "designs_text",
     "read_designs",
     "start_genomes",
@@ -112,6 +113,24 @@ def unscaled_genome(space: DesignSpace, tree: Tree) -> Genome | None:
     genome = space.genome(values)
     inside = all(0.0 <= coordinate <= 1.0 for coordinate in genome)
     return genome if inside and alike(space.values(genome), values) else None
+
+
+def beyond_bounds(parameters: Sequence[Parameter], values: Sequence[float]) -> dict[str, str]:
+    """A sentence about each parameter whose value no search would propose, by its name.
+
+    Args:
+        parameters: of the problem.
+        values: one for each, in its unit; those that are a choice are within bounds.
+    """
+    found = {}
+    for each, value in zip(parameters, values, strict=True):
+        tolerance = 1e-9 * (each.upper - each.lower)  # of values that come from a genome
+        within = each.lower - tolerance <= value <= each.upper + tolerance
+        if not within and value not in each.choices:
+            unit = "" if each.unit == "1" else f" {each.unit}"
+            bounds = f"{each.lower:g} to {each.upper:g}{unit}"
+            found[each.name] = f"{each.name} = {value:.9g}{unit} is beyond its bounds, {bounds}"
+    return found
 
 
 def alike(values: Iterable[float], others: Iterable[float]) -> bool:
