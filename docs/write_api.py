@@ -1,7 +1,8 @@
 """Writes docs/api.md, the reference of what Python users may call: `python -m docs.write_api`.
 
 The page is made of `evodesign.__all__` in that order, of the classes of `evodesign.api` that these functions
-give, and of their public methods and attributes. All text is the docstrings'. A docstring's sections become
+give, of the records that a design's results are made of, and of their public methods and attributes. All text
+is the docstrings'. A docstring's sections become
 lists, and what a Python prompt shows becomes a block of code.
 """
 
@@ -16,6 +17,14 @@ from pathlib import Path
 from typing import Any
 
 import evodesign
+from evodesign.records import (
+    AgentDetail,
+    CaseDetail,
+    CaseOutcome,
+    InstantDetail,
+    LoadCaseDetail,
+    ReachOutcome,
+)
 
 PAGE = Path(__file__).parent / "api.md"
 
@@ -26,6 +35,9 @@ units stand in brackets. In the examples `run` is `evodesign.open_run("runs/firs
 people, `design` is its design 4, and `problem` is `evodesign.open_problem("problem.toml")`, the problem that
 the run was started with.
 """
+
+RECORDS = (CaseDetail, InstantDetail, AgentDetail, LoadCaseDetail, CaseOutcome, ReachOutcome)
+"""What a design's results are made of, beside numbers."""
 
 SECTION = re.compile(r"(Args|Attributes|Returns|Raises|Source|Example):\s*(.*)")
 TITLES = {"Args": "Arguments", "Returns": "Gives"}
@@ -87,6 +99,7 @@ def documented() -> tuple[Documented, ...]:
     names = {name: getattr(evodesign, name) for name in evodesign.__all__ if not name.startswith("_")}
     for value in (*names.values(),):
         names |= {given.__name__: given for given in _given_classes(value) if given not in names.values()}
+    names |= {record.__name__: record for record in RECORDS}
     return tuple(each for name, value in names.items() for each in _with_members(name, value))
 
 

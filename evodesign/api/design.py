@@ -23,12 +23,16 @@ class Design:
     Args:
         number: of the evaluation in its run; None for a design that was evaluated outside of one.
         assessment: the whole record.
-        postures: of every case that was solved, of robot and person, with torques and wrenches; empty if
-            they were not kept.
+        postures: a `CaseDetail` of every case that was solved; empty if they were not kept. Its `agents`
+            are an `AgentDetail` each of `robot` and `human`: base [m, rad], joints [rad], torques [N m] and
+            wrenches [N, N m].
         bounds: the problem's constraints.
+        notes: a sentence for each parameter that is beyond its bounds; none of a design of a run.
         log: gives the log that holds it, for `export`.
     Example:
         >>> design = run.design(4)
+        >>> design
+        <design 4: robot_torque 1.625, worst_human_torque 2.206, reach_height 1.343>
         >>> design.feasible, design.objectives["reach_height"]
         (True, 1.343...)
     """
@@ -37,7 +41,11 @@ class Design:
     assessment: Assessment
     postures: tuple[CaseDetail, ...] = ()
     bounds: tuple[Constraint, ...] = ()
+    notes: tuple[str, ...] = ()
     log: Callable[[], RunLog] | None = field(default=None, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        return f"<{'design' if self.number is None else f'design {self.number}'}: {self.assessment.summary}>"
 
     @property
     def parameters(self) -> Mapping[str, float]:

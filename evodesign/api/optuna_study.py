@@ -132,6 +132,9 @@ class OptunaObjective:
         self._problem = problem
         self.directions = [DIRECTIONS[objective.sense] for objective in problem.objectives]
 
+    def __repr__(self) -> str:
+        return f"<objective {self._problem.name} for Optuna: {', '.join(self.directions)}>"
+
     def __call__(self, trial: optuna.Trial) -> list[float]:
         """Natural objective values, in the problem's order.
 

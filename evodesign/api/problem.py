@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 from collections.abc import Mapping, Sequence
@@ -11,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from evodesign.api.design import Design
 from evodesign.design.space import ALLOCATIONS, ParameterKind
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, on_one_line
 from evodesign.motion.solution import LiftSolution
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_no_choice
+from evodesign.problem.designs import beyond_bounds
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.lifts import Lifts
@@ -42,6 +44,9 @@ if TYPE_CHECKING:
     from evodesign.api.optuna_study import OptunaObjective
 
 __all__ = ["Problem", "open_problem", "problems"]
+
+LOGGER = logging.getLogger("evodesign")
+"""Hears of designs beyond their bounds, as warnings."""
 
 
 def open_problem(problem: str | os.PathLike[str], jobs: int = 1) -> Problem:
@@ -154,28 +159,41 @@ class Problem:
         return Problem, (self.source,)
 
     def __repr__(self) -> str:
-        return f"<problem {self.name}: {len(self.parameters)} parameters, {len(self.objectives)} objectives>"
+        about = f"{len(self.parameters)} parameters, {len(self.objectives)} objectives"
+        return f"<problem {on_one_line(self.name)}: {about}>"
 
-    def evaluate(self, design: Mapping[str, float] | Sequence[float]) -> Design:
+    def evaluate(self, design: Mapping[str, float] | Sequence[float], *, strict: bool = False) -> Design:
         """The results of a design, with its postures. They depend on nothing but problem and design.
+
+        A design beyond the bounds of its parameters is evaluated, though no search would find it: a sentence
+        for each such value stands in `notes`, and goes to the logger `evodesign` as a warning.
 
         Args:
             design: values by name, each in its parameter's unit, those left out as in the unscaled robot; or
                 one value per parameter.
+            strict: refuse a design beyond the bounds instead.
         Raises:
             InputError: an unknown name, a wrong number of values, a value that is no positive number, an
                 allocation parameter beyond its range, or a density that is neither a material's nor the
-                unscaled robot's where there are materials.
+                unscaled robot's where there are materials; or with `strict` a value beyond its bounds.
         Example:
             >>> longer = problem.evaluate({"length.shank": 1.1})
             >>> longer.feasible, longer.objectives["robot_torque"]
             (True, 2.25...)
+            >>> problem.evaluate({"length.shank": 1.9}).notes
+            ('length.shank = 1.9 is beyond its bounds, 0.6 to 1.8',)
         """
         values = self.values(design)
+        beyond = beyond_bounds(self.parameters, values)
+        if strict and beyond:
+            name, sentence = next(iter(beyond.items()))
+            raise InputError("design", name, "a value within its bounds (strict=True)", sentence)
+        for sentence in beyond.values():
+            LOGGER.warning("%s", sentence)
         found = self._evaluator.assess_values(values)
-        return Design(
-            None, found.assessment, found.cases, self.constraints, partial(self._log, values, found)
-        )
+        log = partial(self._log, values, found)
+        notes = tuple(beyond.values())
+        return Design(None, found.assessment, found.cases, self.constraints, notes, log)
 
     def optuna_objective(self) -> OptunaObjective:
         """The problem as an objective for `study.optimize` of Optuna.

@@ -131,6 +131,12 @@ class PymooProblem(BaseProblem):  # type: ignore[misc]
             requires_kwargs=True,  # the algorithm that asks
         )
 
+    def __repr__(self) -> str:
+        about = f"{self.n_var} variables, {self.n_obj} objectives, {self.n_ieq_constr} constraints"
+        return f"<pymoo problem {self.problem.name}: {about}>"
+
+    __str__ = __repr__
+
     def __deepcopy__(self, memo: object) -> Self:
         """Itself: what pymoo keeps as history need not build the problem again."""
         return self

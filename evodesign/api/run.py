@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from evodesign.analysis.choice import Choice, Order, choose
-from evodesign.analysis.conditions import Quantity, conditions, quantities
+from evodesign.analysis.conditions import Quantity, all_conditions, quantities
 from evodesign.api.columns import Column, case_columns, evaluation_columns
 from evodesign.api.design import Design
-from evodesign.errors import InputError
+from evodesign.errors import InputError, on_one_line
 from evodesign.files import write_whole
 from evodesign.records import CaseDetail, Constraint, Evaluation, Objective, Parameter
 from evodesign.runlog.run import RunLog, read_run
@@ -58,7 +58,7 @@ class Run:
 
     def __repr__(self) -> str:
         return (
-            f"<run of {self.name} in {self.log.directory}: {len(self)} evaluations, "
+            f"<run of {on_one_line(self.name)} in {self.log.directory}: {len(self)} evaluations, "
             f"{len(self.front)} on the front>"
         )
 
@@ -132,7 +132,7 @@ class Run:
     def choose(
         self,
         *,
-        where: str = "",
+        where: str | Sequence[str] = (),
         knee: bool = False,
         near: Mapping[str, float] | None = None,
         different: bool = False,
@@ -141,8 +141,8 @@ class Run:
         """Designs of the front, as `evodesign front` chooses them.
 
         Args:
-            where: conditions such as `reach_height >= 1.5 and robot_torque@1.2 < 10`; the front is that of
-                the designs that meet them.
+            where: a condition such as `reach_height >= 1.5 and robot_torque@1.2 < 10`, or a list of them; the
+                front is that of the designs that meet all.
             knee: only knees, sharpest first.
             near: closest first to these values of objectives, in their units.
             different: the most different designs, as many as the limit says.
@@ -152,6 +152,8 @@ class Run:
         Example:
             >>> [design.number for design in run.choose(where="reach_height >= 1.34")]
             [4, 2]
+            >>> [design.number for design in run.choose(where=["reach_height >= 1.34", "robot_torque < 2.2"])]
+            [4]
             >>> [design.number for design in run.choose(near={"reach_height": 1.4}, limit=1)]
             [2]
         """
@@ -159,8 +161,9 @@ class Run:
         asked = [order for order, wanted in orders.items() if wanted]
         if len(asked) > 1:
             raise InputError("choose", "", "one of knee, near and different", " and ".join(asked))
+        texts = ([where] if where.strip() else []) if isinstance(where, str) else where
         choice = Choice(
-            where=conditions(where, self._quantities, "where") if where.strip() else (),
+            where=all_conditions(texts, self._quantities, "where"),
             order=asked[0] if asked else Order.FIRST_OBJECTIVE,
             aspiration=near or {},
             limit=limit,
@@ -293,7 +296,7 @@ class Run:
     def _design(self, evaluation: Evaluation) -> Design:
         postures = self._details.get(evaluation.number, ())
         return Design(
-            evaluation.number, evaluation.assessment, postures, self.constraints, partial(_same, self.log)
+            evaluation.number, evaluation.assessment, postures, self.constraints, (), partial(_same, self.log)
         )
 
 

@@ -83,6 +83,9 @@ class LiftSolution:
     ending: Ending | None = None
     least: LeastTime | None = None
 
+    def __repr__(self) -> str:
+        return f"<{self.lift}: {self.status}>"
+
     @property
     def solved(self) -> bool:
         """Whether there is a checked motion."""

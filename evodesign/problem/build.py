@@ -107,6 +107,9 @@ class DesignProblem:
     joint_start: tuple[Genome, ...]
     stances: tuple[StanceCase, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<built problem {self.name}: {len(self.space.parameters)} parameters>"
+
     @property
     def scene(self) -> Scene:
         """The first scene: all of them have its robot, ground and stance."""

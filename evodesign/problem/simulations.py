@@ -54,6 +54,10 @@ class SimulatedCase:
     rollout: Rollout
     outcome: SimulationOutcome
 
+    def __repr__(self) -> str:
+        end = "stands" if self.outcome.stands else "falls"
+        return f"<simulated {self.name}: {end}, load {1e3 * self.outcome.drift:.3g} mm off>"
+
 
 def lifts_among(tasks: Sequence[Task], heights: Sequence[float], knots: int) -> list[Lift]:
     """The lifts of a problem's tasks, with so many knots; none where holds at some heights are wanted."""

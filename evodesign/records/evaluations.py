@@ -26,7 +26,12 @@ __all__ = [
 
 
 class ReachOutcome(Record, frozen=True):
-    """Interval of load heights [m] that the robot can hold; bounds are None when not solved."""
+    """Interval of load heights [m] that the robot can hold; bounds are None when not solved.
+
+    Example:
+        >>> design.reach.highest_m, design.reach.reason
+        (1.343..., 'holds loads from 0.193 to 1.343 m')
+    """
 
     lowest_m: float | None
     highest_m: float | None
@@ -37,8 +42,12 @@ class ReachOutcome(Record, frozen=True):
 class CaseOutcome(Record, frozen=True, omit_defaults=True):
     """One undisturbed case of one design, in short.
 
-    `disturbed` holds torque norms by disturbance and agent, where the problem has disturbances. `fallbacks`
-    counts solves by IPOPT because the native method had found no posture.
+    `disturbed` holds torque norms [N m] by disturbance and agent, where the problem has disturbances.
+    `fallbacks` counts solves by IPOPT because the native method had found no posture.
+
+    Example:
+        >>> design.cases[0]
+        <short, 0.8 m: solved, robot 0.1603 N m, human 0.08849 N m>
     """
 
     case: Case
@@ -50,6 +59,11 @@ class CaseOutcome(Record, frozen=True, omit_defaults=True):
     residual: float | None
     disturbed: dict[str, dict[str, float]] = msgspec.field(default_factory=dict)
     fallbacks: int = 0
+
+    def __repr__(self) -> str:
+        norms = {"robot": self.robot_torque_norm, "human": self.human_torque_norm}
+        known = [f"{name} {norm:.4g} N m" for name, norm in norms.items() if norm is not None]
+        return f"<{', '.join([f'{self.case.name}: {self.status}', *known])}>"
 
 
 NO_SECONDS = 0.0
@@ -109,6 +123,19 @@ class Assessment(Record, frozen=True):
     gradients: Gradients | msgspec.UnsetType = msgspec.UNSET
     rated: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
 
+    def __repr__(self) -> str:
+        return f"<assessment: {self.summary}>"
+
+    @property
+    def summary(self) -> str:
+        """Three of its objectives at most, in their own units, or why they do not count."""
+        if self.violation is None:
+            return str(self.status)
+        if self.violation > 0.0:
+            return f"not feasible, violation {self.violation:.4g}"
+        told = [f"{name} {value:.4g}" for name, value in self.objectives.items()]
+        return ", ".join(told if len(told) <= 3 else [*told[:3], ".."])
+
     @property
     def rated_torques(self) -> dict[str, float]:
         """Those of sized actuators [N m], by the parameter that is their margin, if there are any."""
@@ -130,12 +157,18 @@ class Assessed(Record, frozen=True):
     cases: tuple[CaseDetail, ...] = ()
     gradient_seconds: float = NO_SECONDS
 
+    def __repr__(self) -> str:
+        return f"<assessed: {self.assessment.summary}>"
+
 
 class Detail(Record, frozen=True):
     """The postures of an evaluation that no earlier one dominates: every design of a front has one."""
 
     evaluation: int
     cases: tuple[CaseDetail, ...]
+
+    def __repr__(self) -> str:
+        return f"<postures of evaluation {self.evaluation} in {len(self.cases)} cases>"
 
 
 class Turn(Record, frozen=True):
@@ -166,6 +199,9 @@ class Evaluation(Record, frozen=True, omit_defaults=True):
     turn: Turn | None = None
     gradient_seconds: float = NO_SECONDS
 
+    def __repr__(self) -> str:
+        return f"<evaluation {self.number}: {self.assessment.summary}>"
+
     @property
     def feasible(self) -> bool:
         """Whether every constraint holds."""
@@ -186,6 +222,11 @@ class Generation(Record, frozen=True):
     reference: dict[str, float] | None
     best: dict[str, float]
     seconds: float
+
+    def __repr__(self) -> str:
+        share = f"{self.evaluations} evaluations, {self.feasible_share:.1%} feasible"
+        volume = "" if self.hypervolume is None else f", hypervolume {self.hypervolume:.4g}"
+        return f"<generation {self.number}: {share}{volume}>"
 
 
 class Front(Record, frozen=True):

@@ -13,16 +13,35 @@ __all__ = ["AgentDetail", "CaseDetail", "InstantDetail", "LoadCaseDetail", "even
 
 
 class AgentDetail(Record, frozen=True, omit_defaults=True):
-    """Posture, torques and wrenches of an agent, in its own frame (looking along +x at the load).
+    """Posture, torques and wrenches of an agent.
+
+    The agent's own frame has its origin on the ground under the load, x in the direction in which the agent
+    looks at the load, z up: the robot's is the world's, the person's the world's turned half round about z.
 
     Attributes:
-        base_position_m: origin of the root link, three coordinates.
-        base_rpy_rad: roll, pitch and yaw of the root link.
-        joints_rad: position of each joint that moves.
-        torques_n_m: torque of each joint that moves.
-        hand_wrenches: by side, force [N] and moment about the grasp point [N m] on the hand.
-        foot_wrenches: by side, force [N] and moment [N m] on the foot, in the sole frame.
-        speeds_rad_s: of each joint that moves; none of a load held still.
+        base_position_m: origin of the root link in the agent's own frame [m], three coordinates.
+        base_rpy_rad: roll, pitch and yaw [rad] of the root link in it, as a URDF has them: the rotation
+            R_z(yaw) R_y(pitch) R_x(roll).
+        joints_rad: position by name of each joint that moves [rad], of a slide [m].
+        torques_n_m: torque by name of each joint that moves [N m], of a slide the force [N]; what the joint
+            exerts on its child, positive about its axis.
+        hand_wrenches: on the hand, by side (`left`, `right`) six numbers: force [N], then moment about the
+            grasp point [N m], in the agent's own frame.
+        foot_wrenches: on the foot, likewise: force [N], then moment about the sole's origin [N m], in the
+            frame of the sole, whose z is its normal.
+        speeds_rad_s: speed by name of each joint that moves [rad/s], of a slide [m/s]; none of a load held
+            still.
+    Example:
+        >>> person = design.postures[0].agents["human"]
+        >>> person
+        <posture of 33 joints, |torque| 0.08849 N m>
+        >>> [round(each, 2) for each in person.base_position_m]
+        [-0.5, -0.0, 0.85]
+        >>> round(person.joints_rad["jLeftElbow_rotz"], 2)
+        -0.82
+        >>> force_n, moment_n_m = person.hand_wrenches["left"][:3], person.hand_wrenches["left"][3:]
+        >>> round(force_n[2], 1)
+        -13.7
     """
 
     base_position_m: tuple[float, ...]
@@ -33,26 +52,63 @@ class AgentDetail(Record, frozen=True, omit_defaults=True):
     foot_wrenches: dict[str, tuple[float, ...]]
     speeds_rad_s: dict[str, float] = msgspec.field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"<posture of {len(self.joints_rad)} joints, |torque| {self.torque_norm_n_m:.4g} N m>"
+
+    @property
+    def torque_norm_n_m(self) -> float:
+        """Euclidean norm of the joint torques [N m]."""
+        return math.hypot(*self.torques_n_m.values())
+
 
 class LoadCaseDetail(Record, frozen=True):
-    """Torques and wrenches of an agent under a disturbance, in the same posture; as in `AgentDetail`."""
+    """Torques [N m] and wrenches [N, N m] of an agent under a disturbance, in the same posture.
+
+    Attributes:
+        torques_n_m: as in `AgentDetail`, like the others.
+        hand_wrenches: six numbers by side.
+        foot_wrenches: six numbers by side.
+    Example:
+        >>> design.postures[0].instants[0].disturbed["heavier"]["robot"]
+        <load case of 13 joints, |torque| 0.1779 N m>
+    """
 
     torques_n_m: dict[str, float]
     hand_wrenches: dict[str, tuple[float, ...]]
     foot_wrenches: dict[str, tuple[float, ...]]
 
+    def __repr__(self) -> str:
+        norm = math.hypot(*self.torques_n_m.values())
+        return f"<load case of {len(self.torques_n_m)} joints, |torque| {norm:.4g} N m>"
+
 
 class InstantDetail(Record, frozen=True, omit_defaults=True):
-    """The postures at one moment of a task, by the agents' names.
+    """The postures at one moment of a task.
 
-    `time_s` is counted from the task's beginning, 0 for a load held still; `disturbed` holds torques and
-    wrenches in the same postures, by disturbance and agent. `load_height_m` is there where the load moves.
+    Attributes:
+        time_s: since the task began [s]; 0 for a load held still.
+        agents: the posture of `robot` and of `human`.
+        disturbed: torques and wrenches in the same postures, by the disturbance's name, then by agent.
+        load_height_m: height of the load's centre above the ground [m]; None where it is held still, and the
+            task has its height.
+    Example:
+        >>> instant = design.postures[0].instants[0]
+        >>> instant.time_s, sorted(instant.agents), sorted(instant.disturbed)
+        (0.0, ['human', 'robot'], ['heavier'])
     """
 
     time_s: float
     agents: dict[str, AgentDetail]
     disturbed: dict[str, dict[str, LoadCaseDetail]] = msgspec.field(default_factory=dict)
     load_height_m: float | None = None
+
+    def __repr__(self) -> str:
+        return f"<postures at {self.time_s:g} s: {_norms(self)}>"
+
+
+def _norms(instant: InstantDetail) -> str:
+    """The torque norm of each agent [N m]."""
+    return ", ".join(f"{name} {agent.torque_norm_n_m:.4g} N m" for name, agent in instant.agents.items())
 
 
 def evenly(count: int, most: int) -> tuple[int, ...]:
@@ -116,30 +172,44 @@ class ActiveLimit(Record, frozen=True):
 
 
 class CaseDetail(Record, frozen=True, omit_defaults=True):
-    """The postures of an undisturbed case that was solved: one instant of a hold, many of a lift.
+    """The postures of an undisturbed case that was solved.
 
-    `limits` are those that hold the postures, the most expensive first; a lift has none.
+    Attributes:
+        case: person, load and task; `case.name` says all of it, such as `short, 5 kg, 0.8 m`.
+        instants: one of a load held still, many of a lift, in order of time.
+        limits: those that hold the postures, the most expensive first; a lift has none.
+    Example:
+        >>> design.postures[0]
+        <postures of short, 0.8 m: robot 0.1603 N m, human 0.08849 N m>
+        >>> design.postures[0].case.person, design.postures[0].height_m
+        ('short', 0.8)
+        >>> round(design.postures[0].agents["robot"].torques_n_m["l_elbow"], 4)
+        -0.0546
     """
 
     case: Case
     instants: tuple[InstantDetail, ...]
     limits: tuple[ActiveLimit, ...] = ()
 
+    def __repr__(self) -> str:
+        told = f"{len(self.instants)} instants" if len(self.instants) != 1 else _norms(self.instants[0])
+        return f"<postures of {self.case.name}: {told}>"
+
     @property
     def agents(self) -> dict[str, AgentDetail]:
-        """The postures of the only instant, by the agents' names."""
+        """The posture of `robot` and of `human` at the only instant; a lift has many, in `instants`."""
         (instant,) = self.instants
         return instant.agents
 
     @property
     def time_s(self) -> float:
-        """Of the only instant."""
+        """Of the only instant, since the task began [s]."""
         (instant,) = self.instants
         return instant.time_s
 
     @property
     def height_m(self) -> float:
-        """Of the load's centre at the only instant."""
+        """Of the load's centre above the ground at the only instant [m]."""
         (instant,) = self.instants
         return self.case.task.heights[0] if instant.load_height_m is None else instant.load_height_m
 
@@ -159,8 +229,8 @@ class CaseDetail(Record, frozen=True, omit_defaults=True):
 
     @property
     def hardest(self) -> CaseDetail:
-        """The moment at which the person's torques are largest; the only one of a load held still."""
-        return max(self.moments, key=lambda moment: math.hypot(*moment.agents["human"].torques_n_m.values()))
+        """The moment at which the person's torques [N m] are largest; the only one of a load held still."""
+        return max(self.moments, key=lambda moment: moment.agents["human"].torque_norm_n_m)
 
     def thinned(self, most: int) -> CaseDetail:
         """The same with so many instants at most: both ends, and what lies evenly between."""

@@ -76,6 +76,9 @@ class SearchSettings(Record, frozen=True):
     reference: tuple[float | None, ...] | msgspec.UnsetType = msgspec.UNSET
     descriptors: tuple[Descriptor, ...] | msgspec.UnsetType = msgspec.UNSET
 
+    def __repr__(self) -> str:
+        return f"<search {self.algorithm}: population {self.population}, seed {self.seed}>"
+
     @property
     def described(self) -> tuple[Descriptor, ...]:
         """The descriptors that are named."""
@@ -119,6 +122,9 @@ class ProblemSource(Record, frozen=True):
     symmetry: str | None = None
     method: str | None = None
 
+    def __repr__(self) -> str:
+        return f"<problem file {self.path} with {len(self.files)} more>"
+
 
 class RunHeader(Record, frozen=True):
     """First message of every segment of a run's log.
@@ -142,6 +148,9 @@ class RunHeader(Record, frozen=True):
     stagnation_generations: int | None = None
     constraints: tuple[Constraint, ...] | msgspec.UnsetType = msgspec.UNSET
     least_growth_percent: float | msgspec.UnsetType = msgspec.UNSET
+
+    def __repr__(self) -> str:
+        return f"<header of {self.problem_name}: {self.search.algorithm}, budget {self.budget}>"
 
     @property
     def least_growth(self) -> float | None:

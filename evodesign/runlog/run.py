@@ -55,6 +55,9 @@ class RunLog:
     notes: tuple[str, ...]
     faults: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<log of {self.directory}: {len(self.evaluations)} evaluations>"
+
     @property
     def damaged(self) -> bool:
         """Whether records that were written are lost or changed, so that the front may be another one."""

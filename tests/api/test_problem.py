@@ -95,6 +95,20 @@ def test_wrong_designs_are_refused_in_one_sentence(
         opened.evaluate(design)
 
 
+def test_a_design_beyond_its_bounds_is_told_or_refused(
+    opened: Problem, caplog: pytest.LogCaptureFixture
+) -> None:
+    sentence = "length.thigh = 1.85 is beyond its bounds, 0.6 to 1.8"
+    found = opened.evaluate({"length.thigh": 1.85})
+    assert found.notes == (sentence,)
+    assert [(record.levelname, record.getMessage()) for record in caplog.records] == [("WARNING", sentence)]
+    with pytest.raises(InputError, match=r"length.thigh: wanted a value within its bounds .* found length"):
+        opened.evaluate({"length.thigh": 1.85}, strict=True)
+    within = opened.evaluate({"length.thigh": 1.8}, strict=True)
+    assert within.notes == ()
+    assert len(caplog.records) == 1
+
+
 def test_problem_can_be_sent_to_another_process(opened: Problem) -> None:
     again = pickle.loads(pickle.dumps(opened))
     assert again.source == opened.source

@@ -62,6 +62,28 @@ def test_front_and_choices_are_those_of_the_command_line(run: Run) -> None:
     assert all(design.parameters["arm.0"] > 1.0 for design in run.choose(where="arm.0 > 1"))
 
 
+def test_a_list_of_conditions_chooses_what_meets_all_of_them(run: Run) -> None:
+    both = run.choose(where=["arm.0 > 1", "reach_height < 1.9"])
+    assert both == run.choose(where="arm.0 > 1 and reach_height < 1.9")
+    assert len(both) > 0
+    assert run.choose(where=[]) == run.choose(where="") == run.front
+    with pytest.raises(InputError, match=r"where: wanted NAME < \| <= \| > \| >= NUMBER"):
+        run.choose(where=["arm.0 > 1", ""])
+
+
+def test_a_design_shows_what_it_is_good_for_or_why_not(run: Run) -> None:
+    best = run.front[0]
+    values = (best.objectives["robot_torque"], best.objectives["reach_height"])
+    assert repr(best) == "<design {}: reach_height {:.4g}, robot_torque {:.4g}>".format(
+        best.number, *reversed(values)
+    )
+    bad = next(each for each in run.designs if not each.feasible)
+    assert repr(bad) == f"<design {bad.number}: not feasible, violation {bad.violation:.4g}>"
+    assert repr(Design(None, lost(RUN[0]).assessment)) == "<design: worker lost>"
+    many = msgspec.structs.replace(best.assessment, objectives=dict.fromkeys("abcde", 1.0))
+    assert repr(Design(3, many)) == "<design 3: a 1, b 1, c 1, ..>"
+
+
 def test_designs_carry_what_the_log_holds_of_them(run: Run) -> None:
     for design, evaluation in zip(run.designs, RUN, strict=True):
         assert design.assessment == evaluation.assessment

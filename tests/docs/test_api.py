@@ -6,15 +6,16 @@ import doctest
 import inspect
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 import evodesign
-from docs.write_api import PAGE, Documented, documented, page
+from docs.write_api import PAGE, RECORDS, Documented, documented, page
 
 ALL = documented()
 LIFTING = Path(__file__).parents[1] / "golden" / "lifting"
@@ -69,6 +70,42 @@ def test_examples_work_as_they_stand(each: Documented, names: dict[str, Any]) ->
     result = doctest.DocTestRunner(optionflags=OPTIONS).run(test, out=told.append)
     assert result.failed == 0, "".join(told)
     assert result.attempted > 0
+
+
+@pytest.mark.parametrize("record", RECORDS[:4], ids=lambda record: record.__name__)
+def test_every_field_of_a_posture_is_documented(record: type[msgspec.Struct]) -> None:
+    section = re.search(r"Attributes:\n((?: {4}.*\n?)*)", inspect.getdoc(record) or "")
+    assert section is not None
+    assert tuple(re.findall(r"^ {4}(\w+): ", section[1], re.MULTILINE)) == record.__struct_fields__
+
+
+def reachable(thing: Any, depth: int = 5) -> Iterator[Any]:
+    """An object of this package and everything that its public attributes and containers lead to."""
+    if isinstance(thing, dict | Mapping):
+        thing = [*thing.values()]
+    if isinstance(thing, tuple | list):
+        for each in thing[:3]:
+            yield from reachable(each, depth)
+    elif type(thing).__module__.startswith(("evodesign.api", "evodesign.records", "evodesign.runlog")):
+        yield thing
+        names = [name for name in dir(thing) if not name.startswith("_")] if depth else []
+        for name in names:
+            try:
+                found = getattr(thing, name)
+            except ValueError:  # the only instant, of many
+                continue
+            if not callable(found):
+                yield from reachable(found, depth - 1)
+
+
+def test_whatever_a_user_holds_shows_itself_in_one_short_line(names: dict[str, Any]) -> None:
+    seen = {type(each): repr(each) for start in names.values() for each in reachable(start)}
+    assert {"Run", "Design", "Problem", "CaseDetail", "AgentDetail", "RunLog", "ProblemSource"} <= {
+        kind.__name__ for kind in seen
+    }
+    for kind, shown in seen.items():
+        assert "\n" not in shown, kind
+        assert len(shown) < 200, kind
 
 
 def test_attributes_of_objects_are_documented(names: dict[str, Any]) -> None:
