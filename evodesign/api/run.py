@@ -152,7 +152,7 @@ class Run:
         Example:
             >>> [design.number for design in run.choose(where="reach_height >= 1.34")]
             [4, 2]
-            >>> [design.number for design in run.choose(where=["reach_height >= 1.34", "robot_torque < 2.2"])]
+            >>> [design.number for design in run.choose(where=["reach_height >= 1.34", "robot_torque < 1.7"])]
             [4]
             >>> [design.number for design in run.choose(near={"reach_height": 1.4}, limit=1)]
             [2]

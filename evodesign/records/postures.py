@@ -184,7 +184,7 @@ class CaseDetail(Record, frozen=True, omit_defaults=True):
         >>> design.postures[0].case.person, design.postures[0].height_m
         ('short', 0.8)
         >>> round(design.postures[0].agents["robot"].torques_n_m["l_elbow"], 4)
-        -0.0546
+        -0.0547
     """
 
     case: Case
