@@ -57,7 +57,8 @@ const posturesCsv = (design) => {
 const urdfOf = (design) => {
   if (typeof design.urdf === "string") return design.urdf;
   const lines = content.urdf.split("\n");
-  for (const [place, parts] of Object.entries(design.urdf)) lines[place] = parts.join("");
+  const written = (part) => (Number.isInteger(part) ? part.toFixed(1) : part);
+  for (const [place, parts] of Object.entries(design.urdf)) lines[place] = parts.map(written).join("");
   return lines.join("\n");
 };
 
