@@ -35,7 +35,8 @@ def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Ma
         margin: that is asked for [m].
     """
     fitted = [(link.name, _solid(shape)) for link in tree.links for shape in shapes_of(link)]
-    shown, known = SolidBodies.of_tree(tree), SolidBodies(*map(tuple, zip(*fitted, strict=True)))
+    shown = SolidBodies.of_tree(tree)
+    known = SolidBodies(tuple(name for name, _ in fitted), tuple(solid for _, solid in fitted))
     inside = {(gap.first, gap.second) for gap in _near(tree, shown, pairs, 0.0)}
     near = _near(tree, known, [pair for pair in pairs if pair not in inside], margin)
     return {(gap.first, gap.second): gap.distance for gap in near}

@@ -55,7 +55,7 @@ SAMPLES = 500
 MOST, SELDOM = 0.55, 0.1
 """Shares of the postures: more than half of them, whichever are drawn, and so few that a touch is chance."""
 
-TURN = np.pi  # [rad], of a joint without limits
+HALF_TURN = np.pi  # [rad]
 
 JOINED, STILL = "joined by a joint", "no joint moves between them"
 
@@ -263,4 +263,6 @@ def _overlap_shares(
 
 
 def _range(joint: Joint) -> tuple[float, float]:
-    return max(joint.lower, -TURN), min(joint.upper, TURN)
+    """Its limits, or half a turn to either side where they are a turn apart."""
+    wide = joint.upper - joint.lower >= 2.0 * HALF_TURN
+    return (-HALF_TURN, HALF_TURN) if wide else (joint.lower, joint.upper)

@@ -18,7 +18,8 @@ from textwrap import wrap
 from evodesign.body.placement import Placement, Vector, dot, rotate
 from evodesign.mechanics.scene import SIDES
 from evodesign.problem.file import Facing
-from evodesign.problem.guess.body_plan import BodyPlan, Limb
+from evodesign.problem.guess.body_plan import BodyPlan
+from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint
 

@@ -24,7 +24,6 @@ from evodesign.tree.urdf_read import InertiaRule
 __all__ = ["FILL_IN", "Guess", "GuessedProblem", "guessed_problem", "inertia_rule"]
 
 
-
 @dataclass(frozen=True, slots=True)
 class Guess:
     """What was guessed for a key, and why; `found` is nothing if it could not be."""

@@ -2,9 +2,10 @@
 
 Margins of constraints, positive where one is violated, are modelled as objectives are, each by itself. Where
 a search is told violations only, zero for every feasible design, these stand at minus the median violation
-instead, so that the model has a boundary to find. Failures have no violation: they are modelled by themselves, as +1
-where a design failed and -1 where none did. A failure is expected where that model exceeds a threshold,
-which is the lower the more of the latest designs failed: bold while little is lost, careful when much is.
+instead, so that the model has a boundary to find. Failures have no violation: they are modelled by
+themselves, as +1 where a design failed and -1 where none did. A failure is expected where that model exceeds
+a threshold, which is the lower the more of the latest designs failed: bold while little is lost, careful when
+much is.
 
     infeasibility = sum of the expected violations + what the failures' model exceeds its threshold by
     threshold     = -2.4 (share of failures among the latest 48 designs), at least -0.9
