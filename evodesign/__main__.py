@@ -3,6 +3,7 @@
 import sys
 
 from evodesign.interrupts import INTERRUPTED, INTERRUPTS
+from evodesign.streams import adapt_streams
 
 __all__ = ["main"]
 
@@ -14,6 +15,7 @@ def main() -> None:
         SystemExit: always, with its exit code.
     """
     INTERRUPTS.begin()
+    adapt_streams()
     try:
         code = _exit_code()
         INTERRUPTS.end(code)

@@ -42,6 +42,7 @@ from evodesign.cli.verify import verify
 from evodesign.cli.watch import watch
 from evodesign.errors import EvodesignError, Interrupted
 from evodesign.interrupts import STOPPED
+from evodesign.streams import UNREAD
 
 __all__ = ["COMMANDS", "app", "main"]
 
@@ -126,11 +127,23 @@ def main() -> None:
         _leave(f"{stop}", STOPPED)
     except EvodesignError as error:
         _leave(f"error: {error}", BAD_INPUT)
+    except SystemExit as left:
+        if isinstance(left.__context__, BrokenPipeError):  # typer makes a code of its own of it
+            raise SystemExit(UNREAD) from None
+        raise
+    except BrokenPipeError:
+        _drop_output()
+        raise SystemExit(UNREAD) from None
     except OSError as error:
         if error.errno not in NO_ROOM:
             raise
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left of it goes nowhere
+        _drop_output()
         _leave(f"error: the output cannot be written: {error.strerror}", BAD_INPUT)
+
+
+def _drop_output() -> None:
+    """Let what is left of standard output go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _leave(sentence: str, code: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from json import dumps
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -91,8 +92,11 @@ def print_commands(*commands: str) -> None:
 
 
 def print_json(value: Any) -> None:
-    """One JSON document on standard output."""
-    sys.stdout.write(msgspec.json.format(msgspec.json.encode(value), indent=2).decode() + "\n")
+    """One JSON document on standard output; in ASCII where its encoding may lack characters."""
+    text = msgspec.json.format(msgspec.json.encode(value), indent=2).decode()
+    if console().options.ascii_only:
+        text = "".join(letter if letter.isascii() else dumps(letter)[1:-1] for letter in text)
+    sys.stdout.write(text + "\n")
 
 
 def show_notes(sentences: Iterable[str]) -> None:
