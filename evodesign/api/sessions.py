@@ -166,7 +166,7 @@ def begin(
     refuse_run(directory)  # before anything takes time; the search's settings too
     (make_asynchronous_search if settings.asynchronous else make_search)(settings)
     stop = make_stop(header.hours)
-    with _resumable(directory, stop), make_pool(workers.pool, workers.jobs, workers.scheduler) as pool:
+    with _resumable(directory, stop), _pool(workers, display, stop) as pool:
         factory = _factory(header, pool, workers, display)
         with display.search() as observer, stop.heeded():
             run = evolve.start(directory, header, factory, pool, observer, stop=stop)
@@ -211,7 +211,7 @@ def proceed(
     stop = make_stop(budgets.of(logged).hours)
     with (
         _resumable(directory, stop),
-        make_pool(workers.pool, workers.jobs, workers.scheduler) as pool,
+        _pool(workers, display, stop) as pool,
         display.search() as observer,
         stop.heeded(),
     ):
@@ -223,6 +223,10 @@ def proceed(
         except ResumeMismatch as mismatch:
             raise _explained(mismatch, logged) from mismatch
     return _judged(run, display)
+
+
+def _pool(workers: Workers, display: Display, stop: Stop) -> Pool:
+    return make_pool(workers.pool, workers.jobs, workers.scheduler, note=display.note, stop=stop)
 
 
 def _judged(run: RunLog, display: Display) -> RunLog:

@@ -18,7 +18,7 @@ def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem))
-    with make_pool("joblib", jobs) as pool, precompute_progress() as progress:
+    with precompute_progress() as progress, make_pool("joblib", jobs, note=progress.note) as pool:
         known = cached_precomputed(built, pool, progress)
     if json:
         print_json(starts_json(built, known))

@@ -11,18 +11,21 @@ does, the Dask worker lives on and reports the reason. Its processes end with it
 
 from __future__ import annotations
 
+import asyncio
 import itertools
+import logging
 import multiprocessing
 import socket
 import threading
 import time
 import weakref
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import Any, Generic
 
-from distributed import Client, Future
+from distributed import Client, Future, Security, rpc
 from distributed.scheduler import KilledWorker
 
 from evodesign.errors import InputError, Interrupted
@@ -44,8 +47,14 @@ COUNT_EVERY = 1.0
 LOOK_EVERY = 0.5
 """Interval [s] at which the connection is looked at while nothing comes back."""
 
-FIRST_PATIENCE = 10.0
-"""Longest wait [s] for the scheduler at the start."""
+PROBE_SECONDS = 3.0
+"""Longest wait [s] for a scheduler to say that it is one."""
+
+CONNECT_SECONDS = 10.0
+"""Longest wait [s] for a connection to a scheduler that has said so."""
+
+CLOSE_SECONDS = 1.0
+"""Longest wait [s] for a connection to end."""
 
 PATIENCE = 3600.0
 """Longest wait [s] for a scheduler that was lost."""
@@ -60,20 +69,33 @@ NO_WORKER = "dask-lost"
 class DaskPool(Pool):
     """Runs on the workers of a Dask scheduler, which need this package and its dependencies.
 
+    Dask's own words on a lost connection, tracebacks, are not shown from then on in this process.
+
     Args:
         scheduler: address, such as `tcp://127.0.0.1:8786`.
+        note: is told in a sentence when a scheduler is lost.
+        stop: asked while a lost scheduler is waited for; True ends that as Ctrl-C does.
         patience: longest wait [s] for a scheduler that was lost.
     Raises:
         InputError: no scheduler answers there.
     """
 
-    def __init__(self, scheduler: str, patience: float = PATIENCE) -> None:
+    def __init__(
+        self,
+        scheduler: str,
+        note: Callable[[str], None],
+        stop: Callable[[], bool],
+        patience: float = PATIENCE,
+    ) -> None:
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         self._scheduler = scheduler
+        self._note = note
+        self._stop = stop
         self._patience = patience
         self._current: weakref.ref[Generator[Any, None, None]] | None = None
         try:
-            self._client: Client | None = _connect(scheduler, FIRST_PATIENCE)
-        except (OSError, ValueError) as error:
+            self._client: Client | None = _connect(scheduler)
+        except NoSchedulerError as error:
             wanted = "the address of a running Dask scheduler, such as tcp://127.0.0.1:8786"
             raise InputError("--scheduler", "", wanted, f"'{scheduler}' ({error})") from error
 
@@ -96,7 +118,7 @@ class DaskPool(Pool):
         self._end_run()
         client, self._client = self._client, None
         if client is not None:
-            client.close()
+            _disconnect(client)
 
     def _end_run(self) -> None:
         unfinished = self._current() if self._current is not None else None
@@ -113,33 +135,83 @@ class DaskPool(Pool):
 
         Raises:
             Interrupted: the scheduler has not come back.
+            KeyboardInterrupt: a stop was asked for while it was waited for.
         """
-        client, start = self._client, time.monotonic()
-        while client is not None and client.status == "connecting":
-            time.sleep(LOOK_EVERY)
-            if time.monotonic() - start > self._patience:
-                break
+        client = self._client
+        if client is not None and client.status != "running":
+            waited = f"waiting for it, at most {self._patience:g} s"
+            self._note(f"the connection to the scheduler {self._scheduler} is lost; {waited}")
+            end = time.monotonic() + self._patience
+            while client.status == "connecting" and time.monotonic() < end:
+                self._wait()
         if client is None or client.status != "running":
+            self._client = None
             if client is not None:
-                client.close()
+                _disconnect(client)
             client = self._client = self._again()
         return client
 
     def _again(self) -> Client:
         deadline = time.monotonic() + self._patience
         while time.monotonic() < deadline:
-            try:
-                return _connect(self._scheduler, FIRST_PATIENCE)
-            except OSError:
-                time.sleep(LOOK_EVERY)
+            self._wait()
+            with suppress(NoSchedulerError):
+                return _connect(self._scheduler)
         raise Interrupted(
             f"the scheduler {self._scheduler} has not come back for {self._patience:g} s; "
             "start it and its workers again, then resume the run"
         )
 
+    def _wait(self) -> None:
+        """Wait a moment for a lost scheduler, unless a stop was asked for: nothing in flight can arrive."""
+        if self._stop():
+            raise KeyboardInterrupt
+        time.sleep(LOOK_EVERY)
 
-def _connect(scheduler: str, patience: float) -> Client:
-    return Client(scheduler, timeout=patience, set_as_default=False)
+
+class NoSchedulerError(Exception):
+    """No scheduler answers at an address; the text says what was met there."""
+
+
+def _connect(scheduler: str) -> Client:
+    """A client of a scheduler that answers.
+
+    A client that finds none waits for it as it is closed, and again when it is collected; so a probe, in a
+    thread whose loop is its own, comes first.
+
+    Raises:
+        NoSchedulerError: none does.
+    """
+    with ThreadPoolExecutor(1) as thread:
+        error = thread.submit(asyncio.run, _probe(scheduler)).exception()
+    if error is None:
+        try:
+            return Client(scheduler, timeout=CONNECT_SECONDS, set_as_default=False)
+        except OSError as lost:
+            error = lost
+    known = isinstance(error, OSError | ValueError)
+    raise NoSchedulerError(str(error) if known else "what answers there is no Dask scheduler") from error
+
+
+async def _probe(address: str) -> None:
+    """Ask what is at an address whether it is a scheduler, and raise whatever error says that it is none."""
+    connection = Security().get_connection_args("client")
+    try:
+        async with asyncio.timeout(PROBE_SECONDS):
+            async with rpc(address, connection_args=connection) as there:
+                kind = (await there.identity())["type"]
+    except TimeoutError:
+        raise OSError(f"no answer within {PROBE_SECONDS:g} s") from None
+    if kind != "Scheduler":
+        raise OSError(f"a {kind.lower()} answers there")
+
+
+def _disconnect(client: Client) -> None:
+    """Close a client, also one whose scheduler does not answer any more."""
+    try:
+        client.close(timeout=CLOSE_SECONDS)
+    except OSError:
+        client.status = "closed"  # or it would wait again when it is collected
 
 
 class _Crowd(Generic[A, R]):

@@ -2,19 +2,65 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Final
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Pool
-from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
 
-__all__ = ["POOLS", "make_pool"]
+__all__ = ["POOLS", "PoolSettings", "make_pool"]
 
 
-def _dask(jobs: int, scheduler: str | None) -> Pool:
-    if scheduler is None:
+def never() -> bool:
+    """A stop that is never asked for."""
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class PoolSettings:
+    """What a pool is made from, as far as it has a use for it.
+
+    Args:
+        jobs: arguments that run at the same time; Dask has as many as its workers have threads.
+        scheduler: address of a Dask scheduler.
+        note: is told in a sentence when another pool takes the place of this one, or a machine is lost.
+        stop: whether waiting for a machine that was lost is to end.
+    """
+
+    jobs: int
+    scheduler: str | None
+    note: Callable[[str], None]
+    stop: Callable[[], bool]
+
+
+def _joblib(settings: PoolSettings) -> Pool:
+    if lacking := _no_semaphores():
+        settings.note(
+            f"no worker processes ({lacking}): evaluations run one after the other, as with --pool serial"
+        )
+        return SerialPool()
+    from evodesign.pool.joblib_pool import JoblibPool  # joblib warns of the same when it is loaded
+
+    return JoblibPool(settings.jobs)
+
+
+def _no_semaphores() -> str:
+    """Why processes can share no semaphores, without which joblib starts none; empty where they can."""
+    try:
+        multiprocessing.get_context("fork").Semaphore()
+    except OSError as error:
+        return f"semaphores in /dev/shm: {error.strerror}"
+    except ImportError as error:
+        return f"{error}"
+    return ""
+
+
+def _dask(settings: PoolSettings) -> Pool:
+    if settings.scheduler is None:
         wanted = "the address of a running Dask scheduler, such as tcp://127.0.0.1:8786"
         raise InputError("--scheduler", "", wanted, "none")
     try:
@@ -22,25 +68,33 @@ def _dask(jobs: int, scheduler: str | None) -> Pool:
     except ModuleNotFoundError as error:
         wanted = "'joblib', or Dask installed (pip install 'evodesign[dask]')"
         raise InputError("--pool", "", wanted, f"'dask' ({error})") from error
-    return DaskPool(scheduler)
+    return DaskPool(settings.scheduler, settings.note, settings.stop)
 
 
-POOLS: Final[Mapping[str, Callable[[int, str | None], Pool]]] = {
-    "serial": lambda jobs, scheduler: SerialPool(),
-    "joblib": lambda jobs, scheduler: JoblibPool(jobs),
+POOLS: Final[Mapping[str, Callable[[PoolSettings], Pool]]] = {
+    "serial": lambda settings: SerialPool(),
+    "joblib": _joblib,
     "dask": _dask,
 }
-"""Constructors by name; each takes the number of jobs and the address of a scheduler, if it has a use for
-them: the serial pool has one job, Dask as many as its workers have threads."""
+"""Constructors by name."""
 
 
-def make_pool(name: str, jobs: int, scheduler: str | None = None) -> Pool:
-    """The pool of a name.
+def make_pool(
+    name: str,
+    jobs: int,
+    scheduler: str | None = None,
+    *,
+    note: Callable[[str], None] = warnings.warn,
+    stop: Callable[[], bool] = never,
+) -> Pool:
+    """The pool of a name; in the place of joblib's the serial one where no worker process can be started.
 
     Args:
         name: in the registry.
-        jobs: evaluations that run at the same time.
-        scheduler: address of a Dask scheduler.
+        jobs: as in `PoolSettings`.
+        scheduler: as in `PoolSettings`.
+        note: as in `PoolSettings`.
+        stop: as in `PoolSettings`.
     Raises:
         InputError: no such pool, fewer than one job, or a scheduler that is missing, not asked for or silent.
     """
@@ -51,4 +105,4 @@ def make_pool(name: str, jobs: int, scheduler: str | None = None) -> Pool:
         raise InputError("--jobs", "", "a whole number from 1", str(jobs))
     if scheduler is not None and name != "dask":
         raise InputError("--scheduler", "", "no address without --pool dask", f"'{scheduler}'")
-    return POOLS[name](jobs, scheduler)
+    return POOLS[name](PoolSettings(jobs, scheduler, note, stop))

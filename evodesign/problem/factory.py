@@ -119,7 +119,7 @@ def evaluator_of(
     problem: DesignProblem, jobs: int, progress: PrecomputeProgress = SILENT, lifts: Sequence[Lift] = ()
 ) -> Evaluator:
     """The inner problems of a problem in this process; so many jobs work out what is missing."""
-    with make_pool("joblib", jobs) as pool:
+    with make_pool("joblib", jobs, note=progress.note) as pool:
         known = cached_precomputed(problem, pool, progress, lifts)
     return Evaluator(problem, known)
 

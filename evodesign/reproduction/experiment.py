@@ -73,7 +73,7 @@ class Experiment:
         def late() -> bool:
             return time.monotonic() > end
 
-        with make_pool(self.effort.pool, self.effort.jobs) as workers:
+        with make_pool(self.effort.pool, self.effort.jobs, note=self.display.note, stop=late) as workers:
             with self.display.precompute() as progress:
                 factory = evaluation_factory(header, workers, progress)
             try:

@@ -1,4 +1,6 @@
-"""A session with signals as on the command line: python -m tests.cli.stopped_session DIR HOLD GRACE HOURS.
+"""A session with signals as on the command line.
+
+    python -m tests.cli.stopped_session DIR HOLD GRACE HOURS [SCHEDULER]
 
 Of 40 evaluations two run at the same time. The first ends at once, the others when the file HOLD is gone.
 """
@@ -43,10 +45,10 @@ class Held:
 
 
 def main() -> int:
-    directory, hold, grace, hours = sys.argv[1:]
+    directory, hold, grace, hours, *scheduler = sys.argv[1:]
     header = synthetic_header(budget=40, seed=1, population=20)
     stop = SignalledStop(float(hours) or None, Path(directory), float(grace))
-    with make_pool("joblib", JOBS) as pool:
+    with make_pool("dask" if scheduler else "joblib", JOBS, *scheduler, stop=stop) as pool:
         try:
             with stop.heeded():
                 start(Path(directory), header, Held(header, hold), pool, Reporter(), stop=stop)

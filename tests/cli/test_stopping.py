@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,9 +15,11 @@ from pathlib import Path
 import pytest
 
 from evodesign.evolve import Silent, resume
+from evodesign.pool.dask_pool import CONNECT_SECONDS
 from evodesign.runlog.run import RunLog, read_run
 from tests.cli.stopped_session import JOBS
 from tests.faults.kills import uninterrupted
+from tests.pool.cluster import Cluster
 from tests.runlog.toys import OrderedPool, ToyTask, essence
 
 pytestmark = pytest.mark.slow
@@ -52,13 +55,13 @@ class Held:
 
 
 @contextmanager
-def session(directory: Path, grace: float, hours: float = 0.0) -> Iterator[Held]:
+def session(directory: Path, grace: float, hours: float = 0.0, *scheduler: str) -> Iterator[Held]:
     """A session that has begun."""
     hold = directory.with_name("hold")
     hold.touch()
     command = [sys.executable, "-m", "tests.cli.stopped_session"]
     process = subprocess.Popen(
-        [*command, str(directory), str(hold), str(grace), str(hours)],
+        [*command, str(directory), str(hold), str(grace), str(hours), *scheduler],
         cwd=ROOT,
         env=os.environ | {"PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
@@ -137,3 +140,32 @@ def test_the_end_of_the_wall_time_is_a_request_to_stop(tmp_path: Path) -> None:
     run = check_resumable(tmp_path / "run")
     assert len(run.evaluations) <= 1 + IN_FLIGHT
     assert run.complete
+
+
+@pytest.mark.parametrize("moment", ["after it was lost", "while it is missed", "before it is lost"])
+def test_a_session_whose_scheduler_is_lost_ends_soon_after_the_first_request(
+    moment: str, tmp_path: Path
+) -> None:
+    with Cluster() as cluster:
+        cluster.start_scheduler()
+        cluster.add_worker("--no-nanny")
+        cluster.wait_for(1)
+        with session(tmp_path / "run", FOR_EVER, 0.0, cluster.address) as held:
+            held.first_arrives()
+            if moment == "before it is lost":
+                held.process.send_signal(signal.SIGINT)
+                assert "waiting for what is in flight" in held.says()
+                cluster.kill_scheduler()
+                began = time.monotonic()
+            else:
+                cluster.kill_scheduler()
+                time.sleep(0.1 if moment == "after it was lost" else CONNECT_SECONDS + 2.0)
+                began = time.monotonic()
+                held.process.send_signal(signal.SIGINT)
+            errors = held.rest()
+            seconds = time.monotonic() - began
+    assert held.process.returncode == 3
+    assert seconds < 5.0
+    assert "Traceback" not in errors
+    assert f"evodesign resume {tmp_path / 'run'}" in errors
+    check_resumable(tmp_path / "run")
