@@ -15,7 +15,14 @@ from evodesign.analysis.run_state import RunState
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.records import Evaluation, Genome, Turn
 from evodesign.searches.base import AsynchronousSearch
-from evodesign.session import Session, conclude, evaluation_outcome, remember, search_outcome
+from evodesign.session import (
+    Session,
+    conclude,
+    evaluation_outcome,
+    remember,
+    search_outcome,
+    settle,
+)
 
 __all__ = ["evolve_asynchronously"]
 
@@ -28,14 +35,18 @@ def evolve_asynchronously(session: Session, search: AsynchronousSearch) -> None:
     """
     run_state = RunState(session.header.objectives)
     begun, born = time.perf_counter(), list[Evaluation]()
+    population = session.header.search.population
+    whole = min(population, session.header.budget)
     with closing(_asynchronous_evaluations(session, search)) as evaluations:
         for evaluation in evaluations:
             born.append(evaluation)
-            if len(born) == session.header.search.population:
+            if len(born) == population:
+                settle(session, whole)
                 conclude(session, evaluation.generation, run_state, born, begun)
                 if run_state.over(session.header):
                     return
                 begun, born = time.perf_counter(), []
+    settle(session, whole)
 
 
 def _asynchronous_evaluations(

@@ -5,7 +5,7 @@
     │   └── ModelError      a robot or person description that cannot be used
     ├── RunError            a run directory that cannot be read or written (exit code 2)
     │   └── ResumeMismatch  a log that this problem and search did not write (exit code 2)
-    └── Interrupted         the user stopped a search; it can be resumed (exit code 3)
+    └── Interrupted         a search that stopped before its end; it can be resumed (exit code 3)
 
 A failed solve is not an error: it is a `records.Status` with a reason.
 """
@@ -96,7 +96,7 @@ class ResumeMismatch(RunError):
 
 
 class Interrupted(EvodesignError):
-    """A search that was stopped on request and can be resumed."""
+    """A search that stopped before its end, on request or because nothing worked; it can be resumed."""
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str:

@@ -37,7 +37,15 @@ from evodesign.runlog.session_log import Observer, SessionLog, Silent
 from evodesign.runlog.writer import RunWriter
 from evodesign.searches import registry
 from evodesign.searches.base import Search
-from evodesign.session import Evaluate, Session, conclude, evaluation_outcome, remember, search_outcome
+from evodesign.session import (
+    Evaluate,
+    Session,
+    conclude,
+    evaluation_outcome,
+    remember,
+    search_outcome,
+    settle,
+)
 
 __all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
 
@@ -72,7 +80,8 @@ def start(
     Raises:
         InputError: settings that no search can use.
         RunError: the directory holds a run already, or cannot be written.
-        Interrupted: stopped, by `stop` or by Ctrl-C; what had arrived is logged.
+        Interrupted: stopped, by `stop` or by Ctrl-C; what had arrived is logged. Or all of the first
+            generation failed for one reason; nothing of it is logged.
     """
     evolve = _loop(header.search, make_search)
     make_directory(directory)
@@ -183,6 +192,7 @@ def _evolve(session: Session, search: Search) -> None:
         begun = time.perf_counter()
         genomes = _ask(session, search)
         born = _evaluate(session, generation, done, genomes[: session.header.budget - done])
+        settle(session, min(len(genomes), session.header.budget))
         done += len(born)
         if len(born) < len(genomes):
             return

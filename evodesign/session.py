@@ -3,15 +3,20 @@
 A search must be told the same whether an evaluation has just arrived or is read from the log. So the log
 decides: an assessment that a pool gives back is taken as the log would give it back, and one that it cannot
 hold is a failure.
+
+A session's first evaluations are held back while every one of them fails for the same reason. When that is a
+whole generation, no design is the cause, but a mistake in an objective or a machine that starts no worker:
+the session ends, and the log holds nothing of them.
 """
 
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import msgspec
@@ -19,6 +24,7 @@ import msgspec
 from evodesign.analysis.conditions import described
 from evodesign.analysis.front import RunningFront, minimised
 from evodesign.analysis.run_state import RunState
+from evodesign.errors import Interrupted
 from evodesign.pool.base import Factory, Finished, Pool
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import (
@@ -49,9 +55,13 @@ __all__ = [
     "evaluation_outcome",
     "remember",
     "search_outcome",
+    "settle",
 ]
 
 Evaluate = Factory[Genome, Assessed]
+
+NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
+"""What may differ between two reasons that are the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +85,34 @@ class EvaluationOutcome:
 
     evaluation: Evaluation
     detail: Detail
+
+    @property
+    def failure(self) -> str:
+        """Why nothing was computed of the design; empty where something was."""
+        assessment = self.evaluation.assessment
+        computed = assessment.violation is not None or assessment.reach or assessment.cases
+        return "" if computed else assessment.reason
+
+
+class FirstOutcomes:
+    """A session's first evaluations, held back while all of them fail for the same reason."""
+
+    def __init__(self) -> None:
+        self._held: list[EvaluationOutcome] = []
+        self._computed = False
+
+    def hold(self, outcome: EvaluationOutcome) -> bool:
+        """Hold an evaluation back, unless something was computed of it or an earlier one; gives whether."""
+        reasons = {NUMBER.sub("", each.failure) for each in (*self._held[:1], outcome)}
+        self._computed = self._computed or len(reasons) > 1 or "" in reasons
+        if not self._computed:
+            self._held.append(outcome)
+        return not self._computed
+
+    def release(self) -> list[EvaluationOutcome]:
+        """What was held back, which is held no longer."""
+        held, self._held = self._held, []
+        return held
 
 
 def evaluation_outcome(
@@ -152,6 +190,7 @@ class Session:
     observer: Observer
     stop: Callable[[], bool]
     front: RunningFront
+    first: FirstOutcomes = field(default_factory=FirstOutcomes)
 
 
 def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
@@ -193,7 +232,33 @@ def search_outcome(header: RunHeader, evaluation: Evaluation) -> Outcome:
 
 
 def remember(session: Session, outcome: EvaluationOutcome, *, more: bool) -> None:
-    """Put an evaluation on the disk, with its postures if none so far dominates it; or soon, with `more`."""
+    """Put an evaluation on the disk, or soon, with `more`; unless all have failed so far."""
+    if not session.first.hold(outcome):
+        for each in (*session.first.release(), outcome):
+            _put(session, each, more=more)
+
+
+def settle(session: Session, whole: int) -> None:
+    """At the end of a generation, put what was held back on the disk, unless it is all of the generation.
+
+    Args:
+        session: whose evaluations they are.
+        whole: number of evaluations of a generation.
+    Raises:
+        Interrupted: all of it failed for one reason; a later session evaluates it again.
+    """
+    held = session.first.release()
+    if len(held) >= max(whole, 2):
+        raise Interrupted(
+            f"the first {len(held)} evaluations of this session all failed for one reason, so they are not "
+            f"kept: {held[0].failure}; mend that, then go on with: evodesign resume {session.directory}"
+        )
+    for each in held:
+        _put(session, each, more=False)
+
+
+def _put(session: Session, outcome: EvaluationOutcome, *, more: bool) -> None:
+    """Log an evaluation, with its postures if none so far dominates it."""
     evaluation = outcome.evaluation
     detail = outcome.detail if session.front.enters(evaluation) else None
     session.memory.remember(evaluation, detail, more=more)
