@@ -5,7 +5,8 @@
     │   └── ModelError      a robot or person description that cannot be used
     ├── RunError            a run directory that cannot be read or written (exit code 2)
     │   └── ResumeMismatch  a log that this problem and search did not write (exit code 2)
-    └── Interrupted         a search that stopped before its end; it can be resumed (exit code 3)
+    ├── AllFailed           a session's first evaluations, for one reason; it can be resumed (exit code 5)
+    └── Interrupted         the user stopped a search; it can be resumed (exit code 3)
 
 A failed solve is not an error: it is a `records.Status` with a reason.
 """
@@ -17,6 +18,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 __all__ = [
+    "AllFailed",
     "EvodesignError",
     "InputError",
     "Interrupted",
@@ -95,8 +97,12 @@ class ResumeMismatch(RunError):
     """A logged evaluation that the rebuilt search would not have asked for."""
 
 
+class AllFailed(EvodesignError):
+    """A generation of which every evaluation failed for one reason; resumed, it is evaluated again."""
+
+
 class Interrupted(EvodesignError):
-    """A search that stopped before its end, on request or because nothing worked; it can be resumed."""
+    """A search that was stopped on request and can be resumed."""
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str:

@@ -80,8 +80,8 @@ def start(
     Raises:
         InputError: settings that no search can use.
         RunError: the directory holds a run already, or cannot be written.
-        Interrupted: stopped, by `stop` or by Ctrl-C; what had arrived is logged. Or all of the first
-            generation failed for one reason; nothing of it is logged.
+        Interrupted: stopped, by `stop` or by Ctrl-C; what had arrived is logged.
+        AllFailed: every evaluation of the first generation, for one reason; nothing of it is logged.
     """
     evolve = _loop(header.search, make_search)
     make_directory(directory)

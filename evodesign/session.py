@@ -24,7 +24,7 @@ import msgspec
 from evodesign.analysis.conditions import described
 from evodesign.analysis.front import RunningFront, minimised
 from evodesign.analysis.run_state import RunState
-from evodesign.errors import Interrupted
+from evodesign.errors import AllFailed
 from evodesign.pool.base import Factory, Finished, Pool
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import (
@@ -245,11 +245,11 @@ def settle(session: Session, whole: int) -> None:
         session: whose evaluations they are.
         whole: number of evaluations of a generation.
     Raises:
-        Interrupted: all of it failed for one reason; a later session evaluates it again.
+        AllFailed: all of it, for one reason; a later session evaluates it again.
     """
     held = session.first.release()
     if len(held) >= max(whole, 2):
-        raise Interrupted(
+        raise AllFailed(
             f"the first {len(held)} evaluations of this session all failed for one reason, so they are not "
             f"kept: {held[0].failure}; mend that, then go on with: evodesign resume {session.directory}"
         )

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from evodesign.errors import Interrupted
+from evodesign.errors import AllFailed, Interrupted
 from evodesign.evolve import Silent, resume, start
 from evodesign.pool.base import Finished
 from evodesign.pool.worker import SerialPool
@@ -46,15 +46,17 @@ class WithoutWorkers(OrderedPool):
 
 
 @pytest.mark.parametrize("asynchronous", [False, True])
-@pytest.mark.parametrize("pool", [SerialPool(), WithoutWorkers(), WithoutWorkers(shuffled(1))], ids=str)
+@pytest.mark.parametrize(
+    "pool",
+    [SerialPool(), WithoutWorkers(), WithoutWorkers(shuffled(1))],
+    ids=["raises", "lost", "lost in another order"],
+)
 def test_a_first_generation_that_fails_for_one_reason_ends_the_search_and_costs_nothing(
     asynchronous: bool, pool: SerialPool | OrderedPool, tmp_path: Path
 ) -> None:
     header, broken = header_of(asynchronous), raising(lambda call: f"robto, at {call}.5e-3")
     reason = r"(KeyError: 'robto, at .*\)|no worker process could be started)"
-    with pytest.raises(
-        Interrupted, match=rf"^the first 4 evaluations .* kept: {reason}; mend that, .* resume"
-    ):
+    with pytest.raises(AllFailed, match=rf"^the first 4 evaluations .* kept: {reason}; mend that, .* resume"):
         start(tmp_path / "run", header, broken(header), pool, Silent())
     assert read_run(tmp_path / "run").evaluations == ()
     mended = resume(tmp_path / "run", ToyTask, SerialPool(), Silent(), None)
@@ -86,7 +88,7 @@ def test_a_session_that_goes_on_where_nothing_works_leaves_the_run_as_it_was(
 ) -> None:
     header = header_of(asynchronous, budget=8)
     before = start(tmp_path / "run", header, ToyTask(header), SerialPool(), Silent())
-    with pytest.raises(Interrupted, match="no worker process"):
+    with pytest.raises(AllFailed, match="no worker process"):
         resume(tmp_path / "run", ToyTask, WithoutWorkers(), Silent(), 24)
     assert essence(read_run(tmp_path / "run")) == essence(before)
 
@@ -102,7 +104,7 @@ def test_the_only_design_that_is_missing_may_fail(tmp_path: Path) -> None:
 
 def test_a_small_budget_is_a_whole_generation(tmp_path: Path) -> None:
     header = header_of(asynchronous=False, budget=2)
-    with pytest.raises(Interrupted, match=r"^the first 2 evaluations of this session all failed"):
+    with pytest.raises(AllFailed, match=r"^the first 2 evaluations of this session all failed"):
         start(tmp_path / "run", header, raising(lambda call: "robto")(header), SerialPool(), Silent())
 
 

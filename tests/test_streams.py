@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import json
 import os
 import re
 import subprocess
@@ -13,7 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.cli.output import print_json
 from evodesign.streams import ASCII, UNREAD
 
 ROOT = Path(__file__).parents[1]
@@ -77,18 +74,6 @@ def test_other_letters_become_escapes_and_bytes_of_a_path_stay(stream: str) -> N
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, env=environment, check=True)
         found.append(getattr(done, stream))
     assert found == [b"v \xfc \\u20ac \xff", "↓ ü €".encode() + b" \xff"]
-
-
-def test_json_loses_nothing_in_ascii(monkeypatch: pytest.MonkeyPatch) -> None:
-    value = {"töy": ["€", "😀", 'a "quoted"\nline\x7f']}
-    written = {}
-    for encoding in ("iso-8859-1", "ascii", "utf-8"):
-        monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(io.BytesIO(), encoding))
-        print_json(value)
-        sys.stdout.seek(0)
-        written[encoding] = sys.stdout.read()
-    assert written["ascii"].isascii()
-    assert [json.loads(text) for text in written.values()] == [value] * 3
 
 
 @pytest.mark.parametrize(

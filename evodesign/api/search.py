@@ -78,6 +78,7 @@ def search(
         InputError: a problem, setting or pool that cannot be used.
         RunError: the directory holds a run already, or cannot be written.
         Interrupted: stopped by Ctrl-C (in a notebook: the stop button); `resume` goes on.
+        AllFailed: every evaluation of the first generation, for one reason; `resume` evaluates it again.
     Example:
         >>> new = evodesign.search("problem.toml", "runs/new", evaluations=4, population=4, pool="serial")
         >>> len(new)
@@ -138,6 +139,7 @@ def resume(
         RunError: not a run, another process is writing it, or packages have other versions.
         ResumeMismatch: the log holds a genome that the search does not ask for.
         Interrupted: as in `search`.
+        AllFailed: as in `search`.
     Example:
         >>> short = evodesign.search("problem.toml", "runs/short", evaluations=2, population=2, pool="serial")
         >>> len(evodesign.resume(short, evaluations=4, pool="serial"))

@@ -151,6 +151,7 @@ def begin(
         InputError: settings that no search can use, or a pool that there is not.
         RunError: the directory holds a run already, or cannot be written.
         Interrupted: stopped; what had arrived is logged.
+        AllFailed: every evaluation of the first generation, for one reason; nothing of it is logged.
         KeyboardInterrupt: stopped before there was a run.
     """
     for note in notes(problem):
@@ -196,6 +197,7 @@ def proceed(
         RunError: not a run, another process is writing it, or packages or the solver are others.
         ResumeMismatch: the log holds a genome that the rebuilt search does not ask for.
         Interrupted: as in `begin`.
+        AllFailed: as in `begin`.
     """
 
     def renew(header: RunHeader) -> RunHeader:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli.options import CORES, Jobs, Json, Plot, ProblemPath, SymmetryName
+from evodesign.cli.options import CORES, NOTHING_SOLVED, Jobs, Json, Plot, ProblemPath, SymmetryName
 from evodesign.errors import InputError, nearest_name
 from evodesign.files import make_folder
 
@@ -35,7 +35,7 @@ def evaluate(
     json: Json = False,
     plot: Plot = None,
 ) -> None:
-    """One design in full: reach, postures, torques, wrenches, residuals."""
+    """One design in full: reach, postures, torques, wrenches, residuals. Exit code 5: no case is solved."""
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.design import design_tables
@@ -62,10 +62,12 @@ def evaluate(
     solved = evaluator.details(result)
     if json:
         print_json(evaluation_json(built, values, result, assessment, sensitivities, solved))
-        return
-    for table in design_tables(built, chosen, result, assessment, sensitivities, solved):
-        console().print(table)
-    show_notes(overlaps(solved_distances(result).items()))
+    else:
+        for table in design_tables(built, chosen, result, assessment, sensitivities, solved):
+            console().print(table)
+        show_notes(overlaps(solved_distances(result).items()))
+    if not any(case.solved for case in result.cases):
+        raise typer.Exit(NOTHING_SOLVED)
 
 
 def _write_figures(name: str, result: DesignResult, directory: Path) -> None:

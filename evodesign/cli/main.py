@@ -13,7 +13,7 @@ from importlib.metadata import version
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from evodesign.cli.baseline import baseline
 from evodesign.cli.branch import branch
@@ -27,7 +27,7 @@ from evodesign.cli.init import init
 from evodesign.cli.lift import lift
 from evodesign.cli.matters import matters
 from evodesign.cli.merge import merge
-from evodesign.cli.options import BAD_INPUT
+from evodesign.cli.options import BAD_INPUT, NOTHING_SOLVED
 from evodesign.cli.polish import polish
 from evodesign.cli.problems import problems
 from evodesign.cli.recover import recover
@@ -40,7 +40,7 @@ from evodesign.cli.simulate import simulate
 from evodesign.cli.starts import starts
 from evodesign.cli.verify import verify
 from evodesign.cli.watch import watch
-from evodesign.errors import EvodesignError, Interrupted
+from evodesign.errors import AllFailed, EvodesignError, Interrupted
 from evodesign.interrupts import STOPPED
 from evodesign.streams import UNREAD
 
@@ -88,6 +88,24 @@ class WholeHelp(TyperGroup):
             formatter.write_dl(rows)
 
 
+class NothingEmpty(TyperCommand):
+    """A command that takes no empty word for a path, which would be the working directory, or for a name."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse, after a look at what each parameter was given.
+
+        Raises:
+            typer.BadParameter: nothing but two quotation marks.
+        """
+        given, _, _ = self.make_parser(ctx).parse_args(args=[*args])
+        parameters: list[Any] = [*self.get_params(ctx)]
+        for parameter in parameters:
+            value = given.get(parameter.name or "")
+            if "" in (value if isinstance(value, list | tuple) else [value]):
+                raise typer.BadParameter("wanted a path or a word, found ''", ctx, parameter)
+        return super().parse_args(ctx, args)
+
+
 app = typer.Typer(
     name="evodesign",
     cls=WholeHelp,
@@ -98,7 +116,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for name, command in COMMANDS.items():
-    app.command(name)(command)
+    app.command(name, cls=NothingEmpty)(command)
 
 
 def _show_version(asked: bool) -> None:
@@ -125,6 +143,8 @@ def main() -> None:
             sys.stdout.flush()
     except Interrupted as stop:
         _leave(f"{stop}", STOPPED)
+    except AllFailed as failure:
+        _leave(f"error: {failure}", NOTHING_SOLVED)
     except EvodesignError as error:
         _leave(f"error: {error}", BAD_INPUT)
     except SystemExit as left:

@@ -12,6 +12,9 @@ import typer
 BAD_INPUT = 2
 """Exit code of what a user gave wrong."""
 
+NOTHING_SOLVED = 5
+"""Exit code where no case has a posture, or every evaluation of a first generation failed for one reason."""
+
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -123,3 +123,16 @@ def test_a_place_for_figures_that_cannot_be_made_is_refused_before_anything_is_s
     done = evodesign("evaluate", quick, "--plot", tmp_path / "file")
     assert done.returncode == 2
     assert "--plot: wanted a folder that can be written" in done.stderr
+
+
+@pytest.mark.parametrize(("height", "code", "statuses"), [(1.45, 5, {"infeasible"}), (0.8, 0, {"solved"})])
+def test_the_exit_code_says_whether_any_case_is_solved(
+    height: float, code: int, statuses: set[str], repository: Path, tmp_path: Path
+) -> None:
+    text = (repository / "tests" / "golden" / "lifting" / "problem.toml").read_text("utf-8")
+    text = text.replace("../../../problems", str(repository / "problems")).replace('start = "start.toml"', "")
+    text = text.replace("heights_m = [0.8, 1.0]", f"heights_m = [{height}]")
+    (tmp_path / "problem.toml").write_text(text, "utf-8")
+    done = evodesign("evaluate", tmp_path / "problem.toml", "--json", "--jobs", 1)
+    assert done.returncode == code
+    assert {case["status"] for case in json.loads(done.stdout)["heights"]} == statuses

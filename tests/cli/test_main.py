@@ -12,6 +12,7 @@ import pytest
 
 import evodesign
 from evodesign.cli.main import COMMANDS, app, main
+from tests.cli.here import evodesign as evodesign_here
 
 COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
@@ -46,6 +47,25 @@ def test_commands_are_completed(shell: str) -> None:
     done = subprocess.run(COMMAND, capture_output=True, text=True, check=False, env=environment)
     assert [name for name in COMMANDS if name.startswith("re") and name not in done.stdout] == []
     assert "search" not in done.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "which"),
+    [
+        (["search", "icub-lifting", "--run", ""], "--run"),
+        (["search", "icub-lifting", "--run="], "--run"),
+        (["search", ""], "PROBLEM"),
+        (["front", ""], "RUN"),
+        (["compare", "runs/one", ""], "RUN RUN..."),
+        (["export", "runs/one", "3", "--to", ""], "--to"),
+        (["evaluate", "icub-lifting", "--design", ""], "--design"),
+    ],
+    ids=" ".join,
+)
+def test_an_empty_path_is_not_the_working_directory(arguments: list[str], which: str) -> None:
+    done = evodesign_here(*arguments)
+    assert done.returncode == 2
+    assert f"Invalid value for '{which}': wanted a path or a word, found ''" in " ".join(done.stderr.split())
 
 
 @pytest.mark.parametrize("terminal", [False, True])
