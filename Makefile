@@ -6,6 +6,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 PROBLEM ?= problems/icub_lifting.toml
 RUN ?=
+EVALUATIONS ?=
 JOBS ?= 2
 KILLS ?= 1000
 MINUTES ?= 10
@@ -47,8 +48,9 @@ $(VENV)/installed-docs: $(VENV)/installed
 
 install: $(VENV)/installed  ## the virtual environment with evodesign in it
 
-search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, JOBS=)
-	$(BIN)/evodesign search $(PROBLEM) --jobs $(JOBS) $(if $(RUN),--run $(RUN))
+search: $(VENV)/installed  ## search the default problem (PROBLEM=, RUN=, EVALUATIONS=, JOBS=)
+	$(BIN)/evodesign search $(PROBLEM) --jobs $(JOBS) $(if $(RUN),--run $(RUN)) \
+		$(if $(EVALUATIONS),--evaluations $(EVALUATIONS))
 
 test: $(VENV)/installed-dev  ## the tests, but for the slow ones
 	$(PYTEST) -m 'not slow'

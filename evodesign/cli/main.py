@@ -40,7 +40,7 @@ from evodesign.cli.simulate import simulate
 from evodesign.cli.starts import starts
 from evodesign.cli.verify import verify
 from evodesign.cli.watch import watch
-from evodesign.errors import AllFailed, EvodesignError, Interrupted
+from evodesign.errors import AllFailed, EvodesignError, InputError, Interrupted
 from evodesign.interrupts import STOPPED
 from evodesign.streams import UNREAD
 
@@ -147,6 +147,9 @@ def main() -> None:
         _leave(f"error: {failure}", NOTHING_SOLVED)
     except EvodesignError as error:
         _leave(f"error: {error}", BAD_INPUT)
+    except UnicodeEncodeError as error:  # a path of bytes that are no text, which a log cannot hold
+        wanted = "names of files that are text in this locale (with PYTHONUTF8=1: in UTF-8)"
+        _leave(f"error: {InputError('a path', '', wanted, repr(error.object))}", BAD_INPUT)
     except SystemExit as left:
         if isinstance(left.__context__, BrokenPipeError):  # typer makes a code of its own of it
             raise SystemExit(UNREAD) from None

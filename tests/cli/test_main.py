@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -66,6 +67,21 @@ def test_an_empty_path_is_not_the_working_directory(arguments: list[str], which:
     done = evodesign_here(*arguments)
     assert done.returncode == 2
     assert f"Invalid value for '{which}': wanted a path or a word, found ''" in " ".join(done.stderr.split())
+
+
+def test_a_path_that_is_no_text_is_shown_as_it_is(repository: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "r\udcff"
+    shutil.copytree(repository / "tests" / "golden" / "lifting" / "format-2", folder)
+    done = subprocess.run([*COMMAND, "front", folder], capture_output=True, check=False)
+    assert (done.returncode, b"Traceback" in done.stderr) == (0, False)
+
+
+def test_a_path_that_is_no_text_is_refused_where_it_would_be_logged(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("evodesign.cli.main.app", lambda prog_name: "r\udcff".encode())
+    done = evodesign_here("search")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: a path: wanted names of files that are text in this locale")
+    assert done.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize("terminal", [False, True])

@@ -149,7 +149,7 @@ def test_dask_without_an_address_is_refused() -> None:
 def test_a_silent_scheduler_is_refused_with_one_sentence(
     address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("evodesign.pool.dask_pool.FIRST_PATIENCE", 0.5)
+    monkeypatch.setattr("evodesign.pool.dask_pool.PROBE_SECONDS", 0.5)
     with pytest.raises(InputError, match=f"--scheduler: wanted the address .*, found '{address}' ") as caught:
         make_pool("dask", 1, address)
     assert "\n" not in str(caught.value)
