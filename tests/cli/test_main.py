@@ -77,7 +77,7 @@ def test_a_path_that_is_no_text_is_shown_as_it_is(repository: Path, tmp_path: Pa
 
 
 def test_a_path_that_is_no_text_is_refused_where_it_would_be_logged(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("evodesign.cli.main.app", lambda prog_name: "r\udcff".encode())
+    monkeypatch.setattr(sys.modules["evodesign.cli.main"], "app", lambda prog_name: "r\udcff".encode())
     done = evodesign_here("search")
     assert done.returncode == 2
     assert done.stderr.startswith("error: a path: wanted names of files that are text in this locale")

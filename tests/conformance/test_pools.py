@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -153,3 +154,19 @@ def test_a_silent_scheduler_is_refused_with_one_sentence(
     with pytest.raises(InputError, match=f"--scheduler: wanted the address .*, found '{address}' ") as caught:
         make_pool("dask", 1, address)
     assert "\n" not in str(caught.value)
+
+
+def test_where_no_semaphore_can_be_had_the_serial_pool_takes_joblib_s_place_and_says_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(method: str) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr("evodesign.pool.registry.multiprocessing.get_context", refuse)
+    notes = list[str]()
+    with make_pool("joblib", JOBS, note=notes.append) as made:
+        assert isinstance(made, SerialPool)
+    (note,) = notes
+    assert note.startswith("no worker processes (semaphores in /dev/shm: Read-only file system)")
+    with pytest.warns(UserWarning, match="no worker processes"):
+        make_pool("joblib", JOBS).close()
