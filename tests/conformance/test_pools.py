@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import socket
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -154,6 +156,31 @@ def test_a_silent_scheduler_is_refused_with_one_sentence(
     with pytest.raises(InputError, match=f"--scheduler: wanted the address .*, found '{address}' ") as caught:
         make_pool("dask", 1, address)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("answer", "reason"),
+    [(b"", "no answer within 0.5 s"), (b"HTTP/1.1 400 Bad Request\r\n\r\n", "no Dask scheduler")],
+)
+def test_what_listens_but_is_no_scheduler_is_refused_soon(
+    answer: bytes, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("evodesign.pool.dask_pool.PROBE_SECONDS", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve() -> None:
+            connection, _ = server.accept()
+            with connection:
+                connection.sendall(answer)
+                connection.recv(1 << 20)
+                time.sleep(2.0)
+
+        threading.Thread(target=serve, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(
+            InputError, match=f"--scheduler: wanted the address .*, found '{address}' .*{reason}"
+        ):
+            make_pool("dask", 1, address)
 
 
 def test_where_no_semaphore_can_be_had_the_serial_pool_takes_joblib_s_place_and_says_so(
