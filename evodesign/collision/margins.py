@@ -2,7 +2,9 @@
 
 Parts that are built two millimetres from each other cannot keep five. Nor can parts of meshes whose fitted
 shapes (`collision.supports`), which programs know, are nearer than that while all joints are at zero and the
-meshes' hulls are apart; a margin is negative there, and the check of the hulls decides.
+meshes' hulls are apart; a margin is negative there, and the check of the hulls decides. It decides alone
+where fitted shapes are too near in many postures in which the hulls are apart, as those of wrists are: rows
+of such pairs could not be fulfilled.
 """
 
 from __future__ import annotations
@@ -14,13 +16,18 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.collision.clearance import BodyDistance, SolidBodies, places_of
+from evodesign.collision.pairs import shares_of_postures
 from evodesign.collision.rules import BodyPair
 from evodesign.collision.shapes import ConvexSolid
 from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["narrow_margins"]
+__all__ = ["coarse_pairs", "narrow_margins"]
+
+COARSE = 0.1
+"""Share of postures in which fitted shapes are too near though the bodies are apart, above which they tell
+programs nothing."""
 
 
 def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Mapping[BodyPair, float]:
@@ -34,12 +41,35 @@ def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Ma
         pairs: that must not overlap; what is no link counts for nothing.
         margin: that is asked for [m].
     """
-    fitted = [(link.name, _solid(shape)) for link in tree.links for shape in shapes_of(link)]
-    shown = SolidBodies.of_tree(tree)
-    known = SolidBodies(tuple(name for name, _ in fitted), tuple(solid for _, solid in fitted))
+    shown, known = SolidBodies.of_tree(tree), _fitted(tree)
     inside = {(gap.first, gap.second) for gap in _near(tree, shown, pairs, 0.0)}
     near = _near(tree, known, [pair for pair in pairs if pair not in inside], margin)
     return {(gap.first, gap.second): gap.distance for gap in near}
+
+
+def coarse_pairs(
+    tree: Tree, joints: Collection[str], pairs: Collection[BodyPair], margin: float
+) -> frozenset[BodyPair]:
+    """Pairs with meshes whose fitted shapes are often nearer than a margin where the bodies are apart.
+
+    Args:
+        tree: of the agent, unscaled.
+        joints: that move.
+        pairs: that must not overlap; what is no link counts for nothing.
+        margin: that is asked for [m].
+    """
+    links = tree.link_by_name
+    exact = {name for name, link in links.items() if link.solids or not link.shown}
+    own = [pair for pair in pairs if links.keys() >= set(pair) and not exact.issuperset(pair)]
+    overlap = shares_of_postures(tree, joints, own)
+    near = shares_of_postures(tree, joints, own, margin, bodies=_fitted(tree))
+    return frozenset(pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE)
+
+
+def _fitted(tree: Tree) -> SolidBodies:
+    """The shapes that programs know."""
+    found = [(link.name, _solid(shape)) for link in tree.links for shape in shapes_of(link)]
+    return SolidBodies(tuple(name for name, _ in found), tuple(solid for _, solid in found))
 
 
 def _near(tree: Tree, bodies: SolidBodies, pairs: Collection[BodyPair], within: float) -> list[BodyDistance]:

@@ -41,6 +41,7 @@ __all__ = [
     "exempt_pairs",
     "feet_pairs",
     "holding_links",
+    "shares_of_postures",
 ]
 
 HAND = 0.15
@@ -98,7 +99,7 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
     joined = {frozenset((joint.parent, joint.child)) for joint in tree.joints}
     pairs = _link_pairs(tree)
     others = [pair for pair in pairs if frozenset(pair) not in joined]
-    touching, shares = _touching(tree, others), _overlap_shares(tree, joints, others, _images(tree))
+    touching, shares = _touching(tree, others), shares_of_postures(tree, joints, others)
     found: dict[BodyPair, str] = {}
     for pair in pairs:
         share = shares.get(pair, 0.0)
@@ -137,7 +138,7 @@ def built_in_pairs(
     apart, images = {*own} - _touching(tree, own), _images(tree)
     found: set[BodyPair] = set()
     for each in resized:
-        shares = _overlap_shares(each, joints, sorted(_touching(each, apart - found)), images)
+        shares = shares_of_postures(each, joints, sorted(_touching(each, apart - found)), images=images)
         found |= {pair for pair, share in shares.items() if share >= SELDOM}
     found |= {(images.get(one, one), images.get(other, other)) for one, other in found}
     return tuple(pair for pair in own if pair in found or pair[::-1] in found)
@@ -228,20 +229,30 @@ def _touching(tree: Tree, pairs: Collection[BodyPair]) -> set[BodyPair]:
     return {(gap.first, gap.second) for gap in placed.overlapping(places_of(bodies.names, pairs), TOUCH)}
 
 
-def _overlap_shares(
-    tree: Tree, joints: Collection[str], pairs: Collection[BodyPair], images: Mapping[str, str]
+def shares_of_postures(
+    tree: Tree,
+    joints: Collection[str],
+    pairs: Collection[BodyPair],
+    within: float = 0.0,
+    *,
+    bodies: SolidBodies | None = None,
+    images: Mapping[str, str] | None = None,
 ) -> Mapping[BodyPair, float]:
-    """In what share of postures pairs overlap: those that do, and their mirror images, which have the same.
+    """In what share of postures pairs are near: those that ever are, with that of their mirror images.
 
     Args:
         tree: of the agent.
         joints: that move; their positions are drawn from their ranges, always the same ones.
         pairs: of links.
-        images: the mirror image of each link; none where the tree is not symmetric.
+        within: nearer than this [m]; at zero, in each other.
+        bodies: the links' solids; left out, the tree's own.
+        images: the mirror image of each link; left out, the tree's own.
     """
     if not pairs:
         return {}
-    rng, bodies = np.random.default_rng(0), SolidBodies.of_tree(tree)
+    bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
+    images = _images(tree) if images is None else images
+    rng = np.random.default_rng(0)
     ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
     lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
     drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
@@ -252,7 +263,7 @@ def _overlap_shares(
     samples = turns.shape[1]  # one where nothing moves
     for sample in range(samples):
         placed = bodies.placed_at(turns[:, sample], origins[:, sample])
-        counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places))
+        counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places, within))
     found: dict[BodyPair, float] = {}
     for pair in pairs:
         image = frozenset(images.get(link, link) for link in pair)

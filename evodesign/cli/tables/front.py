@@ -117,7 +117,7 @@ def _remarks(run: RunLog, choice: Choice, chosen: Chosen, shown: int) -> list[st
     constraints, assessment = run.header.constrained, nearest.assessment
     missed = violations(constraints, assessment)[HEIGHT]
     lacks = [f"it lacks {missed:.4g} m ({assessment.reason})"] if missed else []
-    why = "; ".join([*lacks, *constraint_sentences(constraints, assessment)])
+    why = "; ".join([*lacks, *constraint_sentences(constraints, assessment)]) or assessment.reason
     return [f"no design is feasible; design {nearest.number} comes nearest: {why}"]
 
 
