@@ -162,7 +162,7 @@ def constraint_sentences(constraints: Sequence[Constraint], assessment: Assessme
     return tuple(
         f"{_words(constraint)} is {_figure(constraint, much)} {_beyond(constraint, assessment)}"
         for constraint in constraints
-        if (much := found[constraint.name]) and not _is_told(constraint, assessment)
+        if (much := found[constraint.name]) and not _is_reported(constraint, assessment)
     )
 
 
@@ -173,7 +173,7 @@ def reason_of_infeasibility(constraints: Sequence[Constraint], assessment: Asses
     return "; ".join((*failed, *beyond))
 
 
-def _is_told(constraint: Constraint, assessment: Assessment) -> bool:
+def _is_reported(constraint: Constraint, assessment: Assessment) -> bool:
     """Whether the reason of a design's status says it already."""
     return constraint.name == BODIES_APART and assessment.status is Status.BODIES_OVERLAP
 

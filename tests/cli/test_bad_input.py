@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.problem.left_out import left_out
+from evodesign.problem.source import read_source
 from tests.cli.here import evodesign
 
 
@@ -37,6 +39,11 @@ def spoil(place: Path, file: str, old: str, new: str) -> Path:
 
 
 PROBLEM, ROBOT = "point_grasp.toml", "robots/icub_shapes.urdf"
+TOLD = [
+    f"note: {sentence}"
+    for sentence in left_out(read_source(Path(__file__).parents[2] / "problems" / PROBLEM))
+]
+"""What is said of a problem that is read, before a fault is found in something else."""
 PERSON = 'stature_m = 1.82\nmass_kg = 72.7\nsex = "male"'
 
 
@@ -145,7 +152,9 @@ def test_misspelt_option_is_exit_code_two() -> None:
 def assert_explained(done: subprocess.CompletedProcess[str], words: list[str]) -> None:
     assert done.returncode == 2, done.stderr
     assert done.stdout == ""
-    assert done.stderr.startswith("error: ")
-    assert done.stderr.count("\n") == 1, done.stderr
+    *before, error, end = done.stderr.split("\n")
+    assert end == ""
+    assert before in ([], TOLD), "what the problem leaves out is told if it was read, and nothing else"
+    assert error.startswith("error: ")
     for word in words:
-        assert word in done.stderr
+        assert word in error

@@ -12,6 +12,7 @@ import msgspec
 import pytest
 
 from evodesign.evolve import resume, start
+from evodesign.problem.left_out import left_out
 from evodesign.report.page import page_content
 from evodesign.runlog.channels import DETAIL
 from evodesign.runlog.reader import entries
@@ -36,7 +37,8 @@ def run(tmp_path: Path) -> Path:
 
 def test_a_front_without_a_removed_segment_ends_with_exit_code_four(run: Path) -> None:
     whole = evodesign("front", run, "--json")
-    assert (whole.returncode, whole.stderr) == (0, "")
+    told = "".join(f"note: {sentence}\n" for sentence in left_out(read_run(run).header.problem))
+    assert (whole.returncode, whole.stderr) == (0, told)
     (run / "001.mcap").unlink()
     done = evodesign("front", run, "--json")
     assert done.returncode == 4

@@ -20,6 +20,7 @@ import pytest
 
 from evodesign.errors import RunError
 from evodesign.evolve import Silent, resume, start
+from evodesign.problem.left_out import left_out
 from evodesign.runlog.directory import locked
 from evodesign.runlog.run import read_run
 from tests.cli.here import evodesign
@@ -232,4 +233,6 @@ def test_output_that_finds_no_room_is_told_in_a_sentence(tmp_path: Path) -> None
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr == "error: the output cannot be written: No space left on device\n"
+    told = [f"note: {sentence}" for sentence in left_out(HEADER.problem)]
+    error = "error: the output cannot be written: No space left on device"
+    assert done.stderr.splitlines() == [*told, error]

@@ -26,6 +26,7 @@ from evodesign.violations import bound_margin, height_margin, total_violation
 TORQUES = ("robot_torque", "human_torque")
 
 NEED_MORE = (
+    "bodies_apart",
     "shared_reach_height",
     "least_safety_factor",
     "cost",
@@ -33,7 +34,7 @@ NEED_MORE = (
     "lift_seconds",
     "worst_lift_seconds",
 )
-"""Quantities that ask for people's reach, for walls, for prices, or for lifts."""
+"""Quantities that ask for [collisions], for people's reach, for walls, for prices, or for lifts."""
 
 STEP = 1e-4
 """Of the differences, as a share of a parameter's range."""

@@ -67,7 +67,7 @@ def test_what_comes_along_is_what_is_asked_for(source: ProblemSource) -> None:
     ("old", "new", "same"),
     [
         ("seed = 1", "seed = 2", True),
-        ("evaluations = 480", "evaluations = 960", True),
+        ("evaluations = 240", "evaluations = 960", True),
         ('name = "icub-lifting"', 'name = "mine"', True),
         ('maximise = ["shared_reach_height"]', 'maximise = ["highest_reach"]', True),
         ("mass_kg = { lower = 25.0, upper = 65.0 }", "mass_kg = { upper = 60.0 }", True),

@@ -22,6 +22,7 @@ from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
 from evodesign.tree.frames import link_frames
 from tests.machine import leave_out
+from tests.problem.test_notes import strange
 
 CASES = Path(__file__).parents[3] / "shared/cases"
 
@@ -65,7 +66,7 @@ def test_what_cannot_be_read_of_a_case_is_refused(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["quat_xyzw_sym", "toml_bom", "quat_as_rpy", "limit_above_pi"])
 def test_of_what_is_read_rightly_nothing_is_told(name: str) -> None:
-    assert notes(built(name)) == ()
+    assert strange(built(name)) == ()
 
 
 @pytest.mark.parametrize("name", ["quat_xyzw_sym", "quat_as_rpy", "capsule", "atlas_drake"])

@@ -17,11 +17,11 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.notes import notes
 from evodesign.records import Hold, ProblemSource, Status
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.symmetry import mirror_of
 from evodesign.tree.urdf_write import urdf_text
+from tests.problem.test_notes import strange
 from tests.tree.nearly_symmetric import inverse, matrix, random_rotation
 
 URDF = "robots/icub_shapes.urdf"
@@ -58,7 +58,7 @@ def near(problem: DesignProblem) -> Tree:
 
 def test_an_exact_problem_is_solved_for_symmetric_postures_without_a_word(problem: DesignProblem) -> None:
     assert problem.symmetry is Symmetry.ON
-    assert notes(problem) == ()
+    assert strange(problem) == ()
     on = build_problem(msgspec.structs.replace(problem.source, symmetry="on"))
     assert on.scenes == problem.scenes
 
@@ -66,7 +66,7 @@ def test_an_exact_problem_is_solved_for_symmetric_postures_without_a_word(proble
 def test_a_near_robot_is_averaged_everywhere_and_told(problem: DesignProblem, near: Tree) -> None:
     built = build_problem(source_with(problem, near))
     assert built.symmetry is Symmetry.ON
-    (note,) = notes(built)
+    (note,) = strange(built)
     assert note.startswith("robot 'icub_shapes' is averaged with its mirror image, here and in exports: the ")
     assert "1 % in the mass of link l_lower_leg / r_lower_leg" in note
     assert "0.5 mm in the place of joint l_elbow / r_elbow" in note
@@ -84,7 +84,7 @@ def test_what_is_asked_for_is_what_a_near_robot_gets(
 ) -> None:
     built = build_problem(source_with(problem, near, asked))
     assert built.symmetry == found
-    assert bool(notes(built)) == (asked != "off")
+    assert bool(strange(built)) == (asked != "off")
     assert (built.scene.robot.tree == build_problem(source_with(problem, near, "off")).scene.robot.tree) == (
         asked == "off"
     )
@@ -100,7 +100,7 @@ def test_a_robot_beyond_is_solved_whole_and_refused_where_symmetry_is_asked_for(
         "robot.*: wanted a mirror image in the plane y = 0, found 26 % in the mass of link "
         r"l_lower_leg / r_lower_leg \(2 % allowed\) and 1 more such difference"
     )
-    (note,) = notes(built)
+    (note,) = strange(built)
     assert note.startswith("postures are solved whole, not symmetric: ")
     assert re.search(words.removeprefix("robot"), note)
     assert built.scene.robot.tree.link_by_name["l_lower_leg"].inertia.mass > 1.0
@@ -117,13 +117,13 @@ def test_torque_limits_of_an_averaged_robot_are_the_weaker_side_s(problem: Desig
     built = build_problem(source_with(problem, tree))
     limits = built.scene.robot.torque_limits
     assert limits["l_knee"] == limits["r_knee"] == 77.0
-    assert "of different effort limits the smaller counts" in notes(built)[0]
+    assert "of different effort limits the smaller counts" in strange(built)[0]
 
 
 def test_a_hand_off_its_mirrored_place_is_named(problem: DesignProblem) -> None:
     joint = problem.scene.robot.tree.parent_joint[problem.scene.robot.hands["right"]].name
     tree = moved(problem.scene.robot.tree, joint, (0.0, 0.004, 0.0))
-    (note,) = notes(build_problem(source_with(problem, tree)))
+    (note,) = strange(build_problem(source_with(problem, tree)))
     assert "robot.hands: wanted mirror images of each other, found 'l_hand_frame' and 'r_hand_frame'" in note
 
 
@@ -134,7 +134,7 @@ def test_soles_that_are_turned_differently_are_named(problem: DesignProblem) -> 
         replace(joint, parent_from_child=joint.parent_from_child @ turn) if joint.name == name else joint
         for joint in problem.scene.robot.tree.joints
     )
-    (note,) = notes(build_problem(source_with(problem, replace(problem.scene.robot.tree, joints=joints))))
+    (note,) = strange(build_problem(source_with(problem, replace(problem.scene.robot.tree, joints=joints))))
     assert "robot.soles: wanted frames that are mirror images of each other" in note
 
 
@@ -188,7 +188,7 @@ def test_turned_frames_change_no_posture_of_a_resized_robot(problem: DesignProbl
     """The check is pinocchio's, of the whole robot."""
     other = build_problem(source_with(problem, turned(problem.scene.robot.tree, 3)))
     assert other.symmetry is Symmetry.ON
-    assert notes(other) == ()
+    assert strange(other) == ()
     one, same = solve(problem, 1.05), solve(other, 1.05)
     assert one.status is same.status is Status.SOLVED
     assert max(same.residuals.values()) < 1e-6

@@ -29,12 +29,12 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.notes import notes
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.model import Look, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from tests.human.test_body import placements
+from tests.problem.test_notes import strange
 from tests.tree.test_icub_robot import reference_text
 
 PUBLISHED = "human_subject04_48dof.urdf"
@@ -329,10 +329,13 @@ def test_a_users_urdf_is_the_person_of_a_problem(users_problem: DesignProblem) -
 def test_its_turned_limits_of_hip_flexion_and_toes_are_noted_and_no_others(
     users_problem: DesignProblem,
 ) -> None:
-    noted = {sentence.split("joint ")[1].split(" ")[0] for sentence in notes(users_problem)}
+    unread, *limits = strange(users_problem)
+    assert "damping and friction of joints are not counted" in unread
+    noted = {sentence.split("joint ")[1].split(" ")[0] for sentence in limits}
     turned = ("jLeftHip_roty", "jRightHip_roty", "jLeftBallFoot_roty", "jRightBallFoot_roty")
     assert noted == set(turned)
-    assert len(notes(users_problem)) == len(turned)
+    assert len(limits) == len(turned)
+    assert all(sentence.endswith("its limits seem to have the wrong sign") for sentence in limits)
 
 
 def test_its_posture_is_found_within_the_limits_as_they_are_written(users_problem: DesignProblem) -> None:
