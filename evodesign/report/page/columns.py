@@ -50,10 +50,19 @@ def _columns(columns: list[Column]) -> dict[str, list[Any]]:
     """Columns that differ by more than their sign, and where they stand."""
     known: dict[Column, int] = {}
     places = []
+    written = []
     for column in columns:
-        place = known.get(column)
+        place = known.get(_with_types(column))
         if place is None and all(isinstance(value, float) for value in column):
-            turned = known.get(tuple(-value for value in column))
+            turned = known.get(_with_types(tuple(-value for value in column)))
             place = None if turned is None else -1 - turned
-        places.append(known.setdefault(column, len(known)) if place is None else place)
-    return {"columns": [column[0] if len({*column}) == 1 else column for column in known], "places": places}
+        if place is None:
+            place = known.setdefault(_with_types(column), len(known))
+            written.append(column[0] if len({*_with_types(column)}) == 1 else column)
+        places.append(place)
+    return {"columns": written, "places": places}
+
+
+def _with_types(column: Column) -> Column:
+    """A column to look up: true is not one, though Python holds them equal."""
+    return tuple((type(value), value) for value in column)

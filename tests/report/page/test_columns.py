@@ -22,7 +22,9 @@ PARTS = st.recursive(
 
 @given(st.dictionaries(st.integers(0, 99), PARTS, max_size=6))
 def test_whatever_is_written_comes_back(parts: dict[int, Any]) -> None:
-    assert apart(msgspec.json.decode(msgspec.json.encode(side_by_side(parts)))) == parts
+    told = apart(msgspec.json.decode(msgspec.json.encode(side_by_side(parts))))
+    assert told == parts
+    assert repr({number: told[number] for number in parts}) == repr(parts), "true is not one"
 
 
 def posture(knee: float) -> dict[str, Any]:
@@ -41,3 +43,9 @@ def test_designs_of_other_forms_stand_in_groups_of_their_own() -> None:
     parts = {1: [], 2: [1.0], 3: [], 4: {"a": []}}
     assert [group["of"] for group in side_by_side(parts)] == [[1, 3], [2], [4]]
     assert apart(side_by_side(parts)) == parts
+
+
+def test_true_and_false_are_no_numbers() -> None:
+    parts = {1: [1.0, True, 0.0, False, 1], 2: [1.0, True, False, 0.0, True]}
+    told = apart(msgspec.json.decode(msgspec.json.encode(side_by_side(parts))))
+    assert msgspec.json.encode(told) == msgspec.json.encode(parts)
