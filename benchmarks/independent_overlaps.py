@@ -4,9 +4,9 @@
 
 Robot and people come from the URDF files that a design is exported as; pinocchio places their solids at the
 logged joint positions, and coal measures each pair (a mesh by its convex hull). Exempt are two links joined
-by one joint; pairs that overlap in the unscaled robot at its zero posture or in more than half of 400 random
-postures, and likewise in a person; and the load against links within three joints of the grasp. No list,
-exemption or tolerance of `evodesign.collision` is used.
+by one joint, or fixed to such; pairs that overlap in the unscaled robot at its zero posture or in more than
+half of 400 random postures, and likewise in a person; and the load against links within three joints of the
+grasp. No list, exemption or tolerance of `evodesign.collision` is used.
 
 Told for each run: postures, the deepest overlap, and the pairs deeper than 3 mm.
 Written to benchmarks/results/independent_overlaps.json, printed as a table.
@@ -72,6 +72,7 @@ class Body:
         self.places = self.geometry.createData()
         frames = self.model.frames
         self.links = [frames[each.parentFrame].name for each in self.geometry.geometryObjects]
+        self.moved_by = {f.name: f.parentJoint for f in frames if f.type == pin.FrameType.BODY}
         self.above = {
             f.name: frames[frames[f.parentFrame].parentFrame].name
             for f in frames
@@ -97,10 +98,11 @@ class Body:
     def exempt(self, joints: Sequence[str], limits: Mapping[str, tuple[float, float]]) -> frozenset[Pair]:
         """Pairs of its links that may overlap."""
         links = [*dict.fromkeys(self.links)]
+        parents, own = self.model.parents, self.moved_by
         joined = {
             pair
             for pair in combinations(links, 2)
-            if pair[1] == self.above.get(pair[0]) or pair[0] == self.above.get(pair[1])
+            if own[pair[0]] in (own[pair[1]], parents[own[pair[1]]]) or own[pair[1]] == parents[own[pair[0]]]
         }
         others = {pair for pair in combinations(links, 2) if pair not in joined}
         zero = self._deep({}, others)

@@ -2,7 +2,7 @@
 
 Exempt are, of the agent as its file has it,
 
-    joined         two links that one joint joins
+    joined         two links that one joint joins, or parts that are fixed to these
     still          two between which no joint moves
     touching       two that are in touch while all joints are at zero, and in at least a tenth of its
                    postures: arms that hang beside the hips are apart in nearly all others, and stay checked
@@ -25,11 +25,11 @@ from itertools import combinations
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.collision.clearance import PlacedSolids, SolidBodies, places_of
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.errors import ModelError
 from evodesign.tree.frames import link_frames, link_poses
-from evodesign.tree.model import Joint, Tree
+from evodesign.tree.model import Joint, JointKind, Tree
 from evodesign.tree.symmetry import mirror_of
 
 __all__ = [
@@ -41,6 +41,8 @@ __all__ = [
     "exempt_pairs",
     "feet_pairs",
     "holding_links",
+    "image_links",
+    "placed_in_postures",
     "shares_of_postures",
 ]
 
@@ -96,14 +98,13 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
         tree: of the agent, unscaled.
         joints: that move.
     """
-    joined = {frozenset((joint.parent, joint.child)) for joint in tree.joints}
     pairs = _link_pairs(tree)
-    others = [pair for pair in pairs if frozenset(pair) not in joined]
+    others = [pair for pair in pairs if not _is_joined(tree, pair)]
     touching, shares = _touching(tree, others), shares_of_postures(tree, joints, others)
     found: dict[BodyPair, str] = {}
     for pair in pairs:
         share = shares.get(pair, 0.0)
-        if frozenset(pair) in joined:
+        if _is_joined(tree, pair):
             found[pair] = JOINED
         elif _is_still(tree, joints, pair):
             found[pair] = STILL
@@ -128,14 +129,13 @@ def built_in_pairs(
         checked: pairs that must not overlap; those between which no joint moves count as well.
         resized: trees of some designs.
     """
-    joined = {frozenset((joint.parent, joint.child)) for joint in tree.joints}
     known = {frozenset(pair) for pair in checked}
     own = [
         pair
         for pair in _link_pairs(tree)
-        if frozenset(pair) in known or (frozenset(pair) not in joined and _is_still(tree, joints, pair))
+        if frozenset(pair) in known or (not _is_joined(tree, pair) and _is_still(tree, joints, pair))
     ]
-    apart, images = {*own} - _touching(tree, own), _images(tree)
+    apart, images = {*own} - _touching(tree, own), image_links(tree)
     found: set[BodyPair] = set()
     for each in resized:
         shares = shares_of_postures(each, joints, sorted(_touching(each, apart - found)), images=images)
@@ -208,13 +208,26 @@ def _link_pairs(tree: Tree) -> tuple[BodyPair, ...]:
     return tuple(combinations(dict.fromkeys(SolidBodies.of_tree(tree).names), 2))
 
 
+def _between(tree: Tree, pair: BodyPair) -> frozenset[str]:
+    """Names of the joints between two links."""
+    one, other = (
+        frozenset(tree.parent_joint[link].name for link in tree.to_root(name)[:-1]) for name in pair
+    )
+    return one ^ other
+
+
+def _is_joined(tree: Tree, pair: BodyPair) -> bool:
+    """Whether one joint joins two links, or none, beside fixed ones."""
+    kinds = (tree.joint_by_name[name].kind for name in _between(tree, pair))
+    return sum(kind is not JointKind.FIXED for kind in kinds) <= 1
+
+
 def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:
     """Whether nothing moves two links against each other."""
-    paths = [{tree.parent_joint[link].name for link in tree.to_root(name)[:-1]} for name in pair]
-    return not paths[0].symmetric_difference(paths[1]).intersection(joints)
+    return not _between(tree, pair).intersection(joints)
 
 
-def _images(tree: Tree) -> Mapping[str, str]:
+def image_links(tree: Tree) -> Mapping[str, str]:
     """The mirror image of each link, if the tree is symmetric."""
     try:
         return mirror_of(tree).links
@@ -251,19 +264,12 @@ def shares_of_postures(
     if not pairs:
         return {}
     bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
-    images = _images(tree) if images is None else images
-    rng = np.random.default_rng(0)
-    ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
-    lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
-    drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
-    poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
-    turns, origins = (np.array([poses[name][part] for name in bodies.names]) for part in (0, 1))
+    images = image_links(tree) if images is None else images
     counts: Counter[frozenset[str]] = Counter()
-    places = places_of(bodies.names, pairs)
-    samples = turns.shape[1]  # one where nothing moves
-    for sample in range(samples):
-        placed = bodies.placed_at(turns[:, sample], origins[:, sample])
+    places, samples = places_of(bodies.names, pairs), 0
+    for placed in placed_in_postures(tree, joints, bodies):
         counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places, within))
+        samples += 1
     found: dict[BodyPair, float] = {}
     for pair in pairs:
         image = frozenset(images.get(link, link) for link in pair)
@@ -271,6 +277,24 @@ def shares_of_postures(
         if both:
             found[pair] = both / (2 * samples)
     return found
+
+
+def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
+    """Solids in random postures, always the same ones.
+
+    Args:
+        tree: of the agent.
+        joints: that move; their positions are drawn from their ranges.
+        bodies: the links' solids.
+    """
+    rng = np.random.default_rng(0)
+    ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
+    lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
+    drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
+    poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
+    turns, origins = (np.array([poses[name][part] for name in bodies.names]) for part in (0, 1))
+    for sample in range(turns.shape[1]):  # one where nothing moves
+        yield bodies.placed_at(turns[:, sample], origins[:, sample])
 
 
 def _range(joint: Joint) -> tuple[float, float]:

@@ -30,7 +30,7 @@ class CollisionRules:
         parted_at_reach: those that have rows in their place where the load is as high or low as it can be.
         built_in: pairs of links that some design's build brings together (`collision.pairs`).
         narrow: margins [m] of pairs that are built nearer to each other (`collision.margins`).
-        coarse: pairs that have no rows, as the shapes that programs know are too coarse for them.
+        coarse: pairs without rows: the shapes that programs know are too coarse, and the bodies always apart.
     """
 
     margin: float

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
+from math import inf
 
 from evodesign.collision.clearance import SolidBodies
-from evodesign.collision.margins import coarse_pairs, narrow_margins
+from evodesign.collision.margins import calibrated_margins, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
@@ -77,7 +78,9 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
     narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
-    coarse = coarse_pairs(agent.tree, agent.joints, list(own.values()), table.margin_m)
+    calibrated = calibrated_margins(agent.tree, agent.joints, list(own.values()), table.margin_m)
+    coarse = frozenset(pair for pair, least in calibrated.items() if least == -inf)
+    narrow = {**narrow, **{pair: least for pair, least in calibrated.items() if pair not in coarse}}
     return CollisionRules(table.margin_m, tuple(own.values()), parted, (), built_in, narrow, coarse)
 
 

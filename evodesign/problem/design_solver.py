@@ -172,8 +172,9 @@ class _OneDesign:
         return self._of_cases(values, reach, self._cases(values, reach, check, before))
 
     def _of_cases(self, values: Sequence[float], reach: Reach, cases: Cases) -> DesignResult:
-        problem, solver, robot = self._problem, self._solver, self._robot
+        problem, solver = self._problem, self._solver
         tree, alone = problem.space.with_actuators(self._tree, values), solver.alone
+        robot = self._robot.driven(tree) if problem.space.driven else self._robot
         body = robot.body if alone.body is solver.robot.body else None
         return DesignResult(
             scenes=problem.scenes,

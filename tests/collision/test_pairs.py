@@ -79,10 +79,19 @@ def test_every_exemption_has_the_reason_that_is_found_by_drawing_other_postures(
     exempt = exempt_pairs(agent.tree, agent.joints)
     shares, touching = drawn_shares(agent.tree, agent.joints)
     joined = {frozenset((joint.parent, joint.child)) for joint in agent.tree.joints}
-    still = agent.tree.joints and {pair for pair, reason in exempt.items() if reason == STILL}
+    fixed = {link.name: {link.name} for link in agent.tree.links}
+    for joint in agent.tree.joints:
+        if joint.kind is JointKind.FIXED:
+            together = fixed[joint.parent] | fixed[joint.child]
+            fixed |= dict.fromkeys(together, together)
+    still = {pair for pair, reason in exempt.items() if reason == STILL}
     for pair in combinations(dict.fromkeys(SolidBodies.of_tree(agent.tree).names), 2):
         if frozenset(pair) in joined:
             assert exempt[pair] == JOINED
+        elif exempt.get(pair) == JOINED:
+            assert any(
+                frozenset((one, other)) in joined for one in fixed[pair[0]] for other in fixed[pair[1]]
+            )
         elif pair in still:
             assert shares.get(pair, 0.0) in (0.0, 1.0)
         elif pair in exempt:
