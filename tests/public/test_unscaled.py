@@ -50,8 +50,9 @@ def configuration(model: pin.Model, base: np.ndarray, positions: dict[str, float
 def test_a_robot_written_unscaled_is_the_original(name: str) -> None:
     original_text = Path(HUMANOIDS[name]).read_text(encoding="utf-8")
     tree = read_urdf(original_text, name, InertiaRule.FILE)
-    groups = guessed_problem(tree, "robot.urdf").text
-    links = [link.name for link in tree.links if f'"{link.name}"' in groups and link.inertia.mass]
+    lengths = tomllib.loads(guessed_problem(tree, "robot.urdf").text)["design"]["length"]
+    grown = {link for each in lengths for link in each["links"]}
+    links = [link.name for link in tree.links if link.name in grown and link.inertia.mass]
     unscaled = resize(tree, dict.fromkeys(links, 1.0), {})
     original, written = model_of(original_text), model_of(urdf_text(unscaled))
     moving = [joint for joint in original.names[2:] if joint in set(written.names)]

@@ -212,27 +212,28 @@ def rows(body: Body) -> Iterator[Row]:
     rules = body.agent.collisions
     if rules is None:
         return
-    found: dict[MeetingKind, list[tuple[str, Expression]]] = {kind: [] for kind in MeetingKind}
+    found: dict[MeetingKind, list[tuple[str, Expression, float]]] = {kind: [] for kind in MeetingKind}
     left = ca.DM([0.0, 1.0, 0.0])
     parted = directed(body.form)
     for meeting in meetings(body.form):
-        spare = rules.margin - margin_of(body.form, meeting)
+        margin = margin_of(body.form, meeting)
+        spare = rules.margin - margin
         if meeting.kind is MeetingKind.PLANE:
             away = ca.DM(PLANES[meeting.second])
             for shape in _placed(body, meeting.first):
                 found[MeetingKind.PLANE].append(
-                    (meeting.label, -ca.dot(away, shape.centre) - shape.support(away))
+                    (meeting.label, -ca.dot(away, shape.centre) - shape.support(away), rules.margin)
                 )
         elif meeting.kind is MeetingKind.MIDDLE:
             for shape in _placed(body, meeting.first):
                 apart = 2.0 * (shape.centre[1] - shape.support(left)) + spare
-                found[MeetingKind.MIDDLE].append((meeting.label, apart))
+                found[MeetingKind.MIDDLE].append((meeting.label, apart, margin))
         elif PARTING in body.values:
             place = NUMBERS * parted.index(meeting)
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
             for one, other in pairs:
                 apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0]) + spare
-                found[MeetingKind.DIRECTION].append((meeting.label, apart))
+                found[MeetingKind.DIRECTION].append((meeting.label, apart, margin))
     for kind, name, share in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", 1.0),
         (MeetingKind.PLANE, "clear_of_plane", 0.5),
@@ -241,13 +242,18 @@ def rows(body: Body) -> Iterator[Row]:
         yield from _column(name, found[kind], share, rules.margin)
 
 
-def _column(name: str, found: Sequence[tuple[str, Expression]], share: float, margin: float) -> Iterator[Row]:
-    """Rows of one kind, which keep a share of the margin [m]."""
+def _column(
+    name: str, found: Sequence[tuple[str, Expression, float]], share: float, margin: float
+) -> Iterator[Row]:
+    """Rows of one kind, which keep a share of the margin [m]; each with that of its own pair."""
     if found:
-        labels = tuple(label for label, _ in found)
-        column, least = ca.vertcat(*[expression for _, expression in found]), share * margin
+        labels = tuple(label for label, _, _ in found)
+        column, least = ca.vertcat(*[expression for _, expression, _ in found]), share * margin
         key, group = "collisions.margin_m", LimitGroup.COLLISIONS
-        bounds = tuple(Bound("bodies apart", margin, "m", False, share, key, label) for label in labels)
+        bounds = tuple(
+            Bound("bodies apart", own, "m", False, share, key if own == margin else "", label)
+            for label, _, own in found
+        )
         row = Row(name, column, least, np.inf, ("overlap",), group=group, posture_only=True)
         yield replace(row, labels=labels, least=bounds)
 
