@@ -52,4 +52,5 @@ def test_prices_of_a_g1_agree_with_differences() -> None:
     urdf = HUMANOIDS["g1"]
     tree = read_urdf(urdf.read_text(encoding="utf-8"), str(urdf), InertiaRule.AUTO)
     tables = tomllib.loads(guessed_problem(tree, str(urdf)).text) | {"solver": QUICK}
+    del tables["collisions"]  # which pairs come near each other would have to be worked out first
     check_prices(Evaluator(build_problem(source_of(tables))), 2)
