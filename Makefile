@@ -7,6 +7,7 @@ BIN := $(VENV)/bin
 PROBLEM ?= problems/icub_lifting.toml
 RUN ?=
 EVALUATIONS ?=
+EXTRAS ?= test,check
 JOBS ?= 2
 KILLS ?= 1000
 MINUTES ?= 10
@@ -34,7 +35,7 @@ $(VENV)/installed: pyproject.toml constraints.txt
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
-	$(PIP) --editable '.[test,check]'
+	$(PIP) --editable '.[$(EXTRAS)]'
 	@touch $@
 
 $(VENV)/installed-robots: $(VENV)/installed-dev
