@@ -3,7 +3,8 @@
 Parts that are built two millimetres from each other cannot keep five. Nor can parts of meshes whose fitted
 shapes (`collision.supports`), which programs know, are nearer than that while all joints are at zero and the
 meshes' hulls are apart; a margin is negative there, and the check of the hulls decides. Where fitted shapes
-are too near in many postures in which the hulls are apart, as those of wrists are, margins are calibrated.
+are too near in many postures in which the hulls are apart, as those of wrists and shoulders are, hulls and
+fitted shapes are too coarse to tell whether the meshes overlap: such pairs are exempt, and `check` says so.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.collision.clearance import BodyDistance, SolidBodies, places_of
-from evodesign.collision.pairs import image_links, placed_in_postures, shares_of_postures
+from evodesign.collision.pairs import shares_of_postures
 from evodesign.collision.rules import BodyPair
 from evodesign.collision.shapes import ConvexSolid
 from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["calibrated_margins", "narrow_margins"]
+__all__ = ["coarse_pairs", "narrow_margins"]
 
 COARSE = 0.1
 """Share of postures in which fitted shapes are too near though the bodies are apart."""
@@ -45,14 +46,10 @@ def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Ma
     return {(gap.first, gap.second): gap.distance for gap in near}
 
 
-def calibrated_margins(
+def coarse_pairs(
     tree: Tree, joints: Collection[str], pairs: Collection[BodyPair], margin: float
-) -> Mapping[BodyPair, float]:
-    """The distances [m] of fitted shapes that keep meshes of coarse pairs apart; -inf of pairs always apart.
-
-    A pair is coarse if its fitted shapes are often nearer than the margin where the bodies are apart. In
-    random postures the largest distance of the fitted shapes is found at which the hulls are nearer than half
-    the margin: a row that asks for it keeps them apart, and asks no more.
+) -> frozenset[BodyPair]:
+    """Pairs with meshes whose fitted shapes are often nearer than a margin where the hulls are apart.
 
     Args:
         tree: of the agent, unscaled.
@@ -63,20 +60,9 @@ def calibrated_margins(
     links = tree.link_by_name
     exact = {name for name, link in links.items() if link.solids or not link.shown}
     own = [pair for pair in pairs if links.keys() >= set(pair) and not exact.issuperset(pair)]
-    shown, known, images = SolidBodies.of_tree(tree), _fitted(tree), image_links(tree)
     overlap = shares_of_postures(tree, joints, own)
-    near = shares_of_postures(tree, joints, own, margin, bodies=known)
-    coarse = [pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE]
-    found = {frozenset(pair): -np.inf for pair in coarse}
-    for hulls, shapes in zip(
-        placed_in_postures(tree, joints, shown), placed_in_postures(tree, joints, known), strict=True
-    ):
-        for gap in hulls.overlapping(places_of(shown.names, coarse), margin / 2.0):
-            pair = (gap.first, gap.second)
-            apart = shapes.nearest(places_of(known.names, [pair])).distance
-            for each in (frozenset(pair), frozenset(images.get(link, link) for link in pair)):
-                found[each] = min(max(found.get(each, -np.inf), apart), margin)
-    return {pair: found[frozenset(pair)] for pair in coarse}
+    near = shares_of_postures(tree, joints, own, margin, bodies=_fitted(tree))
+    return frozenset(pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE)
 
 
 def _fitted(tree: Tree) -> SolidBodies:

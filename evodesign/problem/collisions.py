@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
-from math import inf
 
 from evodesign.collision.clearance import SolidBodies
-from evodesign.collision.margins import calibrated_margins, narrow_margins
+from evodesign.collision.margins import coarse_pairs, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
@@ -20,6 +19,10 @@ from evodesign.records import ProblemSource
 
 DESIGNS = 16
 """Of which it is asked what their build brings together."""
+
+OTHERWISE = (
+    "ignored by the file, exempt in another person, or meshes whose fitted shapes are too coarse to tell"
+)
 
 __all__ = ["may_overlap", "with_collisions"]
 
@@ -53,9 +56,7 @@ def may_overlap(agent: Agent) -> Mapping[BodyPair, str]:
     reasons = exempt_pairs(agent.tree, agent.joints)
     links = dict.fromkeys(SolidBodies.of_tree(agent.tree).names)
     return {
-        pair: reasons.get(pair, "ignored by the problem file, or exempt in another person")
-        for pair in combinations(links, 2)
-        if frozenset(pair) not in kept
+        pair: reasons.get(pair, OTHERWISE) for pair in combinations(links, 2) if frozenset(pair) not in kept
     }
 
 
@@ -66,6 +67,8 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
         for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
         if frozenset(pair) not in ignored
     ]
+    coarse = coarse_pairs(agent.tree, agent.joints, checked, table.margin_m)
+    checked = [pair for pair in checked if pair not in coarse]
     resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
     built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
@@ -78,10 +81,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
     narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
-    calibrated = calibrated_margins(agent.tree, agent.joints, list(own.values()), table.margin_m)
-    coarse = frozenset(pair for pair, least in calibrated.items() if least == -inf)
-    narrow = {**narrow, **{pair: least for pair, least in calibrated.items() if pair not in coarse}}
-    return CollisionRules(table.margin_m, tuple(own.values()), parted, (), built_in, narrow, coarse)
+    return CollisionRules(table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow)
 
 
 def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:

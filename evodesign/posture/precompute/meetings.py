@@ -245,8 +245,7 @@ def _own_pairs(gap: BodyDistance) -> Iterator[tuple[str, BodyPair]]:
 
 def _in_order(agent: Agent, found: set[BodyPair], form: Form) -> list[BodyPair]:
     """Pairs and their mirror images, as they are checked."""
-    rules = agent.collisions
-    checked = [pair for pair in rules.checked if pair not in rules.coarse] if rules else []
+    checked = agent.collisions.checked if agent.collisions else ()
     if form.mirror is not None:
         links = form.mirror.links
         found = found | {(links.get(one, one), links.get(other, other)) for one, other in found}
@@ -264,7 +263,7 @@ def with_meetings(scene: Scene, found: Mapping[tuple[str, str], Sequence[BodyPai
             *rules.parted,
             *(pair for (agent, _), pairs in found.items() if agent == name for pair in pairs),
         }
-        return tuple(pair for pair in rules.checked if pair in near and pair not in rules.coarse)
+        return tuple(pair for pair in rules.checked if pair in near)
 
     def parted(agent: Agent) -> Agent:
         rules = agent.collisions
