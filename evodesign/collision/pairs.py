@@ -41,8 +41,6 @@ __all__ = [
     "exempt_pairs",
     "feet_pairs",
     "holding_links",
-    "image_links",
-    "placed_in_postures",
     "shares_of_postures",
 ]
 
@@ -135,7 +133,7 @@ def built_in_pairs(
         for pair in _link_pairs(tree)
         if frozenset(pair) in known or (not _is_joined(tree, pair) and _is_still(tree, joints, pair))
     ]
-    apart, images = {*own} - _touching(tree, own), image_links(tree)
+    apart, images = {*own} - _touching(tree, own), _images(tree)
     found: set[BodyPair] = set()
     for each in resized:
         shares = shares_of_postures(each, joints, sorted(_touching(each, apart - found)), images=images)
@@ -227,7 +225,7 @@ def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:
     return not _between(tree, pair).intersection(joints)
 
 
-def image_links(tree: Tree) -> Mapping[str, str]:
+def _images(tree: Tree) -> Mapping[str, str]:
     """The mirror image of each link, if the tree is symmetric."""
     try:
         return mirror_of(tree).links
@@ -264,10 +262,10 @@ def shares_of_postures(
     if not pairs:
         return {}
     bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
-    images = image_links(tree) if images is None else images
+    images = _images(tree) if images is None else images
     counts: Counter[frozenset[str]] = Counter()
     places, samples = places_of(bodies.names, pairs), 0
-    for placed in placed_in_postures(tree, joints, bodies):
+    for placed in _placed_in_postures(tree, joints, bodies):
         counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places, within))
         samples += 1
     found: dict[BodyPair, float] = {}
@@ -279,7 +277,7 @@ def shares_of_postures(
     return found
 
 
-def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
+def _placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
     """Solids in random postures, always the same ones.
 
     Args:
