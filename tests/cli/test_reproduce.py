@@ -105,7 +105,9 @@ def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
         assert robot["cost"] == pytest.approx(robot["robot_torque"] / 160.0 + robot["human_torque"])
     stricter = {name: robot["with_grips_and_collisions"] for name, robot in robots.items()}
     built = {name: robot["bodies_apart"] >= 0.0 for name, robot in stricter.items()}
-    assert {name: robot["held"] for name, robot in stricter.items()} == {n: int(yes) for n, yes in built.items()}
+    assert {name: robot["held"] for name, robot in stricter.items()} == {
+        n: int(yes) for n, yes in built.items()
+    }
     assert built["unscaled"]
     assert not built["log_6"], "its chest is in the pelvis"
     assert stricter["ga"]["mass"] == robots["ga"]["mass"]

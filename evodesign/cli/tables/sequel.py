@@ -53,7 +53,9 @@ def built_lines(done: SequelReproduction) -> list[str]:
     inside = [f"{name} {rounded(-1e3 * by)}" for name, by in apart.items() if by is not None and by < 0.0]
     if not inside:
         return []
-    return [f"cannot be built: bodies nearer than asked while all joints are at zero [mm]: {', '.join(inside)}"]
+    return [
+        f"cannot be built: bodies nearer than asked while all joints are at zero [mm]: {', '.join(inside)}"
+    ]
 
 
 def sequel_lines(done: SequelReproduction, directory: Path, seconds: float) -> list[str]:
