@@ -64,6 +64,7 @@ from evodesign.problem.motion_objectives import (
     motion_power_by_torque,
     robot_power,
 )
+from evodesign.problem.person_objectives import human_load_torque, load_torque_by_posture
 from evodesign.records import Constraint, Lift, Objective
 from evodesign.violations import BODIES_APART
 
@@ -264,6 +265,7 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     "hand_deflection": CaseQuantity("mm", hand_deflection),
     POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
     SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
+    "human_load_torque": CaseQuantity("N m", human_load_torque, by_posture=load_torque_by_posture),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
