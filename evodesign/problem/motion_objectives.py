@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.errors import InputError
+from evodesign.human.back import LUMBAR
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
@@ -50,9 +51,6 @@ NEED_LIFTS = (POWER, ENERGY, LEAST_TIME)
 
 PUBLISHED = ("paper_cost", "paper2023_cost")
 """Costs of loads held still."""
-
-LUMBAR = "jL5S1_"
-"""How the names of the joints between the lowest lumbar vertebra and the sacrum begin."""
 
 
 def robot_power(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:

@@ -64,7 +64,14 @@ from evodesign.problem.motion_objectives import (
     motion_power_by_torque,
     robot_power,
 )
-from evodesign.problem.person_objectives import human_load_torque, load_torque_by_posture
+from evodesign.problem.person_objectives import (
+    BACK,
+    back_compression,
+    compression_by_posture,
+    compression_by_torque,
+    human_load_torque,
+    load_torque_by_posture,
+)
 from evodesign.records import Constraint, Lift, Objective
 from evodesign.violations import BODIES_APART
 
@@ -266,6 +273,7 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
     SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
     "human_load_torque": CaseQuantity("N m", human_load_torque, by_posture=load_torque_by_posture),
+    BACK: CaseQuantity("N", back_compression, compression_by_torque, by_posture=compression_by_posture),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
