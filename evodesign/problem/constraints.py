@@ -17,7 +17,7 @@ from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.motion_objectives import refuse_still
 from evodesign.problem.objectives import (
-    HUMAN_EFFORT,
+    NEED_STRENGTHS,
     OTHERWISE_CALLED,
     QUANTITIES,
     ObjectiveKind,
@@ -70,7 +70,7 @@ def constraints_of(
         place = f"constraints.{key}"
         name, kind = _quantity(key, source)
         _check_bounds(table, place, source)
-        if name.endswith(HUMAN_EFFORT):
+        if name.endswith(NEED_STRENGTHS):
             refuse_unrated(place, name, source, people)
         refuse_without_hardware(place, name, tables, source)
         refuse_still(place, name, tables, source, people)

@@ -31,6 +31,7 @@ from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.design_result import WORST, DesignResult, PostureSlopes
 from evodesign.problem.motion_objectives import (
+    ENDURANCE,
     ENERGY,
     LEAST_TIME,
     POWER,
@@ -44,6 +45,7 @@ from evodesign.problem.objectives import (
     objective_value,
     split_name,
 )
+from evodesign.problem.person_objectives import HOLDING_TIME
 from evodesign.problem.sensitivities import STEP, ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Case, CaseGradient, Gradients, Lift
@@ -169,6 +171,8 @@ class _Design:
             return absent[0] if absent else np.asarray(_weights(values, way) @ np.array(gradients))
         if name == ENERGY:
             return self._of_energy()
+        if name == ENDURANCE:
+            return self._of_endurance()
         if quantity == LEAST_TIME:
             return self._of_least_time(way)
         if name == REACH:
@@ -296,6 +300,11 @@ class _Design:
         absent = [each for _, each in lifts if isinstance(each, NotDifferentiable)]
         slopes = [seconds * each for seconds, each in lifts if isinstance(each, np.ndarray)]
         return absent[0] if absent else np.asarray(np.mean(slopes, axis=0))
+
+    def _of_endurance(self) -> Found:
+        """Of the case that can be held least long."""
+        cases = [each for case in self._by_case(ENDURANCE, HOLDING_TIME) for each in case]
+        return min(cases, key=lambda case: case[1])[2]
 
     def _of_least_time(self, way: str) -> Found:
         """From the multipliers of each lift's own program."""

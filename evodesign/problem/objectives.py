@@ -53,6 +53,7 @@ from evodesign.problem.hardware_objectives import (
     torque_share,
 )
 from evodesign.problem.motion_objectives import (
+    ENDURANCE,
     ENERGY,
     LEAST_TIME,
     POWER,
@@ -69,6 +70,7 @@ from evodesign.problem.person_objectives import (
     back_compression,
     compression_by_posture,
     compression_by_torque,
+    endurance_seconds,
     human_load_torque,
     load_torque_by_posture,
 )
@@ -77,6 +79,7 @@ from evodesign.violations import BODIES_APART
 
 __all__ = [
     "HUMAN_EFFORT",
+    "NEED_STRENGTHS",
     "OTHERWISE_CALLED",
     "QUANTITIES",
     "REACH",
@@ -261,7 +264,10 @@ MOTOR_RATIO = 160.0
 """Turns of a motor M or L per turn of its joint in the published code of Sartore et al. 2023."""
 
 HUMAN_EFFORT = "human_effort"
-"""The quantity that needs people of known strength."""
+"""The hardest joint's share of the person's strength."""
+
+NEED_STRENGTHS = (HUMAN_EFFORT, ENDURANCE)
+"""How the names of quantities end that need people of known strength."""
 
 QUANTITIES: Mapping[str, CaseQuantity] = {
     "robot_torque": CaseQuantity("N m", robot_torque, _by_norm(ROBOT)),
@@ -286,6 +292,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
     "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),
+    ENDURANCE: ObjectiveKind("s", endurance_seconds),
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),

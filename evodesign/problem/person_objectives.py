@@ -1,30 +1,38 @@
 """Quantities of what a task asks of the person, beyond the torques of the posture.
 
-human_load_torque   |torques less those of the same person in the same posture with empty hands| [N m]
-back_compression    of the disc between the fifth lumbar vertebra and the sacrum [N]
+    human_load_torque   |torques less those of the same person in the same posture with empty hands| [N m]
+    back_compression    of the disc between the fifth lumbar vertebra and the sacrum [N]
+    endurance_s         how long the posture can be held [s], the least of all cases
+
+The formulas are those of `mechanics.load_torques` and `mechanics.lumbar_load`.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from evodesign.errors import InputError
 from evodesign.human.back import FLEXION, MUSCLE_LEVER
+from evodesign.human.endurance import endurance
 from evodesign.mechanics.load_torques import LoadTorques, load_torques
 from evodesign.mechanics.lumbar_load import LumbarLoad, has_lumbar_disc, lumbar_load
 from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Scene
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.design_result import PostureSlopes
+from evodesign.problem.design_result import CaseQuantity, DesignResult, PostureSlopes, values_over_instants
 from evodesign.records import ProblemSource
 
 __all__ = [
     "BACK",
+    "HOLDING_TIME",
     "added_by_load",
     "back_compression",
     "compression_by_posture",
     "compression_by_torque",
+    "endurance_by_torque",
+    "endurance_seconds",
     "human_load_torque",
     "load_torque_by_posture",
     "refuse_without_back",
@@ -77,6 +85,29 @@ def compression_by_posture(scene: Scene, postures: Mapping[str, AgentPosture]) -
     joints = dict(zip(person.joints, slopes[3:-12].tolist(), strict=True))
     feet = dict(zip(SIDES, np.split(slopes[-12:], 2), strict=True))
     return {HUMAN: PostureSlopes(slopes[:3], joints, foot_wrenches=feet)}
+
+
+def holding_seconds(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """How long the person can hold the posture [s]; for ever if no torque has a strength in its direction."""
+    found = endurance(postures[HUMAN].torques, scene.human.strengths)
+    return math.inf if found is None else found.seconds
+
+
+def endurance_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """It moves with the joint that tires first."""
+    found = endurance(postures[HUMAN].torques, scene.human.strengths)
+    return {HUMAN: {} if found is None else {found.joint.joint: found.by_torque}}
+
+
+HOLDING_TIME = CaseQuantity("s", holding_seconds, endurance_by_torque)
+"""Of a single case; the quantity is the least of all."""
+
+
+def endurance_seconds(result: DesignResult) -> float | None:
+    """How long all people can hold all loads [s]: the least of all cases; None where nothing tires."""
+    found = values_over_instants(holding_seconds, result)
+    least = math.inf if found is None else min(each for values in found for each in values)
+    return least if least < math.inf else None
 
 
 def refuse_without_back(key: str, name: str, source: ProblemSource, people: Sequence[Agent]) -> None:
