@@ -23,7 +23,7 @@ from evodesign.records import Record
 __all__ = ["Endurance", "endurance", "endurance_tables", "holding_time"]
 
 
-class Curve(Record, frozen=True):
+class EnduranceCurve(Record, frozen=True):
     """A power model: seconds at full strength, and the exponent of the share."""
 
     seconds: float
@@ -34,7 +34,7 @@ class Curve(Record, frozen=True):
         return float(self.seconds * max(share, endurance_tables().drawn_from) ** self.exponent)
 
 
-class Region(Curve, frozen=True):
+class Region(EnduranceCurve, frozen=True):
     """A region of the body: how the names of its joints begin, the left one for both sides."""
 
     name: str
@@ -48,7 +48,7 @@ class EnduranceTables(Record, frozen=True):
     checked: str
     measured_from: float
     drawn_from: float
-    general: Curve
+    general: EnduranceCurve
     regions: tuple[Region, ...]
 
 
@@ -59,7 +59,7 @@ def endurance_tables() -> EnduranceTables:
 
 
 @cache
-def _curve(joint: str) -> Curve:
+def _curve(joint: str) -> EnduranceCurve:
     name, tables = joint.replace(RIGHT, LEFT), endurance_tables()
     return next((region for region in tables.regions if name.startswith(region.joints)), tables.general)
 
@@ -85,6 +85,11 @@ class Endurance:
     def measured(self) -> bool:
         """Whether the share is one at which times were measured."""
         return endurance_tables().measured_from <= self.joint.share <= 1.0
+
+    @property
+    def known_seconds(self) -> float:
+        """The time [s] at the lowest share at which times were measured, if the joint's is lower."""
+        return holding_time(self.joint.joint, max(self.joint.share, endurance_tables().measured_from))
 
     @property
     def by_torque(self) -> float:
