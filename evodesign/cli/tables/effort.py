@@ -15,9 +15,10 @@ if TYPE_CHECKING:
     from evodesign.human.endurance import Endurance
     from evodesign.problem.ergonomics import Ergonomics
 
-__all__ = ["TITLE", "effort_table"]
+__all__ = ["TITLE", "TITLE_OF_SEVERAL", "effort_table"]
 
 TITLE = "the person's back, holding time and posture scores"
+TITLE_OF_SEVERAL = "back, holding time and posture scores of each person's hardest postures"
 
 CAPTION = (
     "back, shear: of the disc L5/S1; NIOSH's limit of compression is 3.4 kN (!: above)\n"
@@ -28,12 +29,14 @@ CAPTION = (
 
 
 def effort_table(asked: Sequence[Asked], *, titled_too: bool) -> FittedTable:
-    """A row for each case; of several people or loads, each person's hardest ones."""
+    """A row for each case; of several people or loads, each one's with the most compression or REBA."""
     several = any(case.label for case, _ in asked)
     rows = hardest_cases(asked, (_compression, _reba)) if several else asked
     measured = numbers("back [kN]", "shear [kN]", "load [N m]", "time", "RULA", "REBA")
     table = titled(
-        TITLE if titled_too else "", [*names("case"), *measured, *names("tires first")], caption=CAPTION
+        (TITLE_OF_SEVERAL if several else TITLE) if titled_too else "",
+        [*names("case"), *measured, *names("tires first")],
+        caption=CAPTION,
     )
     for case, each in rows:
         table.add_row(markup(case.name), *_figures(each))

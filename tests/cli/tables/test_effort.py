@@ -52,6 +52,23 @@ def test_a_time_beyond_what_was_measured_says_so() -> None:
     assert not cells(printed(replace(asked, endurance=tired)))[4].startswith(">")
 
 
+def test_of_several_people_the_hardest_cases_of_each_are_shown() -> None:
+    asked = ergonomics(PERSON, posture({}))
+    heavy = replace(asked, back=replace(asked.back, moment=200.0))
+    cases = [
+        (Case(person=name, task=Hold(height_m=height)), heavy if height == 1.0 else asked)
+        for name in ("short", "tall")
+        for height in (0.8, 1.0, 1.2)
+    ]
+    out = StringIO()
+    Console(file=out, width=110).print(effort_table(cases, titled_too=True))
+    text = out.getvalue()
+    assert "each person's hardest postures" in text
+    assert "short, 1 m" in text
+    assert "tall, 1 m" in text
+    assert "1.2 m" not in text
+
+
 def test_what_is_not_known_is_a_dash() -> None:
     bare = replace(ergonomics(PERSON, posture({})), back=None, endurance=None, rula=None, reba=None)
     found = cells(printed(bare))
