@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -12,12 +13,10 @@ from evodesign.records import AgentDetail
 from tests.problem.standing_people import PERSON
 
 
-def seen(
-    joints: dict[str, float], angles: tuple[float, float, float] = (0.0, 0.0, 0.0), left: float = 0.5
-) -> tuple[ArmSeen, ArmSeen, BodySeen]:
+def detail(joints: dict[str, float], angles: tuple[float, float, float], left: float) -> AgentDetail:
     """A person with some joints [degrees] not at zero, whose left foot has a share of the weight."""
     given = {name: math.radians(value) for name, value in joints.items()}
-    posture = AgentDetail(
+    return AgentDetail(
         base_position_m=(0.0, 0.0, 0.9),
         base_rpy_rad=tuple(math.radians(each) for each in angles),
         joints_rad={name: given.get(name, 0.0) for name in {*PERSON.joints, *given}},
@@ -28,7 +27,13 @@ def seen(
             for side, share in (("left", left), ("right", 1.0 - left))
         },
     )
-    arms, body = observed(PERSON, posture)
+
+
+def seen(
+    joints: dict[str, float], angles: tuple[float, float, float] = (0.0, 0.0, 0.0), left: float = 0.5
+) -> tuple[ArmSeen, ArmSeen, BodySeen]:
+    """Both arms and the body of such a person."""
+    arms, body = observed(PERSON, detail(joints, angles, left))
     return *arms, body
 
 
@@ -94,3 +99,14 @@ def test_the_more_bent_knee_counts_and_a_foot_without_weight_is_no_support() -> 
     assert body.knee == pytest.approx(50.0)
     assert body.balanced
     assert not seen({}, left=0.2)[2].balanced
+
+
+def test_a_person_whose_links_have_other_names_is_not_seen() -> None:
+    tree = PERSON.tree
+    links = tuple(replace(link, name=link.name.replace("T8", "chest")) for link in tree.links)
+    joints = tuple(
+        replace(joint, parent=joint.parent.replace("T8", "chest"), child=joint.child.replace("T8", "chest"))
+        for joint in tree.joints
+    )
+    stranger = replace(PERSON, tree=replace(tree, links=links, joints=joints), trunk=("Pelvis", "chest"))
+    assert observed(stranger, detail({}, (0.0, 0.0, 0.0), 0.5)) is None
