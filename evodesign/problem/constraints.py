@@ -17,13 +17,14 @@ from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.motion_objectives import refuse_still
 from evodesign.problem.objectives import (
-    HUMAN_EFFORT,
+    NEED_STRENGTHS,
     OTHERWISE_CALLED,
     QUANTITIES,
     ObjectiveKind,
     objective_kind,
     objective_kinds,
 )
+from evodesign.problem.person_objectives import refuse_without_back
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
 from evodesign.records import Constraint, ProblemSource
 from evodesign.violations import BODIES_APART
@@ -32,6 +33,7 @@ __all__ = ["constraint_key", "constraints_of", "refuse_constraints", "with_bodie
 
 SUFFIXES: Mapping[str, str] = {
     "N m": "_n_m",
+    "N": "_n",
     "kg": "_kg",
     "m": "_m",
     "W": "_w",
@@ -68,10 +70,11 @@ def constraints_of(
         place = f"constraints.{key}"
         name, kind = _quantity(key, source)
         _check_bounds(table, place, source)
-        if name.endswith(HUMAN_EFFORT):
+        if name.endswith(NEED_STRENGTHS):
             refuse_unrated(place, name, source, people)
         refuse_without_hardware(place, name, tables, source)
         refuse_still(place, name, tables, source, people)
+        refuse_without_back(place, name, source, people)
         if name.endswith(PEAK_TORQUE):
             refuse_unlimited_peak(place, name, tables, source, robot)
         found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))

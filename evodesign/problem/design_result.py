@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import Agent, Scene, scene_of
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.formulations.reach import Reach
-from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.posture.results import AgentPosture, Array, CaseSolution
 from evodesign.problem.demand import Demand
 from evodesign.problem.hardware_objectives import (
     StanceModel,
@@ -30,6 +30,7 @@ __all__ = [
     "CaseValue",
     "DesignResult",
     "ObjectiveKind",
+    "PostureSlopes",
     "aggregate",
     "largest_value",
     "values_over_cases",
@@ -107,18 +108,56 @@ ByTorque = Callable[[Scene, Mapping[str, AgentPosture]], Mapping[str, Mapping[st
 
 
 @dataclass(frozen=True, slots=True)
+class PostureSlopes:
+    """A quantity's derivatives by one agent's posture and wrenches, torques held.
+
+    Args:
+        base_angles: by roll, pitch, yaw [1/rad], shape (3,).
+        joints: by position of each joint [1/rad].
+        hand_wrenches: by the wrench on each hand, by side, shape (6,); none: they do not matter.
+        foot_wrenches: by that on each foot, likewise.
+    """
+
+    base_angles: Array
+    joints: Mapping[str, float]
+    hand_wrenches: Mapping[str, Array] = field(default_factory=dict)
+    foot_wrenches: Mapping[str, Array] = field(default_factory=dict)
+
+    def along(self, posture: AgentPosture) -> float:
+        """The sum of what a posture has, each times its derivative."""
+        found = float(self.base_angles @ posture.base_angles)
+        found += sum(slope * posture.joints[joint] for joint, slope in self.joints.items())
+        found += sum(float(slope @ posture.hand_wrenches[side]) for side, slope in self.hand_wrenches.items())
+        return found + sum(
+            float(slope @ posture.foot_wrenches[side]) for side, slope in self.foot_wrenches.items()
+        )
+
+
+ByPosture = Callable[[Scene, Mapping[str, AgentPosture]], Mapping[str, PostureSlopes]]
+"""From a scene and the postures in it to a quantity's derivatives by postures, by agent."""
+
+
+@dataclass(frozen=True, slots=True)
 class CaseQuantity:
     """A value of every case: its unit and formula.
 
-    `by_torque` is its derivative, for a quantity that depends on torques alone, and `by_speed` that by the
-    speeds of joints, for one that depends on them as well; without the former, gradients are
-    taken by differences along the exact tangent, which costs many times as much.
+    `by_torque` is its derivative, for a quantity that depends on torques alone, `by_speed` that by the
+    speeds of joints, for one that depends on them as well, and `by_posture` that by postures and wrenches,
+    for one of people that depends on these (and on torques, if it has `by_torque` too). Without both
+    `by_torque` and `by_posture`, gradients are taken by differences along the exact tangent, which costs
+    many times as much.
     """
 
     unit: str
     value: CaseValue
     by_torque: ByTorque | None = None
     by_speed: ByTorque | None = None
+    by_posture: ByPosture | None = None
+
+    @property
+    def has_slopes(self) -> bool:
+        """Whether a formula gives its gradient."""
+        return self.by_torque is not None or self.by_posture is not None
 
 
 @dataclass(frozen=True, slots=True)

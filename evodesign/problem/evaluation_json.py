@@ -6,7 +6,8 @@ wrench is force, then moment, acting on the agent: at a hand about the grasp poi
 origin and in the sole frame.
 
 `ergonomics` says what a posture asks of the person: `effort` is the share of its strength that the hardest
-joint needs, in the direction of `movement`; the rest is the revised NIOSH lifting equation (docs/people.md).
+joint needs, in the direction of `movement`; then the revised NIOSH lifting equation, what the load adds to
+the torques, the disc L5/S1, the holding time, and the scores of RULA and REBA (docs/people.md).
 
 `cases` has an entry for each undisturbed case: the names of `person` and `payload`, empty where the problem
 has one, the `task`, and what came of it. `heights` tells the same of every load held still by its `height_m`

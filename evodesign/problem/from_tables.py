@@ -24,7 +24,8 @@ from evodesign.problem.design_space import (
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.motion_objectives import refuse_still
-from evodesign.problem.objectives import HUMAN_EFFORT, OTHERWISE_CALLED, objective_kind, objective_kinds
+from evodesign.problem.objectives import NEED_STRENGTHS, OTHERWISE_CALLED, objective_kind, objective_kinds
+from evodesign.problem.person_objectives import refuse_without_back
 from evodesign.records import (
     Hold,
     Lift,
@@ -181,7 +182,8 @@ def objectives_of(
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
         refuse_without_hardware(key, name, tables, source)
         refuse_still(key, name, tables, source, [scene.human for scene in scenes])
-        if name.endswith(HUMAN_EFFORT):
+        refuse_without_back(key, name, source, [scene.human for scene in scenes])
+        if name.endswith(NEED_STRENGTHS):
             refuse_unrated(key, name, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
     return tuple(objectives)

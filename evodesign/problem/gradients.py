@@ -5,11 +5,11 @@ torques follows by the chain rule, since torques are variables of the posture pr
 
     d |tau| / d pi = tau . (d tau / d pi) / |tau|
 
-and in a lift along the speeds of joints likewise. The mean, the largest value or a quantile over cases is
-that of the same cases. What an actuator changes of the formula itself (its motor constant, its limit) is
-differenced at the same torques. Reach has its own tangent. What depends on the robot's bodies alone is
-differenced along the resized robot. Everything else goes along the whole tangent, as in `sensitivities`,
-which takes many times as long.
+and in a lift along the speeds of joints likewise. One of postures and wrenches goes along these, which are
+variables too. The mean, the largest value or a quantile over cases is that of the same cases. What an
+actuator changes of the formula itself (its motor constant, its limit) is differenced at the same torques.
+Reach has its own tangent. What depends on the robot's bodies alone is differenced along the resized robot.
+Everything else goes along the whole tangent, as in `sensitivities`, which takes many times as long.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
-from evodesign.posture.results import AgentPosture
+from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import WORST, ByTorque, DesignResult
+from evodesign.problem.design_result import WORST, DesignResult, PostureSlopes
 from evodesign.problem.motion_objectives import (
+    ENDURANCE,
     ENERGY,
     LEAST_TIME,
     POWER,
     mean_over_time,
-    motion_power_by_torque,
 )
 from evodesign.problem.objectives import (
     QUANTITIES,
@@ -45,6 +45,7 @@ from evodesign.problem.objectives import (
     objective_value,
     split_name,
 )
+from evodesign.problem.person_objectives import HOLDING_TIME
 from evodesign.problem.sensitivities import STEP, ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.records import Case, CaseGradient, Gradients, Lift
@@ -121,6 +122,7 @@ class _Design:
         self._problem, self._sensitivities = problem, sensitivities
         self._values, self._result = values, result
         self._known: dict[str, list[OverTime]] = {}
+        self._near: dict[int, list[tuple[Instant, ...]]] = {}
 
     @cached_property
     def _as_given(self) -> list[CaseDerivative | NotDifferentiable]:
@@ -160,8 +162,8 @@ class _Design:
             return NotDifferentiable("the design has no such value")
         way, quantity = split_name(name)
         known = QUANTITIES.get(quantity)
-        if known is not None and known.by_torque is not None:
-            found = self._by_case(quantity, known, known.by_torque)
+        if known is not None and known.has_slopes:
+            found = self._by_case(quantity, known)
             cases = [each for case in found for each in case] if way == WORST else [*map(_mean, found)]
             gradients = [gradient for _, _, gradient in cases if isinstance(gradient, np.ndarray)]
             absent = [each for _, _, each in cases if isinstance(each, NotDifferentiable)]
@@ -169,6 +171,8 @@ class _Design:
             return absent[0] if absent else np.asarray(_weights(values, way) @ np.array(gradients))
         if name == ENERGY:
             return self._of_energy()
+        if name == ENDURANCE:
+            return self._of_endurance()
         if quantity == LEAST_TIME:
             return self._of_least_time(way)
         if name == REACH:
@@ -199,19 +203,16 @@ class _Design:
         """Value and gradient in every case of a quantity that is their mean; none of any other quantity."""
         way, quantity = split_name(name)
         known = QUANTITIES.get(quantity)
-        if way or known is None or known.by_torque is None or objective_value(name, self._result) is None:
+        if way or known is None or not known.has_slopes or objective_value(name, self._result) is None:
             return []
-        return [
-            (value, gradient)
-            for _, value, gradient in map(_mean, self._by_case(quantity, known, known.by_torque))
-        ]
+        return [(value, gradient) for _, value, gradient in map(_mean, self._by_case(quantity, known))]
 
-    def _by_case(self, name: str, quantity: CaseQuantity, by_torque: ByTorque) -> list[OverTime]:
+    def _by_case(self, name: str, quantity: CaseQuantity) -> list[OverTime]:
         """By the chain rule, in every case and under every disturbance; worked out once."""
         if name in self._known:
             return self._known[name]
         found = self._known[name] = []
-        for solution, derivative in zip(self._result.cases, self._cases, strict=True):
+        for case, (solution, derivative) in enumerate(zip(self._result.cases, self._cases, strict=True)):
             scene = self._result.scene_of(solution.case)
             exact = derivative.instants if isinstance(derivative, LiftDerivative) else solution.instants
             for load_case, disturbance in enumerate(("", *solution.instants[0].disturbed)):
@@ -223,14 +224,38 @@ class _Design:
                         over_time.append((instant.time, value, derivative))
                         continue
                     postures = exact[number].disturbed.get(disturbance, exact[number].postures)
-                    weights = by_torque(scene, postures)
-                    own = self._by_actuators(quantity, solution.case, postures)
-                    slope = derivative.along_torques(number, load_case, weights) + own
+                    slope = np.zeros(len(self._values))
+                    if quantity.by_torque is not None:
+                        weights = quantity.by_torque(scene, postures)
+                        slope += derivative.along_torques(number, load_case, weights)
                     if quantity.by_speed is not None and isinstance(derivative, LiftDerivative):
                         slope += derivative.along_speeds(number, quantity.by_speed(scene, postures))
+                    if quantity.by_posture is None:
+                        slope += self._by_actuators(quantity, solution.case, postures)
+                    else:
+                        slopes = quantity.by_posture(scene, postures)
+                        slope += self._by_posture(case, derivative, number, disturbance, slopes)
                     over_time.append((instant.time, value, slope))
                 found.append(over_time)
         return found
+
+    def _by_posture(
+        self,
+        case: int,
+        derivative: CaseDerivative,
+        instant: int,
+        disturbance: str,
+        slopes: Mapping[str, PostureSlopes],
+    ) -> Array:
+        """Along the tangent of a case, which is linear: its postures after a unit step less its own."""
+        if case not in self._near:
+            steps = np.vstack([np.zeros(len(self._values)), np.eye(len(self._values))])
+            self._near[case] = [derivative.moved(step) for step in steps]
+        found = []
+        for instants in self._near[case]:
+            postures = instants[instant].disturbed.get(disturbance, instants[instant].postures)
+            found.append(sum(each.along(postures[agent]) for agent, each in slopes.items()))
+        return np.array(found[1:]) - found[0]
 
     def _by_actuators(
         self, quantity: CaseQuantity, case: Case, postures: Mapping[str, AgentPosture]
@@ -266,7 +291,7 @@ class _Design:
 
     def _of_energy(self) -> Found:
         """The power's over the time of each lift, the mean over all of them."""
-        found = self._by_case(POWER, QUANTITIES[POWER], motion_power_by_torque)
+        found = self._by_case(POWER, QUANTITIES[POWER])
         lifts = [
             (solution.case.task.seconds, _mean(over_time)[2])
             for (solution, _), over_time in zip(self._result.every_case(), found, strict=True)
@@ -275,6 +300,11 @@ class _Design:
         absent = [each for _, each in lifts if isinstance(each, NotDifferentiable)]
         slopes = [seconds * each for seconds, each in lifts if isinstance(each, np.ndarray)]
         return absent[0] if absent else np.asarray(np.mean(slopes, axis=0))
+
+    def _of_endurance(self) -> Found:
+        """Of the case that can be held least long."""
+        cases = [each for case in self._by_case(ENDURANCE, HOLDING_TIME) for each in case]
+        return min(cases, key=lambda case: case[1])[2]
 
     def _of_least_time(self, way: str) -> Found:
         """From the multipliers of each lift's own program."""

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.errors import InputError
+from evodesign.human.back import LUMBAR
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.file import ProblemFile
@@ -27,6 +28,7 @@ from evodesign.problem.hardware_objectives import holding_power, power_by_torque
 from evodesign.records import ProblemSource
 
 __all__ = [
+    "ENDURANCE",
     "ENERGY",
     "LEAST_TIME",
     "NEED_LIFTS",
@@ -48,11 +50,11 @@ POWER, ENERGY, SPINE, LEAST_TIME = "robot_power", "energy", "l5s1_moment", "lift
 NEED_LIFTS = (POWER, ENERGY, LEAST_TIME)
 """How the names of quantities end that tell nothing where no load moves."""
 
-PUBLISHED = ("paper_cost", "paper2023_cost")
-"""Costs of loads held still."""
+ENDURANCE = "endurance_s"
+"""How long people can hold the loads."""
 
-LUMBAR = "jL5S1_"
-"""How the names of the joints between the lowest lumbar vertebra and the sacrum begin."""
+OF_HOLDS = ("paper_cost", "paper2023_cost", ENDURANCE)
+"""Quantities of loads held still."""
 
 
 def robot_power(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
@@ -119,7 +121,7 @@ def refuse_still(
     """
     if name.endswith(NEED_LIFTS) and not tables.task.lift:
         raise InputError(source.path, key, f"a [[task.lift]] for '{name}'", "none")
-    if name in PUBLISHED and tables.task.lift:
+    if name in OF_HOLDS and tables.task.lift:
         raise InputError(source.path, key, f"loads held still for '{name}'", "a [[task.lift]]")
     for person in people if name.endswith(SPINE) else ():
         if not any(joint.startswith(LUMBAR) for joint in person.joints):

@@ -53,6 +53,7 @@ from evodesign.problem.hardware_objectives import (
     torque_share,
 )
 from evodesign.problem.motion_objectives import (
+    ENDURANCE,
     ENERGY,
     LEAST_TIME,
     POWER,
@@ -64,11 +65,21 @@ from evodesign.problem.motion_objectives import (
     motion_power_by_torque,
     robot_power,
 )
+from evodesign.problem.person_objectives import (
+    BACK,
+    back_compression,
+    compression_by_posture,
+    compression_by_torque,
+    endurance_seconds,
+    human_load_torque,
+    load_torque_by_posture,
+)
 from evodesign.records import Constraint, Lift, Objective
 from evodesign.violations import BODIES_APART
 
 __all__ = [
     "HUMAN_EFFORT",
+    "NEED_STRENGTHS",
     "OTHERWISE_CALLED",
     "QUANTITIES",
     "REACH",
@@ -253,7 +264,10 @@ MOTOR_RATIO = 160.0
 """Turns of a motor M or L per turn of its joint in the published code of Sartore et al. 2023."""
 
 HUMAN_EFFORT = "human_effort"
-"""The quantity that needs people of known strength."""
+"""The hardest joint's share of the person's strength."""
+
+NEED_STRENGTHS = (HUMAN_EFFORT, ENDURANCE)
+"""How the names of quantities end that need people of known strength."""
 
 QUANTITIES: Mapping[str, CaseQuantity] = {
     "robot_torque": CaseQuantity("N m", robot_torque, _by_norm(ROBOT)),
@@ -264,6 +278,8 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     "hand_deflection": CaseQuantity("mm", hand_deflection),
     POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
     SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
+    "human_load_torque": CaseQuantity("N m", human_load_torque, by_posture=load_torque_by_posture),
+    BACK: CaseQuantity("N", back_compression, compression_by_torque, by_posture=compression_by_posture),
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 
@@ -276,6 +292,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
     "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),
+    ENDURANCE: ObjectiveKind("s", endurance_seconds),
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
     "com_height": ObjectiveKind("m", com_height),

@@ -16,6 +16,7 @@ from evodesign.cli.export import export
 from evodesign.cli.output import rounded
 from evodesign.cli.report import report
 from evodesign.cli.show import show
+from evodesign.cli.tables.effort import TITLE
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
@@ -129,10 +130,19 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
         assert one["lifting_index"] == pytest.approx(one["held_kg"] / one["recommended_weight_kg"])
     show(run, 0)
     text = capsys.readouterr().out
-    rows = {row[0]: row[1:] for row in cells(text) if row[0].endswith(" m")}
-    assert set(rows) == {f"{detail.case.task.height_m:g} m" for detail in details}
+    first, second = text.split(TITLE)
+    rows, others = (
+        {row[0]: row[1:] for row in cells(part) if row[0].endswith(" m")} for part in (first, second)
+    )
+    assert set(rows) == set(others) == {f"{detail.case.task.height_m:g} m" for detail in details}
     for one, detail in zip(told, details, strict=True):
         row = rows[f"{detail.case.task.height_m:g} m"]
+        back, shear, load, _, *scores, tires = others[f"{detail.case.task.height_m:g} m"]
+        assert (float(back), float(shear)) == pytest.approx(
+            (one["back_compression_n"] / 1000.0, one["back_shear_n"] / 1000.0), abs=6e-3
+        )
+        assert (load, tires) == (f"{one['load_torque_n_m']:.1f}", one["endurance_joint"])
+        assert scores == [str(one[worksheet]["whole"]) for worksheet in ("rula", "reba")]
         assert row[0].startswith(one["hardest_joint"])
         assert row[1:3] == [f"{one['effort']:.1%}", f"{one['hands_ahead_m']:.2f}"]
         assert row[-2:] == [f"{one['recommended_weight_kg']:.1f}", f"{one['lifting_index']:.2f}"]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.human.endurance import endurance_tables
 from evodesign.human.population import population, population_table
 from evodesign.human.strength import joint_strengths, strength_tables
 from evodesign.mechanics.scene import HUMAN
@@ -90,3 +91,15 @@ def test_the_default_problem_asks_what_the_table_says(
         found = (asked.strain.share, asked.task.horizontal, asked.recommended_weight, asked.lifting_index)
         assert height.postures[HUMAN].torque_norm == pytest.approx(float(torque), rel=0.01)
         assert found == pytest.approx([float(figure) for figure in figures], rel=0.05)
+
+
+def test_holding_times_are_those_of_the_data(rows: list[list[str]]) -> None:
+    tables = endurance_tables()
+    curves = [(region.name, region, ", ".join(region.joints)) for region in tables.regions]
+    curves.append(("general", tables.general, "all others: the hips"))
+    expected = [
+        [name, f"{of.seconds:g}", f"{of.exponent:g}", *(f"{of.at(s):.0f}" for s in (0.1, 0.3, 0.5)), joints]
+        for name, of, joints in curves
+    ]
+    named = {name for name, *_ in curves}
+    assert [row for row in rows if row[0] in named and len(row) == len(expected[0])] == expected

@@ -11,14 +11,17 @@ from hypothesis import strategies as st
 
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.endurance import endurance
 from evodesign.human.niosh import Coupling
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.scene import HUMAN, Agent
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.ergonomics import ergonomics
+from evodesign.problem.ergonomics import ergonomics, ergonomics_json
+from evodesign.problem.person_objectives import back_compression, human_load_torque
 from evodesign.records import AgentDetail
+from tests.problem.standing_people import SCENE
 
 MAN = Person(1.82, 72.7, Sex.MALE)
 
@@ -122,3 +125,34 @@ def test_a_person_without_strengths_has_no_relative_torque_but_a_lifting_index()
     found = ergonomics(replace(PERSON, strengths={}), posture({"jLeftElbow_rotz": -1.5}))
     assert found.strain is None
     assert found.recommended_weight >= 0.0
+
+
+def test_the_back_the_load_and_the_scores_are_those_of_the_quantities() -> None:
+    """The arms are out to the side, and what the feet bear is nothing, which is less than the body weighs."""
+    detail = posture({"jL5S1_roty": 0.5})
+    found = ergonomics(PERSON, detail)
+    solved = AgentPosture(
+        np.array(detail.base_position_m),
+        np.array(detail.base_rpy_rad),
+        detail.joints_rad,
+        detail.torques_n_m,
+        {side: np.array(wrench) for side, wrench in detail.hand_wrenches.items()},
+        {side: np.array(wrench) for side, wrench in detail.foot_wrenches.items()},
+    )
+    scene = replace(SCENE, human=PERSON)
+    assert found.load_torque == pytest.approx(human_load_torque(scene, {HUMAN: solved}))
+    assert found.back.compression == pytest.approx(back_compression(scene, {HUMAN: solved}))
+    assert found.endurance.seconds == endurance(detail.torques_n_m, PERSON.strengths).seconds
+    assert (found.rula.whole, found.reba.whole) == (7, 6), "by hand from the worksheets"
+
+
+def test_the_json_has_every_figure_and_nulls_for_what_is_not_known() -> None:
+    told = ergonomics_json(ergonomics(PERSON, posture({})))
+    assert set(told["rula"]) == set(told["reba"]) == {"arm", "body", "whole"}
+    assert told["back_limit_n"] == 3400.0
+    stiff = tuple(name for name in PERSON.joints if not name.startswith("jL5S1"))
+    nobody = replace(PERSON, joints=stiff, strengths={})
+    told = ergonomics_json(ergonomics(nobody, posture({})))
+    assert [
+        told[key] for key in ("back_compression_n", "back_shear_n", "endurance_s", "endurance_joint")
+    ] == [None] * 4

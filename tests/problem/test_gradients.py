@@ -108,6 +108,21 @@ def test_gradients_agree_with_differences_through_the_pool(
 
 
 @pytest.mark.slow
+def test_gradients_of_what_people_bear_agree_with_differences(
+    problem: DesignProblem, known: Precomputed
+) -> None:
+    names = ("human_load_torque", "back_compression", "worst_back_compression", "endurance_s")
+    asked = tuple(Objective(name=name, sense=Sense.MINIMISE, unit="") for name in names)
+    errors = worst_errors(
+        replace(problem, objectives=asked), known, drawn(6, len(problem.space.parameters), 6)
+    )
+    for name in names:
+        compared = [error[name] for error in errors if name in error]
+        assert len(compared) >= 2
+        assert max(compared) < 1e-5
+
+
+@pytest.mark.slow
 def test_gradients_of_forty_designs_agree_with_differences(
     problem: DesignProblem, known: Precomputed
 ) -> None:

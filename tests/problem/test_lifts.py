@@ -374,7 +374,14 @@ def assert_gradients_agree(moving: Moving) -> None:
         assert found == pytest.approx(expected, abs=1e-4 * max(map(abs, expected)))
 
 
-EVERY = ("robot_torque", "human_torque", "robot_power", "l5s1_moment")
+EVERY = (
+    "robot_torque",
+    "human_torque",
+    "robot_power",
+    "l5s1_moment",
+    "human_load_torque",
+    "back_compression",
+)
 
 
 def neighbours(

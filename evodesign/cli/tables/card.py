@@ -13,6 +13,9 @@ from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
+from evodesign.cli.tables.effort import TITLE as TITLE_OF_EFFORT
+from evodesign.cli.tables.effort import TITLE_OF_SEVERAL as TITLE_OF_SEVERAL_EFFORTS
+from evodesign.cli.tables.effort import effort_table
 from evodesign.cli.tables.limits import TITLE as TITLE_OF_LIMITS
 from evodesign.cli.tables.limits import limits_table
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
@@ -69,6 +72,9 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, A
     if asked:
         cases = [*zip((detail.case for detail in opened.cases), asked, strict=True)]
         sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)
+        sections[TITLE_OF_SEVERAL_EFFORTS if several else TITLE_OF_EFFORT] = effort_table(
+            cases, titled_too=False
+        )
     parts: list[RenderableType] = [_title(opened)]
     for title, table in sections.items():
         parts += [Text(f"\n{title}", style="italic"), table]

@@ -10,6 +10,7 @@ from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
+from evodesign.cli.tables.effort import effort_table
 from evodesign.cli.tables.limits import TITLE, limits_table
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
@@ -50,7 +51,7 @@ def design_tables(
     if bill := bill_of_materials(problem, result.tree, solved):
         yield actuators_table(bill, mass_title(bill))
     if solved:
-        yield _people_table(result)
+        yield from _people_tables(result)
     if any(each.limits for each in solved):
         yield limits_table(solved, TITLE)
     if sensitivities:
@@ -79,14 +80,14 @@ def _assessment_tables(
     )
 
 
-def _people_table(result: DesignResult) -> FittedTable:
+def _people_tables(result: DesignResult) -> tuple[FittedTable, FittedTable]:
     """What the solved postures of a design ask of the people."""
     solved = [solution for solution in result.cases if solution.solved]
     asked = [
         (one.case, ergonomics(result.scene_of(one.case).human, detail_of(one).hardest.agents[HUMAN]))
         for one in solved
     ]
-    return people_table(asked, titled=True)
+    return people_table(asked, titled=True), effort_table(asked, titled_too=True)
 
 
 def _sensitivity_table(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from evodesign.cli.output import markup
@@ -36,12 +36,14 @@ def people_table(asked: Sequence[Asked], *, titled: bool) -> FittedTable:
     return person_table(rows, title if titled else "")
 
 
-def hardest_cases(asked: Sequence[Asked]) -> list[Asked]:
-    """Of each person the case of largest effort and that of the largest lifting index, often the same."""
+def hardest_cases(
+    asked: Sequence[Asked], sizes: Sequence[Callable[[Asked], float]] | None = None
+) -> list[Asked]:
+    """Of each person the case of each largest size, often the same; by default effort and lifting index."""
     chosen: list[Asked] = []
     for name in dict.fromkeys(case.person for case, _ in asked):
         own = [one for one in asked if one[0].person == name]
-        for size in (_effort, _index):
+        for size in sizes or (_effort, _index):
             hardest = max(own, key=size)
             if hardest not in chosen:
                 chosen.append(hardest)

@@ -205,6 +205,29 @@ class ClearanceContent(Part, frozen=True):
     distance_m: float
 
 
+class EffortContent(Part, frozen=True):
+    """What a posture does to the person; null where the person has no such joint, strength or link.
+
+    Attributes:
+        back_n, shear_n: of the disc L5/S1 [N].
+        back_limit_n: NIOSH's limit of the first [N].
+        load_n_m: norm of the torques that the load adds to those with empty hands [N m].
+        seconds: how long it can be held, and whether `longer` than what was measured.
+        tires: the joint that tires first.
+        rula, reba: scores.
+    """
+
+    back_n: int | None
+    shear_n: int | None
+    back_limit_n: int
+    load_n_m: float
+    seconds: int | None
+    longer: bool
+    tires: str
+    rula: int | None
+    reba: int | None
+
+
 class ActuatorContent(Part, frozen=True):
     """What drives a group of joints; `model` is empty for one of the law.
 
@@ -256,6 +279,7 @@ class DesignContent(Part, frozen=True):
         cases: how each ended.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
+        efforts: of the person, likewise.
         static_torques: those of lifts if nothing moved, by moment, agent and joint [N m]; likewise, none
             where no load is lifted.
         torque_limits: of the robot's joints that have a limit [N m].
@@ -271,6 +295,7 @@ class DesignContent(Part, frozen=True):
     cases: tuple[CaseOutcome, ...]
     postures: tuple[CaseDetail, ...] = ()
     clearances: tuple[ClearanceContent, ...] = ()
+    efforts: tuple[EffortContent, ...] = ()
     static_torques: tuple[tuple[dict[str, dict[str, float]], ...], ...] = ()
     torque_limits: dict[str, float] = {}
     links: dict[int, LinkBody] = {}

@@ -35,6 +35,7 @@ from evodesign.report.page.content import (
     StopContent,
 )
 from evodesign.report.page.downloads import Downloads, rounded
+from evodesign.report.page.effort import effort_content
 from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
 from evodesign.report.page.postures import MOMENTS, details_shown, shown_cases
@@ -256,8 +257,9 @@ def _design(
     try:
         found = known.clearances.of(robot, detail.cases)
         static_torques, limits = known.statics.of(robot, postures)
+        efforts = effort_content(problem.scenes, detail.cases)
     except RunError:  # postures of strangers, whom the page does not draw
-        found, static_torques, limits = [], (), {}
+        found, static_torques, limits, efforts = [], (), {}, ()
     nearest = tuple(
         ClearanceContent(first=each.first, second=each.second, distance_m=each.distance) for each in found
     )
@@ -266,6 +268,7 @@ def _design(
             cases=cases,
             postures=postures,
             clearances=nearest,
+            efforts=efforts,
             static_torques=static_torques,
             torque_limits=limits,
             links=links,

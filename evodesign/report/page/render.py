@@ -52,6 +52,7 @@ SCRIPTS = (
     "ingredients.js",
     "hardware.js",
     "limits.js",
+    "effort.js",
     "reach.js",
     "downloads.js",
     "card.js",

@@ -81,7 +81,7 @@ const whyNoPosture = (row) => {
   return `The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived. evodesign report RUN --designs ${points.number[row]} solves it anew.`;
 };
 
-const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], gradients: {}, links: {}, joints: {}, hardware: null };
+const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], efforts: [], gradients: {}, links: {}, joints: {}, hardware: null };
 
 // What the card shows now: how to draw it again, and how to show another height or case.
 const shown = { redraw: () => {}, height: () => {} };
@@ -114,6 +114,7 @@ const drawWithPostures = (row, design) => {
   const motion = motionSection(design);
   const cases = caseSection(design);
   const limits = limitSection(design);
+  const effort = effortSection(design);
   const wrenches = element("div");
   const mass = massOf(treeOf("robot", design));
   fillCard([
@@ -126,6 +127,7 @@ const drawWithPostures = (row, design) => {
     torques.section,
     motion?.section,
     limits?.section,
+    effort?.section,
     ...hardwareSections(design),
     fold("Masses", `robot ${figure(mass)} kg`, massTable(design)),
     fold("Contact wrenches", "", wrenches),
@@ -143,6 +145,7 @@ const drawWithPostures = (row, design) => {
     task = taskTexts[state.height];
     cases?.draw();
     limits?.draw();
+    effort?.draw();
     const posture = postureAt(design, shownCase());
     const missing = () =>
       element("p", { class: "plain", text: `No posture ${severalPairs ? "in this case" : "at this height"}.` });

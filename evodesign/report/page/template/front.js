@@ -143,6 +143,17 @@ const frontTraces = () => {
   return [...traces, frontTrace(chosen, "chosen", ring, { hoverinfo: "skip" })];
 };
 
+// NIOSH's limit of the back's compression [N] (human.back), drawn where that is an axis.
+const BACK_LIMIT = 3400;
+
+const limitLines = (across, up) =>
+  [
+    [across, { x0: BACK_LIMIT, x1: BACK_LIMIT, y0: 0, y1: 1, yref: "paper" }],
+    [up, { y0: BACK_LIMIT, y1: BACK_LIMIT, x0: 0, x1: 1, xref: "paper" }],
+  ]
+    .filter(([index]) => frontAxes[index].name.endsWith("back_compression"))
+    .map(([, ends]) => ({ type: "line", ...ends, line: { color: colour("second"), width: 1.5, dash: "dot" } }));
+
 const frontLayout = () => {
   const { across, up, solid, everything } = drawnIn;
   const third = thirdIndex();
@@ -172,6 +183,7 @@ const frontLayout = () => {
     uirevision: `2d ${across} ${up} ${everything}`,
     selections: state.lasso ? (byId("front").layout?.selections ?? []) : [],
     dragmode: "zoom",
+    shapes: limitLines(across, up),
     xaxis: plotAxis(label(frontAxes[across]), { range: zoomed(frontAxes[across]), zeroline: false }),
     yaxis: plotAxis(label(frontAxes[up]), { range: zoomed(frontAxes[up]), zeroline: false }),
   });

@@ -1,0 +1,41 @@
+"""What the card says of the person: back, holding time and scores of the posture that is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from evodesign.human.back import ACTION_LIMIT
+from evodesign.mechanics.scene import HUMAN, Scene, scene_of
+from evodesign.problem.ergonomics import ergonomics
+from evodesign.records import CaseDetail
+from evodesign.report.page.content import EffortContent
+
+__all__ = ["effort_content"]
+
+
+def effort_content(scenes: Sequence[Scene], cases: Sequence[CaseDetail]) -> tuple[EffortContent, ...]:
+    """One for each case: in a lift that of the moment at which the person's torques are largest.
+
+    Args:
+        scenes: every person with every load.
+        cases: a design's postures, of these people.
+    """
+    return tuple(_of(scenes, case) for case in cases)
+
+
+def _of(scenes: Sequence[Scene], case: CaseDetail) -> EffortContent:
+    """Newtons as whole numbers, and what is not known as null."""
+    person = scene_of(scenes, case.case.pair).human
+    asked = ergonomics(person, case.hardest.agents[HUMAN])
+    back, tires = asked.back, asked.endurance
+    return EffortContent(
+        back_n=None if back is None else round(back.compression),
+        shear_n=None if back is None else round(back.shear),
+        back_limit_n=round(ACTION_LIMIT),
+        load_n_m=round(asked.load_torque, 1),
+        seconds=None if tires is None else round(tires.known_seconds),
+        longer=tires is not None and tires.seconds > tires.known_seconds,
+        tires="" if tires is None else tires.joint.joint,
+        rula=None if asked.rula is None else asked.rula.whole,
+        reba=None if asked.reba is None else asked.reba.whole,
+    )
