@@ -16,7 +16,7 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.collision.rules import CollisionRules
-from evodesign.human.coupled_joints import CoupledJoints
+from evodesign.human.coupled_joints import CoupledJoints, Rhythm
 from evodesign.human.strength import JointStrength
 from evodesign.mechanics.contact import Ground, SoleSize
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
@@ -174,6 +174,7 @@ class Agent:
         label: who it is where a problem has several people.
         strengths: of its joints, by name; none for a robot.
         coupled_joints: ranges that several of its joints share.
+        rhythms: movements that several of its joints make together; each joint has a part in one at most.
         torque_limits: largest torque [N m] of each joint that moves and has a limit.
         limits_torques: whether these limits hold in every posture.
         collisions: what its bodies keep clear of; None: they may pass through anything.
@@ -192,6 +193,7 @@ class Agent:
     torque_limits: Mapping[str, float] = field(default_factory=dict)
     limits_torques: bool = False
     coupled_joints: tuple[CoupledJoints, ...] = ()
+    rhythms: tuple[Rhythm, ...] = ()
     collisions: CollisionRules | None = None
     gaze: Gaze | None = None
 

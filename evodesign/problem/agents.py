@@ -15,7 +15,7 @@ from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person, ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
-from evodesign.human.coupled_joints import coupled_joints
+from evodesign.human.coupled_joints import coupled_joints, rhythms
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
@@ -103,7 +103,8 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     rated = replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
     if table.gaze_cone_deg is not None:
         rated = replace(rated, gaze=_gaze(key, math.radians(table.gaze_cone_deg), rated, source))
-    return rated if table.joint_ranges is JointRanges.SEPARATE else _coupled(key, rated, source)
+    ranges = table.joint_ranges
+    return rated if ranges is JointRanges.SEPARATE else _coupled(key, ranges, rated, source)
 
 
 def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
@@ -120,18 +121,28 @@ def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
     return Gaze(HEAD, head.inertia.center, cone)
 
 
-def _coupled(key: str, person: Agent, source: ProblemSource) -> Agent:
-    """The person with the published ranges that its joints share.
+def _coupled(key: str, ranges: JointRanges, person: Agent, source: ProblemSource) -> Agent:
+    """The person with the published ranges that its joints share, or the movements that they make together.
 
     Raises:
-        InputError: a person from a URDF lacks one of the joints.
+        InputError: a person from a URDF lacks one of the joints, or some of a rhythm's are held.
     """
-    shared = coupled_joints()
+    shared, found = coupled_joints(), f"'{ranges}' of '{person.tree.name}'"
     for name in (name for each in shared for name in each.joints):
         if name not in person.tree.joint_by_name:
             wanted = f"'separate', or a person with the generated one's spine, such as its joint '{name}'"
-            raise InputError(source.path, f"{key}.joint_ranges", wanted, f"'coupled' of '{person.tree.name}'")
-    return replace(person, coupled_joints=shared)
+            raise InputError(source.path, f"{key}.joint_ranges", wanted, found)
+    if ranges is JointRanges.COUPLED:
+        return replace(person, coupled_joints=shared)
+    moving = tuple(each for each in rhythms() if not set(each.joints).isdisjoint(person.joints))
+    for name in (name for each in moving for name in each.joints):
+        if name not in person.joints:
+            wanted = f"the spine's joints of one movement all among {key}.joints, such as '{name}'"
+            raise InputError(source.path, f"{key}.joint_ranges", wanted, found)
+    led = {name for each in moving for name in each.joints}
+    return replace(
+        person, rhythms=moving, coupled_joints=tuple(e for e in shared if led.isdisjoint(e.joints))
+    )
 
 
 def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:

@@ -123,10 +123,11 @@ class PopulationForm(Table, frozen=True):
 
 
 class JointRanges(StrEnum):
-    """Whether a person's joints share published ranges, or each has all of its own."""
+    """Whether each of a person's joints has all of its own range, they share ranges, or move together."""
 
     SEPARATE = "separate"
     COUPLED = "coupled"
+    RHYTHM = "rhythm"
 
 
 class HumanTable(Table, frozen=True):
@@ -134,8 +135,9 @@ class HumanTable(Table, frozen=True):
 
     `population` stands for several people. `strengths_n_m` gives the largest torques of joints in their
     negative and positive direction, for a URDF or instead of published ones. `joint_ranges` says whether the
-    joints of the spine share ranges; `shoulder_width` how far a generated person's shoulder joints are apart.
-    `gaze_cone_deg` is the largest angle of the load from where the head looks.
+    joints of the spine share ranges, or one flexion and one bending within them; `shoulder_width` how far a
+    generated person's shoulder joints are apart. `gaze_cone_deg` is the largest angle of the load from where
+    the head looks.
     """
 
     name: Name | None = None
