@@ -17,6 +17,7 @@ from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.collision.rules import CollisionRules
 from evodesign.human.coupled_joints import CoupledJoints, Rhythm
+from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.human.strength import JointStrength
 from evodesign.mechanics.contact import Ground, SoleSize
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
@@ -179,6 +180,7 @@ class Agent:
         limits_torques: whether these limits hold in every posture.
         collisions: what its bodies keep clear of; None: they may pass through anything.
         gaze: from where it looks at the load; None: it may look anywhere.
+        measured: what its posture is drawn to; None: torques alone decide.
     """
 
     name: str
@@ -196,6 +198,7 @@ class Agent:
     rhythms: tuple[Rhythm, ...] = ()
     collisions: CollisionRules | None = None
     gaze: Gaze | None = None
+    measured: MeasuredPosture | None = None
 
     @property
     def pushed_frame(self) -> str:

@@ -419,4 +419,5 @@ class _Posture:
             disturbance=disturbance,
             inertial=self.inertial,
             reflected=self.reflected,
+            moving=party.name in case.motions,
         )

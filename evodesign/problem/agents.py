@@ -14,8 +14,16 @@ import msgspec
 from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person, ShoulderWidth
+from evodesign.human.anthropometry_tables import tables
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
 from evodesign.human.coupled_joints import coupled_joints, rhythms
+from evodesign.human.measured_posture import (
+    NEEDED_JOINTS,
+    NEEDED_LINKS,
+    USUAL_POSTURE,
+    HumanPosture,
+    measured_posture,
+)
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
@@ -33,6 +41,7 @@ from evodesign.problem.file import (
 from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
+from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
@@ -44,8 +53,8 @@ __all__ = [
     "robot_agent",
 ]
 
-HEAD = "Head"
-"""A person's link that holds the eyes."""
+ROOT, HEAD = "Pelvis", "Head"
+"""A person's links: the root, and the one that holds the eyes."""
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
@@ -103,8 +112,43 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     rated = replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
     if table.gaze_cone_deg is not None:
         rated = replace(rated, gaze=_gaze(key, math.radians(table.gaze_cone_deg), rated, source))
-    ranges = table.joint_ranges
+    ranges = table.joint_ranges or JointRanges.SEPARATE
+    if _posture(table) is HumanPosture.MEASURED:
+        return _measured(key, table, _coupled(key, JointRanges.RHYTHM, rated, source), source)
     return rated if ranges is JointRanges.SEPARATE else _coupled(key, ranges, rated, source)
+
+
+def _posture(table: HumanTable) -> HumanPosture:
+    """What decides how a person stands."""
+    return table.posture or (USUAL_POSTURE if table.urdf is None else HumanPosture.LEAST_TORQUE)
+
+
+def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource) -> Agent:
+    """The person, drawn to measured postures, with a spine that bends as a whole.
+
+    Raises:
+        InputError: lumbar joints that are to bend separately, or a person from a URDF without the links and
+            joints that postures were measured of.
+    """
+    if table.joint_ranges is JointRanges.SEPARATE:
+        wanted = "'rhythm', which a measured posture has, or posture = \"least_torque\""
+        raise InputError(source.path, f"{key}.joint_ranges", wanted, "'separate'")
+    tree = person.tree
+    lacking = [f"root link '{ROOT}'"] * (tree.root != ROOT)
+    lacking += [f"link '{name}'" for name in NEEDED_LINKS if name not in tree.link_by_name]
+    lacking += [f"joint '{name}'" for name in NEEDED_JOINTS if name not in tree.joint_by_name]
+    if lacking:
+        wanted = f"'least_torque', or a person with the generated one's body, such as its {lacking[0]}"
+        raise InputError(source.path, f"{key}.posture", wanted, f"'measured' of '{tree.name}'")
+    return replace(person, measured=measured_posture(table.stature_m or _stature(person)))
+
+
+def _stature(person: Agent) -> float:
+    """Of a person from a URDF [m]: from the soles to the head's joint, over that share of stature."""
+    frames = link_frames(person.tree, Placement(), {})
+    soles, lengths = person.soles.values(), tables().lengths
+    height: float = frames[HEAD].translation[2] - min(frames[sole].translation[2] for sole in soles)
+    return height / (1.0 - lengths.head)
 
 
 def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
