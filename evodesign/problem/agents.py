@@ -14,16 +14,7 @@ import msgspec
 from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person, ShoulderWidth
-from evodesign.human.anthropometry_tables import tables
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
-from evodesign.human.coupled_joints import coupled_joints, rhythms
-from evodesign.human.measured_posture import (
-    NEEDED_JOINTS,
-    NEEDED_LINKS,
-    USUAL_POSTURE,
-    HumanPosture,
-    measured_posture,
-)
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
@@ -33,15 +24,14 @@ from evodesign.problem.file import (
     FrameTable,
     HandsTable,
     HumanTable,
-    JointRanges,
     ProblemFile,
     SolesTable,
     TorqueLimits,
 )
 from evodesign.problem.meshes import with_surfaces
+from evodesign.problem.person_posture import HEAD, with_posture
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
-from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
@@ -52,9 +42,6 @@ __all__ = [
     "refuse_unrated",
     "robot_agent",
 ]
-
-ROOT, HEAD = "Pelvis", "Head"
-"""A person's links: the root, and the one that holds the eyes."""
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
@@ -112,43 +99,7 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     rated = replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
     if table.gaze_cone_deg is not None:
         rated = replace(rated, gaze=_gaze(key, math.radians(table.gaze_cone_deg), rated, source))
-    ranges = table.joint_ranges or JointRanges.SEPARATE
-    if _posture(table) is HumanPosture.MEASURED:
-        return _measured(key, table, _coupled(key, JointRanges.RHYTHM, rated, source), source)
-    return rated if ranges is JointRanges.SEPARATE else _coupled(key, ranges, rated, source)
-
-
-def _posture(table: HumanTable) -> HumanPosture:
-    """What decides how a person stands."""
-    return table.posture or (USUAL_POSTURE if table.urdf is None else HumanPosture.LEAST_TORQUE)
-
-
-def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource) -> Agent:
-    """The person, drawn to measured postures, with a spine that bends as a whole.
-
-    Raises:
-        InputError: lumbar joints that are to bend separately, or a person from a URDF without the links and
-            joints that postures were measured of.
-    """
-    if table.joint_ranges is JointRanges.SEPARATE:
-        wanted = "'rhythm', which a measured posture has, or posture = \"least_torque\""
-        raise InputError(source.path, f"{key}.joint_ranges", wanted, "'separate'")
-    tree = person.tree
-    lacking = [f"root link '{ROOT}'"] * (tree.root != ROOT)
-    lacking += [f"link '{name}'" for name in NEEDED_LINKS if name not in tree.link_by_name]
-    lacking += [f"joint '{name}'" for name in NEEDED_JOINTS if name not in tree.joint_by_name]
-    if lacking:
-        wanted = f"'least_torque', or a person with the generated one's body, such as its {lacking[0]}"
-        raise InputError(source.path, f"{key}.posture", wanted, f"'measured' of '{tree.name}'")
-    return replace(person, measured=measured_posture(table.stature_m or _stature(person)))
-
-
-def _stature(person: Agent) -> float:
-    """Of a person from a URDF [m]: from the soles to the head's joint, over that share of stature."""
-    frames = link_frames(person.tree, Placement(), {})
-    soles, lengths = person.soles.values(), tables().lengths
-    height: float = frames[HEAD].translation[2] - min(frames[sole].translation[2] for sole in soles)
-    return height / (1.0 - lengths.head)
+    return with_posture(key, table, rated, source)
 
 
 def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
@@ -163,30 +114,6 @@ def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
         found = f"{math.degrees(cone):g} for '{person.tree.name}'"
         raise InputError(source.path, f"{key}.gaze_cone_deg", wanted, found)
     return Gaze(HEAD, head.inertia.center, cone)
-
-
-def _coupled(key: str, ranges: JointRanges, person: Agent, source: ProblemSource) -> Agent:
-    """The person with the published ranges that its joints share, or the movements that they make together.
-
-    Raises:
-        InputError: a person from a URDF lacks one of the joints, or some of a rhythm's are held.
-    """
-    shared, found = coupled_joints(), f"'{ranges}' of '{person.tree.name}'"
-    for name in (name for each in shared for name in each.joints):
-        if name not in person.tree.joint_by_name:
-            wanted = f"'separate', or a person with the generated one's spine, such as its joint '{name}'"
-            raise InputError(source.path, f"{key}.joint_ranges", wanted, found)
-    if ranges is JointRanges.COUPLED:
-        return replace(person, coupled_joints=shared)
-    moving = tuple(each for each in rhythms() if not set(each.joints).isdisjoint(person.joints))
-    for name in (name for each in moving for name in each.joints):
-        if name not in person.joints:
-            wanted = f"the spine's joints of one movement all among {key}.joints, such as '{name}'"
-            raise InputError(source.path, f"{key}.joint_ranges", wanted, found)
-    led = {name for each in moving for name in each.joints}
-    return replace(
-        person, rhythms=moving, coupled_joints=tuple(e for e in shared if led.isdisjoint(e.joints))
-    )
 
 
 def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
