@@ -16,7 +16,8 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
 from evodesign.collision.rules import CollisionRules
-from evodesign.human.coupled_joints import CoupledJoints
+from evodesign.human.coupled_joints import CoupledJoints, Rhythm
+from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.human.strength import JointStrength
 from evodesign.mechanics.contact import Ground, SoleSize
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
@@ -174,11 +175,13 @@ class Agent:
         label: who it is where a problem has several people.
         strengths: of its joints, by name; none for a robot.
         coupled_joints: ranges that several of its joints share.
+        rhythms: movements that several of its joints make together; each joint has a part in one at most.
         torque_limits: largest torque [N m] of each joint that moves and has a limit.
         limits_torques: whether these limits hold in every posture.
         collisions: what its bodies keep clear of; None: they may pass through anything.
         gaze: from where it looks at the load; None: it may look anywhere.
         bent_ranges: of joints that stay bent in postures, within their limits [rad], by name.
+        measured: what its posture is drawn to; None: torques alone decide.
     """
 
     name: str
@@ -193,9 +196,11 @@ class Agent:
     torque_limits: Mapping[str, float] = field(default_factory=dict)
     limits_torques: bool = False
     coupled_joints: tuple[CoupledJoints, ...] = ()
+    rhythms: tuple[Rhythm, ...] = ()
     collisions: CollisionRules | None = None
     gaze: Gaze | None = None
     bent_ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    measured: MeasuredPosture | None = None
 
     @property
     def pushed_frame(self) -> str:

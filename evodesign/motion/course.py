@@ -70,7 +70,7 @@ class LiftCourse:
             parts, rates = {**postures[name], **carriage[name]}, image @ self.coefficients[name]["joints"]
             for number, each in enumerate(found):
                 posture = form.expand({part: values[number] for part, values in parts.items()})
-                each[name] = replace(posture, speeds=form.whole_joints(rates[number]))
+                each[name] = replace(posture, speeds=form.whole_joints(form.positions(rates[number])))
         return found
 
     def postures(self, times: Sequence[float] | Array) -> dict[str, dict[str, Array]]:
@@ -110,7 +110,7 @@ class LiftCourse:
         for order in (1, 2):
             image = self._image(times, order) / step**order
             base = np.hstack([image @ own["base_position"], image @ own["base_angles"]])
-            joints = [list(form.whole_joints(row).values()) for row in image @ own["joints"]]
+            joints = [list(form.whole_joints(form.positions(row)).values()) for row in image @ own["joints"]]
             orders.append(np.hstack([base, np.array(joints)]))
         return [AgentMotion(rates, changes) for rates, changes in zip(*orders, strict=True)]
 

@@ -386,7 +386,7 @@ class KnotBlocks:
     def _speeds(self, body: Body) -> Expression:
         """Shares of the joints' largest speeds."""
         fastest = fastest_joints(body.form, body.part)
-        rates = self._rates[body.agent.name]["joints"]
+        rates = body.form.positions(self._rates[body.agent.name]["joints"])
         return ca.vertcat(*[rates[place] / fastest[name] for place, name in enumerate(body.form.joints)])
 
     def _soles(self, body: Body) -> Iterator[Expression]:
@@ -404,10 +404,10 @@ class KnotBlocks:
             yield ca.inv_skew(turn - turn.T) / 2.0 - self.symbols.grips[key]
 
     def _smoothness(self, form: Form) -> Expression:
-        changes = self._changes[form.agent.name]["joints"] / SPEEDING_UP
+        changes = form.positions(self._changes[form.agent.name]["joints"]) / SPEEDING_UP
         return SMOOTHING * ca.dot(ca.DM(list(form.counts)), changes**2)
 
 
 def _derivatives(form: Form, word: str) -> dict[str, Expression]:
-    counts = dict(zip(MOVING_PARTS, (3, 3, len(form.joints)), strict=True))
+    counts = dict(zip(MOVING_PARTS, (3, 3, len(form.coordinates)), strict=True))
     return {part: ca.SX.sym(f"{form.agent.name}.{part}_{word}", count) for part, count in counts.items()}

@@ -58,7 +58,10 @@ __all__ = [
 
 EVERYTHING = Enforced()
 
-MOVING_PARTS = ("base_position", "base_angles", "joints")
+JOINTS = "joints"
+"""The part whose variables are coordinates (`posture.symmetry`), from which joint positions follow."""
+
+MOVING_PARTS = ("base_position", "base_angles", JOINTS)
 """The parts of a posture that move in a motion."""
 
 
@@ -106,7 +109,7 @@ class PostureMotion:
     """How an agent moves: time derivatives of the parts of its posture; numbers or expressions.
 
     Args:
-        rates: of `base_position`, `base_angles` and `joints` [m/s, rad/s].
+        rates: of `base_position`, `base_angles` and the coordinates of `joints` [m/s, rad/s].
         changes: of these rates [m/s^2, rad/s^2].
     """
 
@@ -315,7 +318,10 @@ class _Assembler:
             unknown for term in self._body_terms for unknown in term.unknowns(party.form, self._case.scene)
         ]
         wanted = [unknown for unknown in asked if not (again and unknown.posture_only)]
-        return {unknown.part: self._variable(unknown, f"{prefix}{party.name}", slot) for unknown in wanted}
+        made = {unknown.part: self._variable(unknown, f"{prefix}{party.name}", slot) for unknown in wanted}
+        if JOINTS in made:
+            made[JOINTS] = party.form.positions(made[JOINTS])
+        return made
 
     def _held_values(self, party: Embodied, block: str) -> dict[str, Expression]:
         """New parameters of an agent's posture, by part."""
@@ -373,14 +379,14 @@ class _Posture:
     @classmethod
     def of(cls, party: Embodied, values: Mapping[str, Expression], motion: PostureMotion | None) -> _Posture:
         part, doubled = party.form.part(party.tree)
-        positions = {name: values["joints"][i] for i, name in enumerate(party.form.joints)}
+        positions = {name: values[JOINTS][i] for i, name in enumerate(party.form.joints)}
         base = Pose(euler_rotation(values["base_angles"]), values["base_position"])
         poses = forward(part, base, positions)
         if motion is None:
             return cls(values, part, doubled, poses)
         rates, changes = (
-            {name: found["joints"][i] for i, name in enumerate(party.form.joints)}
-            for found in (motion.rates, motion.changes)
+            {name: found[i] for i, name in enumerate(party.form.joints)}
+            for found in (party.form.positions(each[JOINTS]) for each in (motion.rates, motion.changes))
         )
         root = euler_motion(
             values["base_angles"],
@@ -413,4 +419,5 @@ class _Posture:
             disturbance=disturbance,
             inertial=self.inertial,
             reflected=self.reflected,
+            moving=party.name in case.motions,
         )

@@ -3,17 +3,23 @@
 In a symmetric posture the right side is the left one's mirror image, the base does not leave the plane
 y = 0, and rolls and yaws of the middle line are zero. The half has half the variables, its effort counts
 every paired torque twice, and it has fewer local minima; `expand` gives the whole posture back.
+
+Joints that a rhythm moves together (`human.coupled_joints`) have one variable, a coordinate: with s_i their
+shares, q_i = s_i Q. All other joints are coordinates themselves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
+from evodesign.human.coupled_joints import Rhythm
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.posture.results import AgentPosture, Array
@@ -36,7 +42,7 @@ class Form:
 
     Args:
         agent: all of it.
-        joints: the agent's joints that are variables.
+        joints: the agent's joints that move.
         sides: whose hands and feet are variables.
         mirror: of the agent's tree; None when everything is described.
     """
@@ -52,6 +58,35 @@ class Form:
         if self.mirror is None:
             return (1.0,) * len(self.joints)
         return tuple(1.0 if self.mirror.joints[name] == name else 2.0 for name in self.joints)
+
+    @property
+    def rhythms(self) -> tuple[Rhythm, ...]:
+        """Movements that joints of the form make together."""
+        return tuple(each for each in self.agent.rhythms if set(each.joints) <= set(self.joints))
+
+    @property
+    def coordinates(self) -> dict[str, Mapping[str, float]]:
+        """What joints follow from, by name, with the joints' shares; a rhythm has its first joint's place."""
+        led = {name: each for each in self.rhythms for name in each.joints}
+        names = dict.fromkeys(led[name].name if name in led else name for name in self.joints)
+        shares = {each.name: dict(zip(each.joints, each.shares, strict=True)) for each in self.rhythms}
+        return {name: shares.get(name, {name: 1.0}) for name in names}
+
+    @property
+    def _image(self) -> Array:
+        """Joint positions from coordinates, shape (joints, coordinates)."""
+        columns = self.coordinates.values()
+        return np.array([[column.get(name, 0.0) for column in columns] for name in self.joints])
+
+    def positions(self, coordinates: Any) -> Any:
+        """Positions of the form's joints from coordinates; of a column of numbers or expressions.
+
+        Speeds and accelerations follow from those of coordinates in the same way.
+        """
+        if not self.rhythms:
+            return coordinates
+        image = self._image
+        return image @ coordinates if isinstance(coordinates, np.ndarray) else ca.DM(image) @ coordinates
 
     def words_of(self, joint: str) -> str:
         """A variable joint in words, with its twin where it stands for a pair."""
@@ -81,7 +116,7 @@ class Form:
         return AgentPosture(
             base_position=values["base_position"],
             base_angles=values["base_angles"],
-            joints=self.whole_joints(values["joints"]),
+            joints=self.whole_joints(self.positions(values["joints"])),
             torques=self.whole_joints(values["torques"]),
             hand_wrenches=hands,
             foot_wrenches=feet,
@@ -108,15 +143,23 @@ class Form:
         return found + [0.0 if twin == name else sign * by_joint.get(twin, 0.0) for name, (twin, sign) in own]
 
     def parts(self, posture: AgentPosture) -> dict[str, Array]:
-        """What `expand` takes, from a posture of the whole agent; hands pass six numbers."""
+        """What `expand` takes, from a posture of the whole agent; hands pass six numbers.
+
+        A rhythm moves by the sum of its joints.
+        """
         return {
             "base_position": posture.base_position,
             "base_angles": posture.base_angles,
-            "joints": np.array([posture.joints[name] for name in self.joints]),
+            "joints": np.array([_moved(posture, joints) for joints in self.coordinates.values()]),
             "torques": np.array([posture.torques[name] for name in self.joints]),
             **{f"{side}_hand": posture.hand_wrenches[side] for side in self.sides},
             **{f"{side}_foot": posture.foot_wrenches[side] for side in self.sides},
         }
+
+
+def _moved(posture: AgentPosture, joints: Iterable[str]) -> float:
+    """By how much joints have moved together; the sign of a zero stays."""
+    return sum((posture.joints[name] for name in joints), start=-0.0)
 
 
 def _both_sides(known: Mapping[str, float], agent: Agent, mirror: Mirror) -> dict[str, float]:

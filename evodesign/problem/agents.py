@@ -15,7 +15,6 @@ from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person, ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
-from evodesign.human.coupled_joints import coupled_joints
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
@@ -25,7 +24,6 @@ from evodesign.problem.file import (
     FrameTable,
     HandsTable,
     HumanTable,
-    JointRanges,
     ProblemFile,
     RobotTable,
     SolesTable,
@@ -33,6 +31,7 @@ from evodesign.problem.file import (
 )
 from evodesign.problem.flexion import bent_ranges
 from evodesign.problem.meshes import with_surfaces
+from evodesign.problem.person_posture import HEAD, with_posture
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree
@@ -45,9 +44,6 @@ __all__ = [
     "refuse_unrated",
     "robot_agent",
 ]
-
-HEAD = "Head"
-"""A person's link that holds the eyes."""
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
@@ -119,7 +115,7 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     rated = replace(person, strengths=with_given(person.strengths, table.strengths_n_m))
     if table.gaze_cone_deg is not None:
         rated = replace(rated, gaze=_gaze(key, math.radians(table.gaze_cone_deg), rated, source))
-    return rated if table.joint_ranges is JointRanges.SEPARATE else _coupled(key, rated, source)
+    return with_posture(key, table, rated, source)
 
 
 def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
@@ -134,20 +130,6 @@ def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
         found = f"{math.degrees(cone):g} for '{person.tree.name}'"
         raise InputError(source.path, f"{key}.gaze_cone_deg", wanted, found)
     return Gaze(HEAD, head.inertia.center, cone)
-
-
-def _coupled(key: str, person: Agent, source: ProblemSource) -> Agent:
-    """The person with the published ranges that its joints share.
-
-    Raises:
-        InputError: a person from a URDF lacks one of the joints.
-    """
-    shared = coupled_joints()
-    for name in (name for each in shared for name in each.joints):
-        if name not in person.tree.joint_by_name:
-            wanted = f"'separate', or a person with the generated one's spine, such as its joint '{name}'"
-            raise InputError(source.path, f"{key}.joint_ranges", wanted, f"'coupled' of '{person.tree.name}'")
-    return replace(person, coupled_joints=shared)
 
 
 def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:

@@ -15,6 +15,7 @@ from msgspec import Meta
 from evodesign.body.placement import Matrix, Vector
 from evodesign.hardware.actuators import CatalogueRow
 from evodesign.human.anthropometry import Sex, ShoulderWidth
+from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
 from evodesign.mechanics.scene import Grasp, GraspDirection
@@ -127,19 +128,22 @@ class PopulationForm(Table, frozen=True):
 
 
 class JointRanges(StrEnum):
-    """Whether a person's joints share published ranges, or each has all of its own."""
+    """Whether each of a person's joints has all of its own range, they share ranges, or move together."""
 
     SEPARATE = "separate"
     COUPLED = "coupled"
+    RHYTHM = "rhythm"
 
 
 class HumanTable(Table, frozen=True):
     """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts.
 
     `population` stands for several people. `strengths_n_m` gives the largest torques of joints in their
-    negative and positive direction, for a URDF or instead of published ones. `joint_ranges` says whether the
-    joints of the spine share ranges; `shoulder_width` how far a generated person's shoulder joints are apart.
-    `gaze_cone_deg` is the largest angle of the load from where the head looks.
+    negative and positive direction, for a URDF or instead of published ones. `posture` says
+    whether measured postures draw the person, `joint_ranges` whether the
+    joints of the spine share ranges, or one flexion and one bending within them; `shoulder_width` how far a
+    generated person's shoulder joints are apart. `gaze_cone_deg` is the largest angle of the load from where
+    the head looks.
     """
 
     name: Name | None = None
@@ -154,7 +158,8 @@ class HumanTable(Table, frozen=True):
     trunk: tuple[Name, ...] = ()
     joints: tuple[Name, ...] = ()
     strengths_n_m: dict[str, tuple[Positive, Positive]] = msgspec.field(default_factory=dict)
-    joint_ranges: JointRanges = JointRanges.SEPARATE
+    posture: HumanPosture | None = None
+    joint_ranges: JointRanges | None = None
     shoulder_width: ShoulderWidth | None = None
     gaze_cone_deg: Annotated[float, Meta(gt=0.0, lt=180.0)] | None = None
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import msgspec
 
+from evodesign.human.measured_posture import USUAL_POSTURE, HumanPosture
 from evodesign.mechanics.scene import WRIST_MOMENT
 from evodesign.records import ProblemSource
 
@@ -29,7 +30,14 @@ class _Person(msgspec.Struct, frozen=True):
     """What a person's spine does, as in `HumanTable`; of a URDF's nothing is known."""
 
     urdf: str | None = None
-    joint_ranges: str = "separate"
+    joint_ranges: str | None = None
+    posture: str = USUAL_POSTURE
+
+    @property
+    def zigzags(self) -> bool:
+        """Whether its lumbar joints may bend against each other, and farther than backs do."""
+        coupled = self.joint_ranges not in (None, "separate")
+        return self.urdf is None and not coupled and self.posture != HumanPosture.MEASURED
 
 
 class _Sketch(msgspec.Struct, frozen=True):
@@ -66,7 +74,7 @@ def _sentences(problem: _Sketch) -> Iterator[str]:
     if math.inf in moments:
         yield "hand_moment_n_m = inf: hands twist the load with any moment, more than wrists bear"
     people = problem.human if isinstance(problem.human, tuple) else (problem.human,)
-    if any(person.urdf is None and person.joint_ranges == "separate" for person in people):
+    if any(person.zigzags for person in people):
         yield (
             'joint_ranges = "separate": every joint of a spine has all of its own range, and bends further '
             "than backs do"

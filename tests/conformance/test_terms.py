@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from evodesign.human.coupled_joints import coupled_joints
+from evodesign.human.measured_posture import measured_posture
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, Gaze, Grasp, GraspDirection, Scene
 from evodesign.nlp.program import Program
@@ -56,6 +57,7 @@ def scene_of(problem: DesignProblem) -> Scene:
     payload = replace(payload, grasp_direction=GraspDirection.SIDE)
     gaze = Gaze("Head", (0.02, 0.0, 0.12), 0.6)
     human = replace(problem.scene.human, coupled_joints=coupled_joints(), gaze=gaze)
+    human = replace(human, measured=measured_posture(1.82))
     stance = replace(problem.scene.stance, feet_gap=0.005)
     return replace(problem.scene, human=human, payload=payload, stance=stance, disturbances=DISTURBED)
 

@@ -10,7 +10,7 @@ import pytest
 
 from evodesign.human.anthropometry import ShoulderWidth, landmarks
 from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
-from evodesign.human.coupled_joints import coupled_joints, shared_ranges
+from evodesign.human.coupled_joints import coupled_joints, rhythms, shared_ranges
 
 SCALE = 0.5
 """One over the stature [m] of a person whose lengths are printed as fractions of it."""
@@ -37,11 +37,43 @@ def test_a_range_is_a_mean_widened_by_one_standard_deviation() -> None:
 
 def test_sources_print_the_figures_that_ranges_are_made_of() -> None:
     ranges = shared_ranges()
-    assert {each.source for each in ranges.ranges} == set(ranges.sources)
+    assert {each.source for each in (*ranges.ranges, *ranges.rhythms)} == set(ranges.sources)
     for each in ranges.ranges:
         printed = re.findall(r"\d+(?:\.\d+)?", ranges.sources[each.source])
         for figure in (part for pair in MEASURED[each.name] for part in pair if part):
             assert {f"{figure:g}", f"{figure:.1f}"} & set(printed), (each.name, figure)
+
+
+LEVELS = {
+    "lumbar_flexion": (0.125, 0.185, 0.204, 0.231, 0.255),
+    "lumbar_bending": (0.1356, 0.1812, 0.2452, 0.25, 0.188),
+}
+"""Shares of L5/S1, L4/L5, L3/L4, L2/L3 and L1/L2, as the authors' model has them."""
+
+
+def test_shares_are_those_of_the_levels_that_a_joint_stands_for() -> None:
+    """Each level goes to the joint of ours at its place; one between two of ours half to each."""
+    printed = re.findall(r"0\.\d+", shared_ranges().sources["christophy_2012"])
+    for each in rhythms():
+        l5s1, l4l5, l3l4, l2l3, l1l2 = LEVELS[each.name]
+        assert {f"{level:g}" for level in LEVELS[each.name]} <= set(printed)
+        expected = (l5s1 + l4l5 / 2.0, l4l5 / 2.0 + l3l4 + l2l3 / 2.0, l2l3 / 2.0 + l1l2)
+        assert each.shares == pytest.approx(expected, abs=1e-12)
+        assert sum(each.shares) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_rhythm_ends_where_the_first_shared_range_of_its_joints_ends() -> None:
+    """Bisected: as far as the movement goes with every shared range kept, and no farther."""
+    for each in rhythms():
+
+        def kept(movement: float, shares: dict[str, float]) -> bool:
+            sums = [(r, sum(shares.get(n, 0.0) for n in r.joints) * movement) for r in coupled_joints()]
+            return all(r.lower <= total <= r.upper for r, total in sums)
+
+        shares = dict(zip(each.joints, each.shares, strict=True))
+        for end in (each.lower, each.upper):
+            assert kept(end * (1.0 - 1e-9), shares)
+            assert not kept(end * (1.0 + 1e-6), shares)
 
 
 def test_shared_ranges_are_of_moving_joints_about_one_axis_and_hold_less_than_their_sums() -> None:
@@ -58,6 +90,9 @@ def test_the_page_of_the_person_prints_the_ranges_and_the_widths_that_are_used(r
     for each in shared_ranges().ranges:
         lower, upper = (f"{limit:.1f}" for limit in each.range_deg)
         assert f"| {each.name} | {' + '.join(each.joints)} | {lower} | {upper} | {each.source} |" in lines
+    for each in rhythms():
+        shares = " | ".join(f"{share:.4f}" for share in each.shares)
+        assert f"| {each.name} | {shares} | christophy_2012 |" in lines
     for width in ShoulderWidth:
         points = landmarks(Person(1.0 / SCALE, 70.0, Sex.MALE, width))
         joints, span = (2.0 * SCALE * points[name][1] for name in ("LeftUpperArm", "LeftFingertip"))

@@ -10,8 +10,8 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
-from evodesign.human.body import human_tree
-from evodesign.human.coupled_joints import coupled_joints
+from evodesign.human.body import DEFAULT_JOINTS, human_tree
+from evodesign.human.coupled_joints import coupled_joints, rhythms
 from evodesign.mechanics.scene import Grasp, GraspDirection
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.codesign import JointProblem
@@ -84,6 +84,19 @@ def test_a_person_whose_joints_share_ranges(problem: DesignProblem) -> None:
     assert built.scene.human.coupled_joints == coupled_joints()
     assert built.scene.human.tree == problem.scene.human.tree
     assert built.scene.robot.coupled_joints == ()
+
+
+def test_a_person_whose_spine_has_a_rhythm(problem: DesignProblem) -> None:
+    built = build_problem(with_lines(problem, PERSON, 'joint_ranges = "rhythm"'))
+    assert built.scene.human.rhythms == rhythms()
+    assert [each.name for each in built.scene.human.coupled_joints] == ["thoracic_flexion"]
+    assert built.scene.robot.rhythms == ()
+    held = [name for name in DEFAULT_JOINTS if name != "jL4L3_roty"]
+    lines = ('joint_ranges = "rhythm"', f"joints = {held}".replace("'", '"'))
+    assert refused(with_lines(problem, PERSON, *lines)) == (
+        "p.toml: human.joint_ranges: wanted the spine's joints of one movement all among human.joints, such "
+        "as 'jL4L3_roty', found 'rhythm' of 'human'"
+    )
 
 
 def test_a_person_from_a_urdf_shares_ranges_where_the_spine_has_the_joints(problem: DesignProblem) -> None:

@@ -40,7 +40,7 @@ from evodesign.posture.parting import parted
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
-from evodesign.posture.terms.floating_base import joint_ranges
+from evodesign.posture.terms.floating_base import coordinate_ranges
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.terms.torque import effort
@@ -216,7 +216,7 @@ def drawn_postures(program: Program, forms: Sequence[Form], genome: Genome) -> S
 
 def _middles(program: Program, forms: Sequence[Form]) -> dict[str, np.ndarray]:
     """The middle of every joint's range, by variable name, in the program's order."""
-    middles = {form.agent.name: np.mean(joint_ranges(form), axis=1) for form in forms}
+    middles = {form.agent.name: np.mean(coordinate_ranges(form), axis=1) for form in forms}
     return {name: middles[slot.party] for slot, name in layout_of(program).items() if slot.part == "joints"}
 
 

@@ -36,6 +36,7 @@ from evodesign.posture.check import Checker
 from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import WorstCase, aggregated
+from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
@@ -85,6 +86,7 @@ class JointPostures:
     ) -> None:
         self.name, self._others = name, others
         self._forms, self._setting, self._solvers, self._kind = forms, setting, solvers, kind
+        self._fixed_of: dict[Task, tuple[Start, ...]] = {}
 
     @cached_property
     def _solver(self) -> Solver:
@@ -108,9 +110,21 @@ class JointPostures:
     def _worst(self) -> WorstCase:
         return WorstCase(self._solver.program)
 
-    @cached_property
-    def _fixed(self) -> tuple[Start, ...]:
-        starts = fixed_starts(self._solver.program)
+    def _fixed(self, task: Task) -> tuple[Start, ...]:
+        """Starts that know nothing better."""
+        if task not in self._fixed_of:
+            self._fixed_of[task] = self._fixed_starts(task)
+        return self._fixed_of[task]
+
+    def _fixed_starts(self, task: Task) -> tuple[Start, ...]:
+        """With a person who is drawn to measured postures at their mean, and at two others."""
+        program = self._solver.program
+        starts = fixed_starts(program)
+        people = measured_starts(program, self._forms[1], self._setting.scene, task.heights)
+        if people:
+            mean, *others = people
+            robots = (*((start, mean) for start in starts), *((starts[0], person) for person in others))
+            starts = tuple({**robot, **person} for robot, person in robots)
         return starts[:1] if self._setting.options.seldom else starts  # docs/benchmarks.md
 
     @cached_property
@@ -134,7 +148,7 @@ class JointPostures:
 
     def landscape(self, task: Task) -> Landscape:
         """The program's cost for a task."""
-        return Landscape(self._solver, self._beside(task), self._fixed, *NEAR, begun=self._begun)
+        return Landscape(self._solver, self._beside(task), self._fixed(task), *NEAR, begun=self._begun)
 
     @cached_property
     def person(self) -> frozenset[str]:
@@ -152,13 +166,13 @@ class JointPostures:
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
         """What the portfolio leads to, or the fixed starts if none of it fits."""
-        starts = named_starts(self._solver, portfolio, self._fixed)
+        starts = named_starts(self._solver, portfolio, self._fixed(task))
         return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
     def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
         """What the first start leads to without disturbances and with no rows on that part bodies."""
         simple = self._undisturbed or self
-        name, start = named_starts(simple._solver, portfolio, simple._fixed)[0]
+        name, start = named_starts(simple._solver, portfolio, simple._fixed(task))[0]
         switches = simple._solver.program.switches
         if switches is not None:
             start = {key: value for key, value in start.items() if key not in switches.names}
@@ -178,7 +192,7 @@ class JointPostures:
     ) -> Trial:
         """What the solution in a similar scene leads to, and the portfolio."""
         known = self._start(neighbour.solution.instants)
-        others = named_starts(self._solver, portfolio, self._fixed)
+        others = named_starts(self._solver, portfolio, self._fixed(task))
         return self._trial(design, task, [("neighbour", known), *others], checker)
 
     def followed(

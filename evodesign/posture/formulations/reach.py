@@ -337,9 +337,9 @@ def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> Pe
 
     A person does not depend on the robot, so this is found once per person and load, as the best of many
     starts. Together with a robot's reach it gives the heights at which robot and everyone can hold the load.
-    A person's own bodies may pass through each other here.
+    A person's own bodies may pass through each other here, and no measured posture draws the person.
     """
-    scene = replace(scene, human=replace(scene.human, collisions=None))
+    scene = replace(scene, human=replace(scene.human, collisions=None, measured=None))
     form = symmetric_forms(scene)[1] if symmetric else whole(scene.human)
     solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}

@@ -230,6 +230,7 @@ class Body:
         disturbance: of the load case; one of nothing where it is undisturbed.
         inertial: what the links' inertia does to an agent that moves.
         reflected: torque [N m] that turning the rotor of a joint's actuator takes, by joint.
+        moving: whether the agent moves with the load, as in a lift.
     """
 
     form: Form
@@ -242,6 +243,7 @@ class Body:
     disturbance: Disturbance = UNDISTURBED
     inertial: Sequence[AppliedWrench] = ()
     reflected: Mapping[str, Expression] = field(default_factory=dict)
+    moving: bool = False
 
     @property
     def agent(self) -> Agent:

@@ -1,9 +1,10 @@
-"""Coupled joints: some of a person's joints share a range, as the spine does.
+"""Coupled joints: some of a person's joints share a range or a movement, as the spine does.
 
-    lower <= sum of positions <= upper
+    lower <= sum of positions <= upper        q_i = s_i sum of positions
 
 A person who asks for nothing of the kind (`[human] joint_ranges`) has no such rows. In a symmetric half,
-joints that stand at zero are left out of their sums.
+joints that stand at zero are left out of their sums. Of joints that move together (a rhythm) the sum is the
+variable (`posture.symmetry`), so that there is nothing to say of them in a program; the check compares.
 
 Source: `human.coupled_joints`.
 """
@@ -36,7 +37,7 @@ def rows(body: Body) -> Iterator[Row]:
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
-    """By how much the worst shared range is exceeded."""
+    """By how much the worst shared range is exceeded, and the worst joint differs from its share."""
     beyond = [0.0]
     for each in body.agent.coupled_joints:
         together = sum(body.posture.joints.get(name, 0.0) for name in each.joints)
@@ -44,6 +45,17 @@ def residuals(body: MeasuredBody) -> Iterator[Residual]:
     if body.agent.coupled_joints:
         group, words = LimitGroup.JOINT_LIMITS, "the range that joints share"
         yield Residual("coupled_joints", max(beyond), "rad", words, group, posture_only=True)
+    if body.agent.rhythms:
+        words = "the shares of joints that move together"
+        yield Residual("rhythm", max(_off_rhythm(body)), "rad", words, posture_only=True)
+
+
+def _off_rhythm(body: MeasuredBody) -> Iterator[float]:
+    """How far each joint that moves with others is from its share [rad]."""
+    for each in body.agent.rhythms:
+        positions = [body.posture.joints[name] for name in each.joints]
+        for share, position in zip(each.shares, positions, strict=True):
+            yield abs(position - share * sum(positions))
 
 
 COUPLED_JOINTS = BodyTerm("coupled_joints", rows=rows, residuals=residuals)

@@ -18,14 +18,14 @@ from evodesign.posture.terms.base import BodyTerm, Bound, MeasuredBody, Residual
 from evodesign.tree.kinematics import Pose, forward
 from evodesign.tree.model import Joint, JointKind
 
-__all__ = ["FLOATING_BASE", "joint_ranges"]
+__all__ = ["FLOATING_BASE", "coordinate_ranges", "joint_ranges"]
 
 
 def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
-    """Position [m] and angles [rad] of the base, and the joints [rad]."""
+    """Position [m] and angles [rad] of the base, and the coordinates of the joints [rad]."""
     tilt = scene.stance.base_tilt
     sideways, turn = (0.0, 0.0) if form.mirror else (0.5, tilt)  # none in a symmetric posture
-    lower, upper = zip(*joint_ranges(form), strict=True)
+    lower, upper = zip(*coordinate_ranges(form), strict=True)
     yield Unknown(
         "base_position",
         [-3.0, -sideways, 0.0],
@@ -51,7 +51,7 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
         np.clip(0.0, lower, upper).tolist(),
         group=LimitGroup.JOINT_LIMITS,
         posture_only=True,
-        labels=form.joints,
+        labels=tuple(form.coordinates),
         drawn=True,
         least=tuple(_range_bounds(form, lower, at_most=False)),
         most=tuple(_range_bounds(form, upper, at_most=True)),
@@ -59,17 +59,33 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
 
 
 def _range_bounds(form: Form, ends: Sequence[float], *, at_most: bool) -> Iterator[Bound]:
-    """One end of every joint's range; of a half, it is that of the pair."""
-    for name, end in zip(form.joints, ends, strict=True):
-        unit = "m" if form.agent.tree.joint_by_name[name].kind is JointKind.PRISMATIC else "rad"
-        known = "flexion" if name in form.agent.bent_ranges else "joint range"
-        yield Bound(known, end, unit, at_most, part=form.words_of(name))
+    """One end of every coordinate's range; of a half, it is that of the pair."""
+    joints, bent = form.agent.tree.joint_by_name, form.agent.bent_ranges
+    for name, end in zip(form.coordinates, ends, strict=True):
+        if name in joints:
+            unit = "m" if joints[name].kind is JointKind.PRISMATIC else "rad"
+            known = "flexion" if name in bent else "joint range"
+            yield Bound(known, end, unit, at_most, part=form.words_of(name))
+        else:
+            yield Bound("range that joints share", end, "rad", at_most, part=name)
 
 
 def joint_ranges(form: Form) -> list[tuple[float, float]]:
     """Limits of each of the form's joints [rad], of those that turn further those of one turn about zero."""
     bent, known = form.agent.bent_ranges, form.agent.tree.joint_by_name
     return [bent.get(name) or _one_turn(known[name]) for name in form.joints]
+
+
+def coordinate_ranges(form: Form) -> list[tuple[float, float]]:
+    """Limits of each of the form's coordinates [rad]: a rhythm's, within those of its joints."""
+    joints = dict(zip(form.joints, joint_ranges(form), strict=True))
+    own = {each.name: (each.lower, each.upper) for each in form.rhythms}
+    found = []
+    for name, shares in form.coordinates.items():
+        ends = [(joints[joint][0] / share, joints[joint][1] / share) for joint, share in shares.items()]
+        lower, upper = zip(*ends, own.get(name, ends[0]), strict=True)
+        found.append((max(lower), min(upper)))
+    return found
 
 
 TURN = 2.0 * math.pi

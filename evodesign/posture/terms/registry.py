@@ -14,6 +14,7 @@ from evodesign.posture.terms.gaze import GAZE
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.grip import GRIP
 from evodesign.posture.terms.load import LOAD
+from evodesign.posture.terms.measured_posture import MEASURED_POSTURE
 from evodesign.posture.terms.regularisation import POSTURE_REGULARISATION, WRENCH_REGULARISATION
 from evodesign.posture.terms.stance import STANCE
 from evodesign.posture.terms.torque import TORQUE
@@ -36,4 +37,5 @@ TERMS: Mapping[str, BodyTerm | SystemTerm] = {
     "coupled_joints": COUPLED_JOINTS,
     "grip": GRIP,
     "gaze": GAZE,
+    "measured_posture": MEASURED_POSTURE,
 }
