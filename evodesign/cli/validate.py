@@ -104,4 +104,8 @@ def _person(stature: float | None, mass: float | None, sex: str | None) -> Perso
         raise InputError(missing, "", "this option beside FILE", "nothing")
     if sex not in [*Sex]:
         raise InputError("--sex", "", " or ".join(Sex), f"'{sex}'")
-    return Person(stature, mass, Sex(sex), ShoulderWidth.JOINT_CENTRES)
+    try:
+        return Person(stature, mass, Sex(sex), ShoulderWidth.JOINT_CENTRES)
+    except InputError as error:
+        option = {"stature_m": "--stature", "mass_kg": "--mass"}[error.key]
+        raise InputError(option, "", error.wanted, error.found) from error

@@ -58,14 +58,13 @@ LINK_OF: Mapping[str, str] = {
     "hip": "LeftUpperLeg",
     "l5s1": "L5",
     "t12": "T12",
-    "c7": "Neck",
     "shoulder": "LeftUpperArm",
     "elbow": "LeftForeArm",
     "wrist": "LeftHand",
 }
 """Links whose origins are the joints that a recording may place."""
 
-CHAIN = ("ankle", "knee", "hip", "l5s1", "t12", "c7"), ("shoulder", "elbow", "wrist")
+CHAIN = ("ankle", "knee", "hip", "l5s1", "t12", "shoulder", "elbow", "wrist")
 """Joints that a stick figure connects."""
 
 BEND = {

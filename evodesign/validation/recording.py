@@ -89,7 +89,9 @@ def _check_columns(header: Sequence[str], source: str) -> None:
         needed += PLATE
     if set(PLATE) & set(header):
         needed += [*PLATE, *(f"{name}_{axis}_m" for name in OF_LEGS for axis in "xz")]
-    needed += [name[:-4] + pair for name in header for pair in ("_x_m", "_z_m") if name[:-4] in LINK_OF]
+    needed += [
+        f"{name}_{axis}_m" for name in LINK_OF for axis in "xz" if {f"{name}_x_m", f"{name}_z_m"} & {*header}
+    ]
     for name in needed:
         if name not in header:
             beside = f" (or '{HANDS}')" if name == PLATE[0] and HANDS not in header else ""

@@ -65,12 +65,9 @@ def _sticks(panel: Axes, each: Compared) -> None:
 
 
 def _stick(panel: Axes, places: Places, color: str, off: float) -> None:
-    body, arm = (
-        [(places[name][0] + off, places[name][1]) for name in chain if name in places] for chain in CHAIN
-    )
-    for points in (body, [body[-1], *arm]):
-        panel.plot(*zip(*points, strict=True), color=color, linewidth=1.3, alpha=0.8, solid_joinstyle="round")
-    panel.plot(*arm[-1], marker="s", color=color, markersize=3.5, alpha=0.8)
+    points = [(places[name][0] + off, places[name][1]) for name in CHAIN if name in places]
+    panel.plot(*zip(*points, strict=True), color=color, linewidth=1.3, alpha=0.8, solid_joinstyle="round")
+    panel.plot(*points[-1], marker="s", color=color, markersize=3.5, alpha=0.8)
 
 
 def moment_figure(compared: Sequence[Compared]) -> Figure:
