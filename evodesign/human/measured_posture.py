@@ -39,6 +39,7 @@ __all__ = [
     "gaussians",
     "measured_posture",
     "posture_rows",
+    "unmeasured_heights",
 ]
 
 Array = NDArray[np.float64]
@@ -145,6 +146,12 @@ class MeasuredPosture:
     lift: Gaussians
     joints: Mapping[str, float]
     weight: float = WEIGHT
+
+
+def unmeasured_heights() -> tuple[float, float]:
+    """Heights of the palms over stature between which nobody was measured who held a load."""
+    low = max(row.eta for row in posture_rows() if row.task == "both" and not math.isnan(row.eta))
+    return low, min(row.eta for row in posture_rows() if row.task == "hold")
 
 
 @cache

@@ -46,7 +46,11 @@ TOUCHING = 1e-3
 """How little may be missing to the violation of rows that are switched on, in their unit [m]."""
 
 EXACT = 1e-12
-"""Residual of the optimality conditions, in the program's own units, of a solution that counts as exact."""
+"""Residual of the optimality conditions, in the program's own units, of a solution that counts as exact.
+
+One that Newton's method brings no nearer is exact as well if this is its residual over the largest
+multiplier: gradients are differences of terms of that size, and are rounded as these are.
+"""
 
 CLOSE = 3e-6
 """That of a solution near enough for its slopes to be good to one part in 10^6 or so."""
@@ -245,6 +249,8 @@ class SolutionSensitivity:
                 multipliers=point.multipliers + step.multipliers[:, 0],
             )
             here = self._conditions.at(point, given)
+        if error(point, here) < EXACT * np.abs(point.multipliers).max(initial=1.0):
+            return self._optimum(active, point, here, exact=exact)
         return NotDifferentiable(f"the solution could not be made exact (error {error(point, here):.1e})")
 
     def _begin(self, parameters: Array, raw: RawSolution) -> tuple[Mask, PrimalDual, Derivatives]:

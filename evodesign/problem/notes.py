@@ -9,6 +9,7 @@ from evodesign.body.placement import dot
 from evodesign.errors import listed
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
+from evodesign.human.measured_posture import unmeasured_heights
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
@@ -30,7 +31,7 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     make postures symmetric or why they are whole, what the model leaves out, and limits of a person's joints
     that look as if their sign were wrong: only joints with the names of the generated person, in the same
     T-pose (x forward, y to the left, z up; docs/person.md), and whether or not the problem moves them. Limits
-    do not depend on stature, mass or sex, so any person serves.
+    do not depend on stature, mass or sex, so any person serves. Then heights at which nobody was measured.
     """
     people = [scene.human.tree for scene in problem.scenes]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
@@ -45,8 +46,25 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     wrong = (sentence for sentence in found if sentence)
     agents = (problem.scene.robot, *(scene.human for scene in problem.scenes))
     still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
-    left = left_out(problem.source)
-    return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *left)))
+    left, assumed = left_out(problem.source), _assumed(problem)
+    return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *assumed, *left)))
+
+
+def _assumed(problem: DesignProblem) -> Iterator[str]:
+    """A sentence for each person and hold whose measured posture rests on an assumption."""
+    low, high = unmeasured_heights()
+    for scene in problem.scenes:
+        person = scene.human
+        if person.measured is None:
+            continue
+        palm, stature = scene.payload.grasp_point(person, "left")[2], person.measured.stature
+        holds = [hold.height_m for hold in problem.holds if low < (hold.height_m + palm) / stature < high]
+        if holds:
+            yield (
+                f"{person.label or person.tree.name}: how measured people stand with the load at "
+                f"{listed([f'{height:g}' for height in holds])} m is an assumption: nobody was measured who "
+                f"held one between {low:.2f} and {high:.2f} of stature"
+            )
 
 
 def _still(agent: Agent) -> Iterator[str]:

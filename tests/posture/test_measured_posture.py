@@ -16,16 +16,19 @@ from evodesign.human.measured_posture import FEATURES, MARK, PostureRow, posture
 from evodesign.mechanics.floating_base import BodyState
 from evodesign.mechanics.scene import HUMAN, Scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, PostureMotion, assemble, free_hands_beside
-from evodesign.posture.check import AgentModel
+from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.measured_starts import mean_posture
-from evodesign.posture.results import AgentPosture
+from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import Form, half, whole
 from evodesign.posture.terms.measured_posture import MEASURED_POSTURE
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.records import ProblemSource
+from evodesign.records import Hold, ProblemSource
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.test_person_keys import PERSON, refused
 
@@ -257,3 +260,36 @@ def test_lumbar_joints_that_bend_separately_are_refused(problem: DesignProblem) 
     coupled = build_problem(asked(problem, f'{NEW}\njoint_ranges = "coupled"')).scene.human
     assert coupled.rhythms
     assert coupled.measured is not None
+
+
+@pytest.mark.parametrize("height", [0.5, 0.9, 1.3])
+def test_slopes_of_a_posture_beside_a_measured_person_are_differences(
+    problem: DesignProblem, scene: Scene, height: float
+) -> None:
+    """Cost and the person's torques, along one direction of the design; large costs make none inexact."""
+    setting = Setting(scene, problem.space, problem.weights, problem.options)
+    postures = PostureProblem(setting, Symmetry.ON)
+    middle = np.array(problem.space.values((0.6,) * len(problem.space.parameters)))
+    way = np.random.default_rng(4).uniform(-1.0, 1.0, len(middle)) * middle
+
+    def solved(step: float) -> tuple[CaseSolution, tuple[float, ...]]:
+        design = tuple((middle + step * way).tolist())
+        robot = AgentModel.of(scene.robot, problem.space.resized(scene.robot.tree, design))
+        checker = Checker(scene, robot, AgentModel.of(scene.human, scene.human.tree))
+        found = postures.solve(design, Hold(height_m=height), checker)
+        assert found.solved
+        return found, design
+
+    here, design = solved(0.0)
+    found = postures.derivative(design, here)
+    assert isinstance(found, PostureDerivative)
+    step = 1e-4
+    (ahead, _), (behind, _) = solved(step), solved(-step)
+    assert ahead.attempt is not None
+    assert behind.attempt is not None
+    slope = (ahead.attempt.cost - behind.attempt.cost) / (2.0 * step)
+    assert found.cost_slope @ way == pytest.approx(slope, rel=1e-3, abs=1e-4)
+    for joint in ("jL5S1_roty", "jLeftKnee_roty"):
+        torques = [each.instants[0].postures[HUMAN].torques[joint] for each in (ahead, behind)]
+        exact = found.along_torques(0, 0, {HUMAN: {joint: 1.0}}) @ way
+        assert exact == pytest.approx((torques[0] - torques[1]) / (2.0 * step), rel=1e-3, abs=1e-3)

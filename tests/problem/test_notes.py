@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from evodesign.human.measured_posture import measured_posture
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
 from evodesign.problem.notes import notes
@@ -105,3 +106,14 @@ def test_a_joint_that_is_held_outside_of_its_range_is_noted(problem: DesignProbl
     said = f"held at zero, as `joints` does not name them, but outside of their ranges: {held} (0.5 to 1)"
     wanted = f"{problem.scene.human.tree.name}: {said}"
     assert wanted in sentences
+
+
+def test_heights_at_which_nobody_was_measured_are_named(problem: DesignProblem) -> None:
+    """Palms of the 1.82 m person between 0.44 and 0.54 of stature: with the load at 0.8 m, not at 1 m."""
+    human = replace(problem.scene.human, measured=measured_posture(1.82))
+    built = replace(problem, scenes=(replace(problem.scene, human=human),))
+    assert strange(problem) == ()
+    assert strange(built) == (
+        "human: how measured people stand with the load at 0.8 m is an assumption: nobody was measured who "
+        "held one between 0.44 and 0.54 of stature",
+    )

@@ -1,8 +1,8 @@
 """A predicted person beside people who were measured, each left out of the data that predict him.
 
 Five men lift a box of 10.5 kg from floor to table. Each is predicted from the postures of the other four: how
-he stands with his palms at the measured heights, and what his back then carries by our statics. It is compared
-with his angles, with the moment of the force plate, and with our statics in his own angles.
+he stands with his palms at the measured heights, and what his back carries then by our statics. That is
+compared with his angles, with the moment of the force plate, and with our statics in his own angles.
 """
 
 from __future__ import annotations
