@@ -13,7 +13,7 @@ from evodesign.files import make_folder
 
 if TYPE_CHECKING:
     from evodesign.human.anthropometry import Person
-    from evodesign.validation.measured import Case
+    from evodesign.validation.measured import MeasuredCase
 
 __all__ = ["validate"]
 
@@ -76,7 +76,9 @@ def validate(
         print_lines("Each man of the box lift is predicted without his own data: docs/trust.md.")
 
 
-def _cases(file: Path | None, stature: float | None, mass: float | None, sex: str | None) -> tuple[Case, ...]:
+def _cases(
+    file: Path | None, stature: float | None, mass: float | None, sex: str | None
+) -> tuple[MeasuredCase, ...]:
     """The shipped cases, or those of a file.
 
     Raises:

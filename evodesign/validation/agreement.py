@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from evodesign.human.measured_posture import HumanPosture
-from evodesign.validation.compare import POSTURES, Compared
+from evodesign.validation.compare import POSTURES, ComparedCase
 from evodesign.validation.measured import HANGING, HOLDING
 
 __all__ = ["LABELS", "WAYS", "Agreement", "Agreements", "agreements"]
@@ -58,7 +58,7 @@ class Agreements:
     by_way: tuple[Agreement | None, ...]
 
 
-def agreements(compared: Sequence[Compared]) -> list[Agreements]:
+def agreements(compared: Sequence[ComparedCase]) -> list[Agreements]:
     """Of each lift: moments as they were measured and as changes from standing, then angles."""
     found = []
     for lift in dict.fromkeys(each.case.lift for each in compared):
@@ -82,7 +82,7 @@ def agreements(compared: Sequence[Compared]) -> list[Agreements]:
 
 
 def _moments(
-    lift: str, label: str, name: str, of: Sequence[Compared], standing: dict[str, Compared]
+    lift: str, label: str, name: str, of: Sequence[ComparedCase], standing: dict[str, ComparedCase]
 ) -> Agreements:
     def pairs(posture: HumanPosture | None) -> Iterable[tuple[float, float]]:
         for each in of:
@@ -101,7 +101,7 @@ def _agreement(pairs: Sequence[tuple[float, float]]) -> Agreement | None:
     return Agreement(slope, _rms([a - b for a, b in pairs]))
 
 
-def _angles(of: Iterable[Compared], posture: HumanPosture) -> Agreement | None:
+def _angles(of: Iterable[ComparedCase], posture: HumanPosture) -> Agreement | None:
     off = [
         (ours.angles[name] - each.ours.angles[name] + 180.0) % 360.0 - 180.0
         for each in of

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from evodesign.validation.agreement import WAYS, Agreement, Agreements, agreements
-from evodesign.validation.compare import Compared
+from evodesign.validation.compare import ComparedCase
 from evodesign.validation.holds import ComparedHold
 from evodesign.validation.posed import Posed
 
@@ -15,7 +15,7 @@ __all__ = ["validation_json", "way_name"]
 DIGITS = 3
 
 
-def validation_json(compared: Sequence[Compared], holds: Sequence[ComparedHold]) -> dict[str, Any]:
+def validation_json(compared: Sequence[ComparedCase], holds: Sequence[ComparedHold]) -> dict[str, Any]:
     """Every case, how far figures agree, and holds that were settled."""
     return {
         "lifts": [_case(each) for each in compared],
@@ -29,7 +29,7 @@ def way_name(posture: str | None) -> str:
     return "statics" if posture is None else str(posture)
 
 
-def _case(each: Compared) -> dict[str, Any]:
+def _case(each: ComparedCase) -> dict[str, Any]:
     case = each.case
     return {
         "lift": case.lift,

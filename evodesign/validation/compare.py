@@ -20,11 +20,11 @@ from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, half
 from evodesign.posture.warm_start import instants_of, layout_of
-from evodesign.validation.measured import HANGING, HOLDING, Case, Frame
+from evodesign.validation.measured import HANGING, HOLDING, Frame, MeasuredCase
 from evodesign.validation.posed import ANGLES, MOMENTS, Posed, PosedPerson, agent_of
 from evodesign.validation.prior import palm_height, rows_without
 
-__all__ = ["MEN_OF_PRIOR", "POSTURES", "Compared", "Holder", "compare"]
+__all__ = ["MEN_OF_PRIOR", "POSTURES", "ComparedCase", "Holder", "compare"]
 
 POSTURES = (HumanPosture.MEASURED, HumanPosture.LEAST_TORQUE)
 
@@ -36,7 +36,7 @@ LARGE = (0.5, 0.5, 0.025)
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class ComparedCase:
     """One case, and what we make of it.
 
     Args:
@@ -48,7 +48,7 @@ class Compared:
         predicted: a hold at this height with this weight, by what decides the posture; None: there is none.
     """
 
-    case: Case
+    case: MeasuredCase
     palms: float
     hand_force: float
     moments: Mapping[str, float]
@@ -98,7 +98,9 @@ class Holder:
         return replace(posture, base_position=base)
 
 
-def compare(cases: Iterable[Case], progress: Callable[[Case], None] = lambda _: None) -> list[Compared]:
+def compare(
+    cases: Iterable[MeasuredCase], progress: Callable[[MeasuredCase], None] = lambda _: None
+) -> list[ComparedCase]:
     """All cases, one after the other; each person is built once."""
     people: dict[Person, PosedPerson] = {}
     holders: dict[tuple[Person, str], dict[HumanPosture, Holder]] = {}
@@ -115,7 +117,9 @@ def compare(cases: Iterable[Case], progress: Callable[[Case], None] = lambda _: 
     return found
 
 
-def _compared(case: Case, person: PosedPerson, holders: Mapping[HumanPosture, Holder]) -> Compared:
+def _compared(
+    case: MeasuredCase, person: PosedPerson, holders: Mapping[HumanPosture, Holder]
+) -> ComparedCase:
     pairs = [(_posture(person, frame), frame) for frame in case.frames]
     ours = _mean([person.posed(posture, frame.hand_force) for posture, frame in pairs])
     palms = fmean(_palms(person, frame) for frame in case.frames)
@@ -127,7 +131,7 @@ def _compared(case: Case, person: PosedPerson, holders: Mapping[HumanPosture, Ho
     predicted = {
         kind: None if posture is None else person.posed(posture, force) for kind, posture in holds.items()
     }
-    return Compared(case, palms, force, moments, ours if case.has_legs else ours.above_legs(), predicted)
+    return ComparedCase(case, palms, force, moments, ours if case.has_legs else ours.above_legs(), predicted)
 
 
 def _posture(person: PosedPerson, frame: Frame) -> AgentPosture:

@@ -19,8 +19,8 @@ __all__ = [
     "EMPTY",
     "HANGING",
     "HOLDING",
-    "Case",
     "Frame",
+    "MeasuredCase",
     "Plate",
     "box_lifts",
     "cases_of",
@@ -82,7 +82,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class MeasuredCase:
     """A person whose wrists were in one range of height.
 
     Args:
@@ -120,7 +120,7 @@ def data_rows(name: str) -> Iterator[dict[str, str]]:
     yield from csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
 
 
-def shipped_cases() -> tuple[Case, ...]:
+def shipped_cases() -> tuple[MeasuredCase, ...]:
     """All lifts that come with the package."""
     from evodesign.validation.recording import read_frames
 
@@ -129,12 +129,12 @@ def shipped_cases() -> tuple[Case, ...]:
     return (*box_lifts(), *cases_of(STOOP, STOOPER, stoops))
 
 
-def box_lifts() -> tuple[Case, ...]:
+def box_lifts() -> tuple[MeasuredCase, ...]:
     """Five men who lift a box, one case per row."""
     return tuple(_box_case(row) for row in data_rows("box_lifts.csv"))
 
 
-def _box_case(row: Mapping[str, str]) -> Case:
+def _box_case(row: Mapping[str, str]) -> MeasuredCase:
     stature, wrist = float(row["stature_m"]), float(row["wrist_z_m"])
     person = Person(stature, float(row["mass_kg"]), Sex.MALE, ShoulderWidth.JOINT_CENTRES)
     names = ("trunk_low", "trunk_up", "knee", "shank", "arm", "elbow")
@@ -144,10 +144,10 @@ def _box_case(row: Mapping[str, str]) -> Case:
     features["ahead"] = float(row["wrist_x_m"]) / stature
     moments = {name: float(row[f"{name}_n_m"]) for name in ("l5s1", "hips", "knees", "ankles")}
     frame = Frame(float(row["load_kg"]) * GRAVITY, wrist, moments, None, {}, features)
-    return Case(BOX, f"man {row['man']}", person, row["hands"], int(wrist / BIN), (frame,))
+    return MeasuredCase(BOX, f"man {row['man']}", person, row["hands"], int(wrist / BIN), (frame,))
 
 
-def cases_of(lift: str, person: Person, recordings: Mapping[str, Iterable[Frame]]) -> Iterator[Case]:
+def cases_of(lift: str, person: Person, recordings: Mapping[str, Iterable[Frame]]) -> Iterator[MeasuredCase]:
     """Frames of a person's recordings, by range of height, with the load in the hands and without.
 
     Args:
@@ -162,4 +162,4 @@ def cases_of(lift: str, person: Person, recordings: Mapping[str, Iterable[Frame]
             hands = HOLDING if frame.hand_force > HOLDS * largest else EMPTY
             found.setdefault((hands, int(frame.wrist / BIN)), []).append(frame)
         for (hands, number), own in sorted(found.items()):
-            yield Case(lift, who, person, hands, number, tuple(own))
+            yield MeasuredCase(lift, who, person, hands, number, tuple(own))

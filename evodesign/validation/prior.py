@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from evodesign.human.measured_posture import ASSUMPTION, PostureRow, posture_rows
-from evodesign.validation.measured import Case, box_lifts
+from evodesign.validation.measured import MeasuredCase, box_lifts
 
 __all__ = ["HAND", "palm_height", "rows_without"]
 
@@ -52,7 +52,7 @@ def rows_without(who: str) -> tuple[PostureRow, ...]:
     return (*found, *(row for row in posture_rows() if row.task != "both" or math.isnan(row.eta)))
 
 
-def _features(case: Case) -> Mapping[str, float]:
+def _features(case: MeasuredCase) -> Mapping[str, float]:
     """Of a man in one range of height, as the data file has them."""
     (frame,), stature = case.frames, case.person.stature
     fore = frame.features["arm"] + frame.features["elbow"]

@@ -1,4 +1,4 @@
-"""The shipped figures: those of the measurements that they were taken from, each file with source and licence."""
+"""The shipped figures are those of the measurements; each file has its source and licence."""
 
 from __future__ import annotations
 

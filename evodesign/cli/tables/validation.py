@@ -8,7 +8,7 @@ from statistics import fmean
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.validation.agreement import WAYS, Agreement, Agreements, agreements
-from evodesign.validation.compare import POSTURES, Compared
+from evodesign.validation.compare import POSTURES, ComparedCase
 from evodesign.validation.holds import LOAD, SOMEONE, ComparedHold, hold_differences
 from evodesign.validation.measured import HANGING, HOLDING
 from evodesign.validation.posed import Posed
@@ -27,7 +27,9 @@ SHOWN = {"trunk_up": "upper trunk", "knee": "knee", "arm": "upper arm", "elbow":
 """Angles of holds that find room."""
 
 
-def validation_tables(compared: Sequence[Compared], holds: Sequence[ComparedHold]) -> Iterator[FittedTable]:
+def validation_tables(
+    compared: Sequence[ComparedCase], holds: Sequence[ComparedHold]
+) -> Iterator[FittedTable]:
     """Of each lift its moments by height and how far all figures agree; then holds, where there are any."""
     found = agreements(compared)
     for lift in dict.fromkeys(each.case.lift for each in compared):
@@ -39,7 +41,7 @@ def validation_tables(compared: Sequence[Compared], holds: Sequence[ComparedHold
         yield _holds(holds)
 
 
-def _moments(lift: str, compared: Sequence[Compared]) -> FittedTable:
+def _moments(lift: str, compared: Sequence[ComparedCase]) -> FittedTable:
     table = titled(
         f"{lift}: moment at L5/S1 [N m], means by height",
         [*names("hands"), *numbers("wrists [m]", "cases", "measured", *COLUMNS)],
@@ -47,7 +49,7 @@ def _moments(lift: str, compared: Sequence[Compared]) -> FittedTable:
         caption=EXPLAINED,
     )
     order = sorted(compared, key=lambda each: (each.case.hands == HANGING, each.case.hands, each.case.bin))
-    rows: dict[tuple[str, str], list[Compared]] = {}
+    rows: dict[tuple[str, str], list[ComparedCase]] = {}
     for each in order:
         rows.setdefault((each.case.hands, each.case.range), []).append(each)
     for (hands, heights), of in rows.items():

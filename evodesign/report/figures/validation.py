@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.report.figures.paint import INK, clean, new_figure, write_figure
-from evodesign.validation.compare import POSTURES, Compared
+from evodesign.validation.compare import POSTURES, ComparedCase
 from evodesign.validation.measured import EMPTY, HANGING, HOLDING
 from evodesign.validation.posed import CHAIN, Places
 
@@ -21,7 +21,7 @@ LABELS = {HumanPosture.MEASURED: "predicted", HumanPosture.LEAST_TORQUE: "least 
 STATICS = "#5a9367"
 
 
-def write_validation_figures(compared: Sequence[Compared], directory: Path) -> list[Path]:
+def write_validation_figures(compared: Sequence[ComparedCase], directory: Path) -> list[Path]:
     """Write both figures to an existing directory.
 
     Raises:
@@ -31,7 +31,7 @@ def write_validation_figures(compared: Sequence[Compared], directory: Path) -> l
     return [path for stem, figure in figures.items() for path in write_figure(figure, directory, stem)]
 
 
-def stick_figures(compared: Sequence[Compared]) -> Figure:
+def stick_figures(compared: Sequence[ComparedCase]) -> Figure:
     """A row for each lift, a panel for each range of height in which the load is held."""
     held = [each for each in compared if each.case.hands == HOLDING]
     lifts = [*dict.fromkeys(each.case.lift for each in held)]
@@ -54,7 +54,7 @@ def stick_figures(compared: Sequence[Compared]) -> Figure:
     return figure
 
 
-def _sticks(panel: Axes, each: Compared) -> None:
+def _sticks(panel: Axes, each: ComparedCase) -> None:
     """Of one case; where the legs were not measured, predictions are moved until the hips coincide."""
     for kind in reversed(POSTURES):
         posed = each.predicted.get(kind)
@@ -70,7 +70,7 @@ def _stick(panel: Axes, places: Places, color: str, off: float) -> None:
     panel.plot(*points[-1], marker="s", color=color, markersize=3.5, alpha=0.8)
 
 
-def moment_figure(compared: Sequence[Compared]) -> Figure:
+def moment_figure(compared: Sequence[ComparedCase]) -> Figure:
     """A panel for each lift: moments over the height of the palms; hollow marks are of empty hands."""
     lifts = [*dict.fromkeys(each.case.lift for each in compared)]
     figure = new_figure(4.6 * max(len(lifts), 1), 4.2, "Moment at L5/S1 by height of the palms")

@@ -1,4 +1,4 @@
-"""How far the person agrees with people who were measured: the figures of docs/trust.md, within stated ranges."""
+"""How far the person agrees with people who were measured: figures of docs/trust.md, within stated ranges."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rich.console import Console
 from evodesign.cli.tables.validation import validation_tables
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.validation.agreement import Agreement, agreements
-from evodesign.validation.compare import Compared, compare
+from evodesign.validation.compare import ComparedCase, compare
 from evodesign.validation.holds import ComparedHold, compare_holds, hold_differences
 from evodesign.validation.measured import shipped_cases
 from evodesign.validation.posed import Posed
@@ -27,7 +27,7 @@ Found = dict[tuple[str, str], tuple[Agreement | None, ...]]
 
 
 @pytest.fixture(scope="module")
-def compared() -> list[Compared]:
+def compared() -> list[ComparedCase]:
     return compare(shipped_cases())
 
 
@@ -37,7 +37,7 @@ def holds() -> list[ComparedHold]:
 
 
 @pytest.fixture(scope="module")
-def found(compared: list[Compared]) -> Found:
+def found(compared: list[ComparedCase]) -> Found:
     return {(each.lift, each.quantity): each.by_way for each in agreements(compared)}
 
 
@@ -79,7 +79,7 @@ def test_predicted_angles_are_about_as_far_off_as_men_differ(found: Found) -> No
     assert least.off >= 30.0
 
 
-def test_every_case_that_holds_the_load_has_both_predictions(compared: list[Compared]) -> None:
+def test_every_case_that_holds_the_load_has_both_predictions(compared: list[ComparedCase]) -> None:
     held = [each for each in compared if each.case.hands == "box"]
     assert len(held) == 32
     assert all(posed is not None for each in held for posed in each.predicted.values())
@@ -94,7 +94,7 @@ def test_still_holds_stay_near_the_mean(holds: list[ComparedHold]) -> None:
     assert off["arm"] < hold_differences(holds, HumanPosture.LEAST_TORQUE)["arm"]
 
 
-def printed(compared: Sequence[Compared], holds: Sequence[ComparedHold]) -> str:
+def printed(compared: Sequence[ComparedCase], holds: Sequence[ComparedHold]) -> str:
     console = Console(file=StringIO(), width=80)
     for table in validation_tables(compared, holds):
         console.print(table)
@@ -102,7 +102,7 @@ def printed(compared: Sequence[Compared], holds: Sequence[ComparedHold]) -> str:
 
 
 def test_tables_fit_eighty_columns_without_a_second_part(
-    compared: list[Compared], holds: list[ComparedHold]
+    compared: list[ComparedCase], holds: list[ComparedHold]
 ) -> None:
     text = printed(compared, holds)
     assert max(map(cell_len, text.splitlines())) <= 80
@@ -113,8 +113,10 @@ def test_tables_fit_eighty_columns_without_a_second_part(
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
-def test_the_page_shows_what_the_command_prints(compared: list[Compared], holds: list[ComparedHold]) -> None:
-    """The same words; numbers within 3 or 3 %: another processor may lead a solve to a neighbouring optimum."""
+def test_the_page_shows_what_the_command_prints(
+    compared: list[ComparedCase], holds: list[ComparedHold]
+) -> None:
+    """The same words; numbers within 3 or 3 %: another processor may lead to a neighbouring optimum."""
     page = PAGE.read_text(encoding="utf-8")
     shown = page.split("```\n", 2)[1]
     text = printed(compared, holds)
@@ -123,7 +125,7 @@ def test_the_page_shows_what_the_command_prints(compared: list[Compared], holds:
         assert float(there) == pytest.approx(float(here), rel=0.03, abs=3.0)
 
 
-def test_slope_and_difference_of_made_up_figures(compared: list[Compared]) -> None:
+def test_slope_and_difference_of_made_up_figures(compared: list[ComparedCase]) -> None:
     """Moments twice those measured: slope 2, and the root mean square of what was measured."""
     stoop = [each for each in compared if (each.case.lift, each.case.hands) == ("stoop lift", "box")]
     doubled = [
