@@ -37,6 +37,9 @@ def validate(
         str | None,
         typer.Option(metavar="SEX", help="Of the person in FILE: male or female.", show_default="none"),
     ] = None,
+    fit: Annotated[
+        bool, typer.Option("--fit", help="Also print the person of FILE as a table for a problem file.")
+    ] = False,
     json: Json = False,
     plot: Annotated[
         Path | None,
@@ -52,6 +55,8 @@ def validate(
     from evodesign.validation.compare import compare
 
     cases = _cases(file, stature, mass, sex)
+    if fit and (file is None or json):
+        raise InputError("--fit", "", "a FILE, without --json", "no FILE" if file is None else "--json")
     if plot is not None:
         make_folder(plot, "--plot")
     with counted("lifts", len(cases)) as step:
@@ -72,6 +77,12 @@ def validate(
 
     for table in validation_tables(compared, holds):
         console().print(table)
+    if fit:
+        from evodesign.validation.fit import fit as fitted
+        from evodesign.validation.fit import fit_lines
+
+        person = cases[0].person
+        print_lines(*fit_lines(person, fitted(person, compared)))
     if file is None:
         print_lines("Each man of the box lift is predicted without his own data: docs/trust.md.")
 

@@ -24,7 +24,7 @@ from evodesign.validation.measured import HANGING, HOLDING, Frame, MeasuredCase
 from evodesign.validation.posed import ANGLES, MOMENTS, Posed, PosedPerson, agent_of
 from evodesign.validation.prior import palm_height, rows_without
 
-__all__ = ["MEN_OF_PRIOR", "POSTURES", "ComparedCase", "Holder", "compare"]
+__all__ = ["MEN_OF_PRIOR", "POSTURES", "ComparedCase", "Holder", "compare", "palms_of"]
 
 POSTURES = (HumanPosture.MEASURED, HumanPosture.LEAST_TORQUE)
 
@@ -122,7 +122,7 @@ def _compared(
 ) -> ComparedCase:
     pairs = [(_posture(person, frame), frame) for frame in case.frames]
     ours = _mean([person.posed(posture, frame.hand_force) for posture, frame in pairs])
-    palms = fmean(_palms(person, frame) for frame in case.frames)
+    palms = fmean(palms_of(person, frame) for frame in case.frames)
     force = fmean(frame.hand_force for frame in case.frames)
     measured = [_moments(person, *pair) for pair in pairs]
     moments = {name: fmean(each[name] for each in measured) for name in measured[0]}
@@ -138,7 +138,8 @@ def _posture(person: PosedPerson, frame: Frame) -> AgentPosture:
     return person.from_places(frame.places) if frame.places else person.from_angles(frame.features)
 
 
-def _palms(person: PosedPerson, frame: Frame) -> float:
+def palms_of(person: PosedPerson, frame: Frame) -> float:
+    """Height of a frame's palms [m]."""
     if frame.places:
         (x, z), (to_x, to_z) = frame.places["elbow"], frame.places["wrist"]
         fore = math.atan2(to_x - x, z - to_z)

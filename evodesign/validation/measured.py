@@ -66,6 +66,7 @@ class Frame:
 
     Args:
         hand_force: weight that both hands hold [N].
+        hand_measured: whether it was measured by itself, not as the rest of the plate's force.
         wrist: height of the wrists [m].
         moments: that are given [N m], by name as in `posed.MOMENTS`.
         plate: force under the feet, if it was measured.
@@ -74,6 +75,7 @@ class Frame:
     """
 
     hand_force: float
+    hand_measured: bool
     wrist: float
     moments: Mapping[str, float]
     plate: Plate | None
@@ -143,7 +145,7 @@ def _box_case(row: Mapping[str, str]) -> MeasuredCase:
     }
     features["ahead"] = float(row["wrist_x_m"]) / stature
     moments = {name: float(row[f"{name}_n_m"]) for name in ("l5s1", "hips", "knees", "ankles")}
-    frame = Frame(float(row["load_kg"]) * GRAVITY, wrist, moments, None, {}, features)
+    frame = Frame(float(row["load_kg"]) * GRAVITY, True, wrist, moments, None, {}, features)
     return MeasuredCase(BOX, f"man {row['man']}", person, row["hands"], int(wrist / BIN), (frame,))
 
 

@@ -33,7 +33,7 @@ from evodesign.posture.measured_starts import posture_of_features
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, half
 
-__all__ = ["ANGLES", "CHAIN", "LINK_OF", "MOMENTS", "Places", "Posed", "PosedPerson", "agent_of"]
+__all__ = ["ANGLES", "CHAIN", "LINK_OF", "MOMENTS", "OF_LEGS", "Places", "Posed", "PosedPerson", "agent_of"]
 
 Array = NDArray[np.float64]
 Places = Mapping[str, tuple[float, float]]

@@ -115,4 +115,4 @@ def _frame(row: Mapping[str, float], person: Person) -> Frame:
     held = 0.0 if plate is None else plate.up - person.mass * GRAVITY
     places = {name: (row[f"{name}_x_m"], row[f"{name}_z_m"]) for name in LINK_OF if f"{name}_x_m" in row}
     moments = {"l5s1": row[L5S1]} if L5S1 in row else {}
-    return Frame(max(0.0, row.get(HANDS, held)), places["wrist"][1], moments, plate, places, {})
+    return Frame(max(0.0, row.get(HANDS, held)), HANDS in row, places["wrist"][1], moments, plate, places, {})

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
+import re
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.measured_posture import measured_posture
 from evodesign.validation.measured import BIN, cases_of
+from evodesign.validation.posed import PosedPerson
 from evodesign.validation.recording import read_frames
 from tests.cli.here import evodesign
 
@@ -156,3 +161,32 @@ def test_a_file_of_ones_own_is_compared(tmp_path: Path) -> None:
     table = evodesign("validate", file, *OF_PERSON)
     assert table.returncode == 0
     assert "own: moment at L5/S1 [N m], means by height" in table.stdout
+
+
+def test_a_person_is_fitted_to_a_recording(tmp_path: Path) -> None:
+    """Described as a woman of 1.70 m and 70 kg, she has 1.63 m and 61.2 kg, and leans 7 degrees more."""
+    her = PosedPerson(Person(1.63, 61.2, Sex.FEMALE, ShoulderWidth.JOINT_CENTRES))
+    mean = measured_posture(1.63).hold.mean(0.34)
+    leaning = {**mean, "trunk_low": mean["trunk_low"] + math.radians(7.0)}
+    places = her.places(her.model.at(her.from_angles(leaning)))
+    held = {
+        "plate_force_x_n": 0.0,
+        "plate_force_z_n": 61.2 * 9.81 + 80.0,
+        "plate_x_m": 0.05,
+        "hand_force_n": 80.0,
+    }
+    file = tmp_path / "her.csv"
+    file.write_text(text_of({**columns({**places}), **held}), encoding="utf-8")
+    done = evodesign("validate", file, *OF_PERSON, "--fit")
+    assert done.returncode == 0
+    table = tomllib.loads(done.stdout[done.stdout.index("[human]") :])["human"]
+    assert table["stature_m"] == pytest.approx(1.63, abs=0.002)
+    assert table["mass_kg"] == pytest.approx(61.2, abs=0.05)
+    assert (table["sex"], table["posture"]) == ("female", "measured")
+    remark = done.stdout.splitlines()[-1]
+    assert 3 <= int(re.findall(r"trunk_low ([+-]\d+)", remark)[0]) <= 11
+    refused = evodesign("validate", "--fit")
+    assert (refused.returncode, refused.stderr) == (
+        2,
+        "error: --fit: wanted a FILE, without --json, found no FILE\n",
+    )
