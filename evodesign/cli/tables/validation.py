@@ -67,7 +67,7 @@ def _mean(of: Sequence[Posed | None]) -> str:
 
 def _agreements(lift: str, of: Sequence[Agreements]) -> FittedTable:
     table = titled(
-        f"{lift}: slope against what was measured, and rms difference, of {of[0].cases} cases with a box",
+        f"{lift}: slope against measurement and rms difference, {of[0].cases} cases with a box",
         [*names("quantity"), *numbers(*COLUMNS)],
     )
     for each in of:
