@@ -31,7 +31,7 @@ class Agreement:
     """Of some figures with those measured.
 
     Args:
-        slope: through zero; None of angles.
+        slope: through zero; None of angles, and where all that was measured is zero.
         off: root mean square of the differences, in the figures' unit.
     """
 
@@ -97,7 +97,8 @@ def _moments(
 def _agreement(pairs: Sequence[tuple[float, float]]) -> Agreement | None:
     if not pairs:
         return None
-    slope = math.fsum(a * b for a, b in pairs) / math.fsum(b * b for _, b in pairs)
+    squares = math.fsum(b * b for _, b in pairs)
+    slope = math.fsum(a * b for a, b in pairs) / squares if squares else None
     return Agreement(slope, _rms([a - b for a, b in pairs]))
 
 

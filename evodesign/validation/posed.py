@@ -170,8 +170,8 @@ class PosedPerson:
         upright = self.from_angles(dict.fromkeys((*ANGLES, "ahead"), 0.0))
         hip = np.array(places["hip"]) - np.array(self.places(self.model.at(upright))["hip"])
         start = np.array([*(upright.base_position[::2] + hip), 0.0, 0.0, 0.0, *(0.0 for _ in followed)])
-        low = np.array([-9.0, -9.0, -1.6, -0.6, -0.3, *(BEND[name][0] for name in followed)])
-        high = np.array([9.0, 9.0, 1.9, 1.6, 0.3, *(BEND[name][1] for name in followed)])
+        low = np.array([-np.inf, -np.inf, -1.6, -0.6, -0.3, *(BEND[name][0] for name in followed)])
+        high = np.array([np.inf, np.inf, 1.9, 1.6, 0.3, *(BEND[name][1] for name in followed)])
 
         def away(x: Array) -> Array:
             found = self.places(self.model.at(self._bent(upright, followed, x)))

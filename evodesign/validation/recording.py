@@ -58,7 +58,8 @@ def read_frames(text: str, source: str, person: Person) -> dict[str, list[Frame]
         source: its name, for sentences.
         person: whose weight tells the hands' force where a plate alone was there.
     Raises:
-        InputError: a column that is missing or unknown, a cell that is no number, or no frame at all.
+        InputError: a column that is missing or unknown, a cell that is no number, places that are not in
+            metres, or no frame at all.
     """
     lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]
     rows = [*csv.reader(line for _, line in lines)]
@@ -72,7 +73,12 @@ def read_frames(text: str, source: str, person: Person) -> dict[str, list[Frame]
             raise InputError(source, f"line {number}", f"{len(header)} cells", f"{len(cells)}")
         row = dict(zip(header, (cell.strip() for cell in cells), strict=True))
         who = row.pop(RECORDING, "") or "recording"
-        found.setdefault(who, []).append(_frame(_numbers(row, source, number), person))
+        frame = _frame(_numbers(row, source, number), person)
+        apart = math.dist(frame.places["hip"], frame.places["shoulder"])
+        if not apart < person.stature:
+            wanted = f"hip and shoulder less than {person.stature:g} m apart, in metres"
+            raise InputError(source, f"line {number}", wanted, f"{apart:g} m")
+        found.setdefault(who, []).append(frame)
     return found
 
 

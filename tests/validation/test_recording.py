@@ -98,6 +98,10 @@ REFUSED = [
         text_of({**HELD, "hip_z_m": 1e9}),
         "own.csv: line 3, column hip_z_m: wanted a number, found '1000000000.0'",
     ),
+    (
+        text_of({**HELD, "shoulder_z_m": 1300.0}),
+        "own.csv: line 3: wanted hip and shoulder less than 1.7 m apart, in metres, found 1299.1 m",
+    ),
     (text_of(HELD) + "1,2\n", "own.csv: line 4: wanted 9 cells, found 2"),
     (
         "\n".join(text_of(HELD).splitlines()[:2]),
@@ -190,3 +194,15 @@ def test_a_person_is_fitted_to_a_recording(tmp_path: Path) -> None:
         2,
         "error: --fit: wanted a FILE, without --json, found no FILE\n",
     )
+
+
+def test_places_far_from_the_origin_and_moments_of_zero_are_compared(tmp_path: Path) -> None:
+    far = {name: (x + 40.0, z) for name, (x, z) in PLACES.items()}
+    file = tmp_path / "far.csv"
+    file.write_text(text_of({**columns(far), "hand_force_n": 50.0, "l5s1_n_m": 0.0}), encoding="utf-8")
+    done = evodesign("validate", file, *OF_PERSON, "--json")
+    assert done.returncode == 0
+    found = json.loads(done.stdout)
+    hip = found["lifts"][0]["measured_posture"]["places_x_z_m"]["hip"]
+    assert math.dist(hip, far["hip"]) < 0.1
+    assert found["agreement"][0]["statics"]["slope"] is None
