@@ -38,6 +38,7 @@ from evodesign.cli.search import search
 from evodesign.cli.show import show
 from evodesign.cli.simulate import simulate
 from evodesign.cli.starts import starts
+from evodesign.cli.validate import validate
 from evodesign.cli.verify import verify
 from evodesign.cli.watch import watch
 from evodesign.errors import AllFailed, EvodesignError, InputError, Interrupted
@@ -68,6 +69,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "problems": problems,
     "init": init,
     "starts": starts,
+    "validate": validate,
     "verify": verify,
     "recover": recover,
     "merge": merge,

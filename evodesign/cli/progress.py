@@ -36,7 +36,7 @@ from evodesign.problem.time_left import PendingPiece, TimeLeft, in_words
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.session_log import Observer
 
-__all__ = ["precompute_progress", "search_progress"]
+__all__ = ["counted", "precompute_progress", "search_progress"]
 
 
 @contextmanager
@@ -63,6 +63,18 @@ def precompute_progress() -> Iterator[PrecomputeProgress]:
         yield bar
     finally:
         bar.close()
+
+
+@contextmanager
+def counted(what: str, total: int) -> Iterator[Callable[[], None]]:
+    """A bar on a terminal, which each call moves by one of so many; it is gone at the end."""
+    if not sys.stderr.isatty():
+        yield lambda: None
+        return
+    parts = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*parts, console=console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda: bar.advance(task)
 
 
 class SearchPanel(Observer):

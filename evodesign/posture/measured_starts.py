@@ -22,7 +22,7 @@ from evodesign.posture.terms.measured_posture import chords
 from evodesign.posture.warm_start import layout_of
 from evodesign.tree.frames import link_frames
 
-__all__ = ["mean_posture", "measured_starts"]
+__all__ = ["mean_posture", "measured_starts", "posture_of_features"]
 
 ELSEWHERE = (0.20, 0.35)
 """Heights of the palms over stature at which people stoop: their means are starts at any height."""
@@ -67,8 +67,13 @@ def mean_posture(form: Form, given: MeasuredPosture, hand: float, eta: float) ->
         hand: place of the palms along x, in the person's frame [m].
         eta: height of the palms over stature.
     """
-    mean, joints = given.hold.mean(eta), form.agent.tree.joint_by_name
-    pitch, flexion = _trunk(form, chords(form.agent.tree, given.stature), mean)
+    return posture_of_features(form, given.stature, given.hold.mean(eta), hand)
+
+
+def posture_of_features(form: Form, stature: float, mean: Mapping[str, float], hand: float) -> AgentPosture:
+    """The posture of a person of a stature [m] with given features, named as in `FEATURES`, likewise."""
+    joints = form.agent.tree.joint_by_name
+    pitch, flexion = _trunk(form, chords(form.agent.tree, stature), mean)
     at = {joint: share * flexion * joints[joint].axis[1] for joint, share in _shares(form).items()}
     thigh, chest = mean["shank"] - mean["knee"], pitch + flexion
     for side, name in SIDES.items():
@@ -80,7 +85,7 @@ def mean_posture(form: Form, given: MeasuredPosture, hand: float, eta: float) ->
         raised = joints[f"j{name}Shoulder_rotx"]
         at[raised.name] = -left * math.pi / 2.0 * raised.axis[0]
     positions = {name: at.get(name, 0.0) for name in form.agent.joints}
-    base = _base(form, positions, pitch, hand - mean["ahead"] * given.stature)
+    base = _base(form, positions, pitch, hand - mean["ahead"] * stature)
     none, wrench = dict.fromkeys(form.agent.joints, 0.0), dict.fromkeys(SIDES, np.zeros(6))
     return AgentPosture(base, np.array([0.0, pitch, 0.0]), positions, none, wrench, wrench)
 

@@ -119,6 +119,7 @@ def place(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     text = (GOLDEN / "lifting" / "problem.toml").read_text(encoding="utf-8")
     Path("small.toml").write_text(text.replace("../../../problems/", "problems/"), encoding="utf-8")
     shutil.copy(GOLDEN / "lifting" / "start.toml", "start.toml")
+    shutil.copy(repository / "evodesign" / "validation" / "data" / "stoop_lifts.csv", "stoop.csv")
     text = (repository / "problems" / "sartore2022.toml").read_text(encoding="utf-8")
     text = text.replace("[0.8, 1.0, 1.2, 1.5]", "[1.0]").replace(
         "[baseline]\n", "[baseline]\niterations = 3\n"
@@ -167,6 +168,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "problems": (("problems",), ("problems", "point-grasp", "--to", "own")),
     "init": (("init", "problems/robots/icub_shapes.urdf", "--to", "guessed.toml"),),
     "starts": (("starts", "small.toml"),),
+    "validate": (("validate", "stoop.csv", "--stature", 1.73, "--mass", 81.68, "--sex", "male"),),
     "verify": (("verify", "run"),),
     "recover": (("recover", "run"),),
     "merge": (("merge", "toy"),),

@@ -47,6 +47,7 @@ NOT_RUN = {
     "make help": "prints the Makefile's own comments",
     "python -m benchmarks": "measures for minutes or hours; its figures are in docs/benchmarks.md",
     "python -m docs.write_gallery": "searches for a quarter of an hour",
+    "python -m docs.write_trust": "writes the tables that tests/cli/test_validate.py compares",
     "python -m tests.docs.notebooks": "stores what tests/docs/test_notebooks.py compares",
     "python -m tests.faults.campaign": "takes hours; run with few kills in tests/faults/test_faults.py",
     "python -m tests.fuzz.fuzzer": "takes hours; run for seconds in tests/fuzz/test_fuzzer.py",

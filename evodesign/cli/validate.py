@@ -1,0 +1,124 @@
+"""`validate`: our person beside people who were measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from evodesign.cli.options import Json
+from evodesign.errors import InputError
+from evodesign.files import make_folder
+
+if TYPE_CHECKING:
+    from evodesign.human.anthropometry import Person
+    from evodesign.validation.measured import MeasuredCase
+
+__all__ = ["validate"]
+
+
+def validate(
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FILE",
+            help="A CSV file of your own: places of joints and forces, as docs/trust.md describes.",
+            show_default="the lifts that come with evodesign",
+        ),
+    ] = None,
+    stature: Annotated[
+        float | None, typer.Option(metavar="M", help="Of the person in FILE [m].", show_default="none")
+    ] = None,
+    mass: Annotated[
+        float | None, typer.Option(metavar="KG", help="Of the person in FILE [kg].", show_default="none")
+    ] = None,
+    sex: Annotated[
+        str | None,
+        typer.Option(metavar="SEX", help="Of the person in FILE: male or female.", show_default="none"),
+    ] = None,
+    fit: Annotated[
+        bool, typer.Option("--fit", help="Also print the person of FILE as a table for a problem file.")
+    ] = False,
+    json: Json = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Also write figures: stick figures from the side, moments by height (SVG and PNG).",
+        ),
+    ] = None,
+) -> None:
+    """People who were measured, beside our statics in their postures and our predictions of them."""
+    from evodesign.cli.output import console, print_json, print_lines, show_notes
+    from evodesign.cli.progress import counted
+    from evodesign.validation.compare import compare
+
+    cases = _cases(file, stature, mass, sex)
+    if fit and (file is None or json):
+        raise InputError("--fit", "", "a FILE, without --json", "no FILE" if file is None else "--json")
+    if plot is not None:
+        make_folder(plot, "--plot")
+    with counted("lifts", len(cases)) as step:
+        compared = compare(cases, lambda _: step())
+    from evodesign.validation.holds import compare_holds
+
+    holds = compare_holds() if file is None else []
+    if plot is not None:
+        from evodesign.report.figures.validation import write_validation_figures  # matplotlib takes its time
+
+        show_notes(f"written: {path}" for path in write_validation_figures(compared, plot))
+    if json:
+        from evodesign.validation.as_json import validation_json
+
+        print_json(validation_json(compared, holds))
+        return
+    from evodesign.cli.tables.validation import validation_tables
+
+    for table in validation_tables(compared, holds):
+        console().print(table)
+    if fit:
+        from evodesign.validation.fit import fit as fitted
+        from evodesign.validation.fit import fit_lines
+
+        person = cases[0].person
+        print_lines(*fit_lines(person, fitted(person, compared)))
+    if file is None:
+        print_lines("Each man of the box lift is predicted without his own data: docs/trust.md.")
+
+
+def _cases(
+    file: Path | None, stature: float | None, mass: float | None, sex: str | None
+) -> tuple[MeasuredCase, ...]:
+    """The shipped cases, or those of a file.
+
+    Raises:
+        InputError: figures of a person without a file, or a file without them or of other content.
+    """
+    from evodesign.validation.measured import cases_of, shipped_cases
+
+    if file is None:
+        for option, given in (("--stature", stature), ("--mass", mass), ("--sex", sex)):
+            if given is not None:
+                raise InputError(option, "", "a FILE, whose person it describes", "none")
+        return shipped_cases()
+    from evodesign.validation.recording import read_recording
+
+    person = _person(stature, mass, sex)
+    return tuple(cases_of(file.stem, person, read_recording(file, person)))
+
+
+def _person(stature: float | None, mass: float | None, sex: str | None) -> Person:
+    from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+
+    if stature is None or mass is None or sex is None:
+        given = {"--stature": stature, "--mass": mass, "--sex": sex}
+        missing = next(option for option, value in given.items() if value is None)
+        raise InputError(missing, "", "this option beside FILE", "nothing")
+    if sex not in [*Sex]:
+        raise InputError("--sex", "", " or ".join(Sex), f"'{sex}'")
+    try:
+        return Person(stature, mass, Sex(sex), ShoulderWidth.JOINT_CENTRES)
+    except InputError as error:
+        option = {"stature_m": "--stature", "mass_kg": "--mass"}[error.key]
+        raise InputError(option, "", error.wanted, error.found) from error

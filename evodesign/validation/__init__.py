@@ -1,0 +1,1 @@
+"""Our person beside people who were measured: in their postures, and in those that we predict."""

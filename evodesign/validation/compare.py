@@ -1,0 +1,167 @@
+"""What was measured, what our statics give in the same postures, and what we predict in their place.
+
+A lift passes through each height; what is compared is how the person would hold the load there at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from statistics import fmean
+
+from evodesign.human.anthropometry import Person
+from evodesign.human.measured_posture import HumanPosture, PostureRow
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.scene import HUMAN, ROBOT, Payload, Scene
+from evodesign.nlp.solver import SolverCache, SolverOptions
+from evodesign.posture.formulations.human_value import HumanProblem
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.symmetry import Form, half
+from evodesign.posture.warm_start import instants_of, layout_of
+from evodesign.validation.measured import HANGING, HOLDING, Frame, MeasuredCase
+from evodesign.validation.posed import ANGLES, MOMENTS, Posed, PosedPerson, agent_of
+from evodesign.validation.prior import palm_height, rows_without
+
+__all__ = ["MEN_OF_PRIOR", "POSTURES", "ComparedCase", "Holder", "compare", "palms_of"]
+
+POSTURES = (HumanPosture.MEASURED, HumanPosture.LEAST_TORQUE)
+
+MEN_OF_PRIOR = "box lift"
+"""The lift whose people are behind the measured postures: each is predicted from the others."""
+
+LARGE = (0.5, 0.5, 0.025)
+"""Size of the load [m]: as thin as it must be for palms at the height that was measured."""
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedCase:
+    """One case, and what we make of it.
+
+    Args:
+        case: what was measured.
+        palms: height of the palms [m], mean of the frames.
+        hand_force: weight in the hands [N], likewise.
+        moments: measured [N m], likewise; empty where there are none.
+        ours: our statics in the measured postures, their angles and places, likewise.
+        predicted: a hold at this height with this weight, by what decides the posture; None: there is none.
+    """
+
+    case: MeasuredCase
+    palms: float
+    hand_force: float
+    moments: Mapping[str, float]
+    ours: Posed
+    predicted: Mapping[HumanPosture, Posed | None]
+
+    def given(self, posture: HumanPosture | None) -> Posed | None:
+        """Our statics in the measured postures, or a prediction, if there is one."""
+        return self.ours if posture is None else self.predicted.get(posture)
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A person who holds loads alone: each of twice its weight, which two hold by point grasps.
+
+    Args:
+        posed: the person.
+        posture: what decides how the person stands.
+        rows: of measured postures, in place of those of the data file.
+    """
+
+    posed: PosedPerson
+    posture: HumanPosture
+    rows: Sequence[PostureRow] | None = None
+
+    @cached_property
+    def _form(self) -> Form:
+        return half(agent_of(self.posed.person, self.posture, self.rows))
+
+    @cached_property
+    def _solvers(self) -> SolverCache:
+        return SolverCache()
+
+    def hold(self, palms: float, load: float) -> AgentPosture | None:
+        """How the person stands with a load [kg] in the palms at a height [m], ankles at x = 0."""
+        agent = self._form.agent
+        scene = Scene(replace(agent, name=ROBOT), agent, Payload(LARGE, 2.0 * load))
+        problem = HumanProblem(self._form, scene, 1.0, SolverOptions(compiled=False), self._solvers)
+        raw = problem.best_of_many(palms - LARGE[2] / 2.0, 0.0)
+        if raw is None:
+            return None
+        layout = layout_of(problem.program, HUMAN)
+        (instant,) = instants_of(layout, (self._form,), scene, raw.values)
+        posture = instant.postures[HUMAN]
+        base = posture.base_position.copy()
+        base[0] -= self.posed.places(self.posed.model.at(posture))["ankle"][0]
+        return replace(posture, base_position=base)
+
+
+def compare(
+    cases: Iterable[MeasuredCase], progress: Callable[[MeasuredCase], None] = lambda _: None
+) -> list[ComparedCase]:
+    """All cases, one after the other; each person is built once."""
+    people: dict[Person, PosedPerson] = {}
+    holders: dict[tuple[Person, str], dict[HumanPosture, Holder]] = {}
+    found = []
+    for case in cases:
+        progress(case)
+        person = people.setdefault(case.person, PosedPerson(case.person))
+        left_out = case.who if case.lift == MEN_OF_PRIOR else ""
+        rows = rows_without(left_out) if left_out else None
+        own = holders.setdefault(
+            (case.person, left_out), {kind: Holder(person, kind, rows) for kind in POSTURES}
+        )
+        found.append(_compared(case, person, own))
+    return found
+
+
+def _compared(
+    case: MeasuredCase, person: PosedPerson, holders: Mapping[HumanPosture, Holder]
+) -> ComparedCase:
+    pairs = [(_posture(person, frame), frame) for frame in case.frames]
+    ours = _mean([person.posed(posture, frame.hand_force) for posture, frame in pairs])
+    palms = fmean(palms_of(person, frame) for frame in case.frames)
+    force = fmean(frame.hand_force for frame in case.frames)
+    measured = [_moments(person, *pair) for pair in pairs]
+    moments = {name: fmean(each[name] for each in measured) for name in measured[0]}
+    shown = {HANGING: (), HOLDING: POSTURES}.get(case.hands, POSTURES[:1])
+    holds = {kind: holders[kind].hold(palms, force / GRAVITY) for kind in shown}
+    predicted = {
+        kind: None if posture is None else person.posed(posture, force) for kind, posture in holds.items()
+    }
+    return ComparedCase(case, palms, force, moments, ours if case.has_legs else ours.above_legs(), predicted)
+
+
+def _posture(person: PosedPerson, frame: Frame) -> AgentPosture:
+    return person.from_places(frame.places) if frame.places else person.from_angles(frame.features)
+
+
+def palms_of(person: PosedPerson, frame: Frame) -> float:
+    """Height of a frame's palms [m]."""
+    if frame.places:
+        (x, z), (to_x, to_z) = frame.places["elbow"], frame.places["wrist"]
+        fore = math.atan2(to_x - x, z - to_z)
+    else:
+        fore = frame.features["arm"] + frame.features["elbow"]
+    return palm_height(frame.wrist, fore, person.person.stature)
+
+
+def _moments(person: PosedPerson, posture: AgentPosture, frame: Frame) -> Mapping[str, float]:
+    """Measured moments: as they are given, or that at L5/S1 from the plate."""
+    if frame.moments or frame.plate is None:
+        return frame.moments
+    plate = frame.plate
+    return {"l5s1": person.l5s1_from_below(posture, frame.hand_force, (plate.forward, plate.up), plate.x)}
+
+
+def _mean(of: Sequence[Posed]) -> Posed:
+    return Posed(
+        {name: fmean(each.moments[name] for each in of) for name in MOMENTS},
+        {name: fmean(each.angles[name] for each in of) for name in ANGLES},
+        {
+            name: (fmean(each.places[name][0] for each in of), fmean(each.places[name][1] for each in of))
+            for name in of[0].places
+        },
+    )
