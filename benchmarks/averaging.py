@@ -49,7 +49,7 @@ RESULTS = Path(__file__).parent / "results" / "averaging.json"
 
 
 def guessed(name: str, symmetry: str) -> DesignProblem:
-    """The problem that `init` writes for a robot, with one person, without `[collisions]` and from fixed starts."""
+    """The problem that `init` writes for a robot, with one person, no `[collisions]`, and fixed starts."""
     file = HUMANOIDS[name]
     robot = read_robot(file, name, name, "")
     tree = with_meshes_beside(read_urdf(robot.urdf, name, InertiaRule.FILE), file, robot)

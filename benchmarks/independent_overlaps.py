@@ -3,10 +3,14 @@
     python -m benchmarks.independent_overlaps RUN [RUN ...] [--designs N]
 
 Robot and people come from the URDF files that a design is exported as; pinocchio places their solids at the
-logged joint positions, and coal measures each pair (a mesh by its convex hull). Exempt are two links joined
-by one joint, or fixed to such; pairs that overlap in the unscaled robot at its zero posture or in more than
-half of 400 random postures, and likewise in a person; and the load against links within three joints of the
-grasp. No list, exemption or tolerance of `evodesign.collision` is used.
+logged joint positions, and coal says of each pair whether they meet: a mesh by its triangles, never by a hull
+(where no triangles cross, the winding number of a vertex says whether one mesh is within the other). Two
+simple shapes are as deep in each other as coal finds. A mesh is as deep in another body as it has to be moved
+until nothing meets, along the best of 26 directions and the line of centres: never less than the true depth.
+
+Exempt are two links joined by one joint, or fixed to such; pairs that overlap in the unscaled robot at its
+zero posture or in more than half of 400 random postures, and likewise in a person; and the load against links
+within three joints of the grasp. No list, exemption or tolerance of `evodesign.collision` is used.
 
 Told for each run: postures, the deepest overlap, and the pairs deeper than 3 mm.
 Written to benchmarks/results/independent_overlaps.json, printed as a table.
@@ -18,9 +22,10 @@ import argparse
 import json
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from functools import cache
+from itertools import combinations, product
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +47,12 @@ RANDOM = 400
 TURN = np.pi  # [rad], of a joint without limits
 FINGERS = 3  # joints between a hand's frame and what may touch the load
 
+WAYS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
+WAYS /= np.linalg.norm(WAYS, axis=1, keepdims=True)
+FARTHEST, FINE, TINY = 0.3, 1e-4, 1e-12  # [m]
+
 Pair = tuple[str, str]
+Placed = tuple[Any, Any]
 
 
 @dataclass
@@ -65,10 +75,6 @@ class Body:
         self.geometry = pin.buildGeomFromUrdf(
             self.model, str(path), pin.GeometryType.VISUAL, str(self.folder)
         )
-        for each in self.geometry.geometryObjects:
-            if isinstance(each.geometry, coal.BVHModelBase):
-                each.geometry.buildConvexHull(True, "Qt")
-                each.geometry = each.geometry.convex
         self.places = self.geometry.createData()
         frames = self.model.frames
         self.links = [frames[each.parentFrame].name for each in self.geometry.geometryObjects]
@@ -104,17 +110,15 @@ class Body:
             for pair in combinations(links, 2)
             if own[pair[0]] in (own[pair[1]], parents[own[pair[1]]]) or own[pair[1]] == parents[own[pair[0]]]
         }
-        others = {pair for pair in combinations(links, 2) if pair not in joined}
-        zero = self._deep({}, others)
+        zero = self._deep({}, joined)
         rng, counts = np.random.default_rng(1), Counter[Pair]()
         for _ in range(RANDOM):
             drawn = {name: rng.uniform(*limits[name]) for name in joints}
-            counts.update(self._deep(drawn, others))
+            counts.update(self._deep(drawn, joined))
         return frozenset(joined) | zero | {pair for pair, count in counts.items() if 2 * count > RANDOM}
 
-    def _deep(self, joints: Mapping[str, float], pairs: set[Pair]) -> set[Pair]:
-        found = overlaps(self.placed(joints, pin.SE3.Identity()), None)
-        return {pair for pair in found if pair in pairs}
+    def _deep(self, joints: Mapping[str, float], joined: set[Pair]) -> set[Pair]:
+        return {*overlaps(self.placed(joints, pin.SE3.Identity()), None, joined, _overlap)}
 
     def limits(self, joints: Sequence[str]) -> dict[str, tuple[float, float]]:
         """Of joints, where they have any."""
@@ -128,30 +132,108 @@ class Body:
 
 
 def overlaps(
-    one: Sequence[tuple[str, Any, Any]], other: Sequence[tuple[str, Any, Any]] | None
+    one: Sequence[tuple[str, Any, Any]],
+    other: Sequence[tuple[str, Any, Any]] | None,
+    exempt: Collection[Pair] = (),
+    measure: Callable[[Placed, Placed], float] | None = None,
 ) -> dict[Pair, float]:
-    """Depth [m] of all overlaps among solids, or of one with another set, by links."""
+    """Depth [m] of overlaps among solids, or of one with another set, by links.
+
+    Args:
+        one: solids.
+        other: solids as well; None for the pairs among the one's.
+        exempt: pairs of links that may overlap.
+        measure: how deep two solids are in each other; `_depth` if left out.
+    """
     found: dict[Pair, float] = {}
     pairs = combinations(one, 2) if other is None else ((a, b) for a in one for b in other)
     boxes = {id(each): _box(each) for each in [*one, *(other or ())]}
     for first, second in pairs:
         (low, high), (low_2, high_2) = boxes[id(first)], boxes[id(second)]
+        key = (first[0], second[0])
         if (first[0] == second[0] and other is None) or np.any(low > high_2) or np.any(low_2 > high):
             continue
-        result = coal.DistanceResult()
-        depth = -coal.distance(*first[1:], *second[1:], coal.DistanceRequest(), result)
+        depth = 0.0 if key in exempt else (measure or _depth)(first[1:], second[1:])
         if depth > 0.0:
-            key = (first[0], second[0])
             found[key] = max(depth, found.get(key, 0.0))
     return found
 
 
+def _depth(one: Placed, other: Placed) -> float:
+    """How deep two solids are in each other [m]; nothing where they are apart."""
+    if not (_is_mesh(one) or _is_mesh(other)):
+        return max(-float(coal.distance(*one, *other, coal.DistanceRequest(), coal.DistanceResult())), 0.0)
+    if not _overlap(one, other):
+        return 0.0
+    centres = [geometry.aabb_center for geometry, _ in (one, other)]
+    between = other[1].transform(centres[1]) - one[1].transform(centres[0])
+    ways = np.array([*WAYS, between / max(float(np.linalg.norm(between)), TINY)])
+    return min(_shift(one, other, way) for way in (*ways, -ways[-1]))
+
+
+def _shift(one: Placed, other: Placed, way: Any) -> float:
+    """How far the other one has to be moved along a unit vector until it is outside of the one [m]."""
+    low, high = 0.0, FARTHEST
+    while high - low > FINE:
+        half = 0.5 * (low + high)
+        moved = other[0], coal.Transform3s(other[1].getRotation(), other[1].getTranslation() + half * way)
+        low, high = (half, high) if _overlap(one, moved) else (low, half)
+    return high
+
+
+def _overlap(one: Placed, other: Placed) -> bool:
+    return _meet(one, other) or _is_within(one, other) or _is_within(other, one)
+
+
+def _meet(one: Placed, other: Placed) -> bool:
+    """Whether surfaces, or a surface and a simple shape, have a point in common."""
+    return bool(coal.collide(*one, *other, coal.CollisionRequest(), coal.CollisionResult()))
+
+
+def _is_mesh(solid: Placed) -> bool:
+    return isinstance(solid[0], coal.BVHModelBase)
+
+
+def _is_within(one: Placed, other: Placed) -> bool:
+    """Whether a vertex or the centre of one solid is within another, a mesh: by its winding number.
+
+    Source: the solid angle of a triangle: van Oosterom and Strackee (1983).
+    """
+    if not _is_mesh(other):
+        return False  # simple shapes are solid for coal
+    geometry, place = one
+    point = np.array(geometry.vertex(0) if _is_mesh(one) else geometry.aabb_center)
+    local = other[1].getRotation().T @ (place.transform(point) - other[1].getTranslation())
+    corners = _corners(other[0])
+    if np.any(local < corners.min(axis=(0, 1))) or np.any(local > corners.max(axis=(0, 1))):
+        return False
+    a, b, c = np.moveaxis(corners - local, 1, 0)
+    lengths = [np.linalg.norm(each, axis=1) for each in (a, b, c)]
+    above = np.einsum("ij,ij->i", a, np.cross(b, c))
+    below = np.prod(lengths, axis=0) + sum(
+        np.einsum("ij,ij->i", u, v) * length
+        for u, v, length in ((a, b, lengths[2]), (b, c, lengths[0]), (c, a, lengths[1]))
+    )
+    return bool(abs(np.arctan2(above, below).sum()) > np.pi)  # half of 4 pi, of half angles
+
+
+@cache
+def _corners(mesh: Any) -> Any:
+    """Those of a mesh's triangles, shape (n, 3, 3)."""
+    vertices = np.array(mesh.vertices())
+    faces = [mesh.tri_indices(place) for place in range(mesh.num_tris)]
+    return vertices[np.array([[face[k] for k in range(3)] for face in faces])]
+
+
 def _box(solid: tuple[str, Any, Any]) -> tuple[Any, Any]:
-    """Corners of an axis-aligned box about a solid's ball."""
+    """Corners of an axis-aligned box about the turned box of a solid's own axes."""
     _, geometry, where = solid
     geometry.computeLocalAABB()
-    centre = where.getRotation() @ geometry.aabb_center + where.getTranslation()
-    return centre - geometry.aabb_radius, centre + geometry.aabb_radius
+    low, high = geometry.aabb_local.min_, geometry.aabb_local.max_
+    turn = where.getRotation()
+    centre = turn @ (low + high) / 2.0 + where.getTranslation()
+    half = np.abs(turn) @ (high - low) / 2.0
+    return centre - half, centre + half
 
 
 class Judge:
@@ -208,9 +290,8 @@ class Judge:
             placed[who] = body.placed(posture.joints_rad, world)
         found: dict[Pair, float] = {}
         for who, label in (("robot", "robot"), ("human", scene.human.label)):
-            for pair, depth in overlaps(placed[who], None).items():
-                if pair not in self.exempt[label]:
-                    found[f"{label} {pair[0]}", pair[1]] = depth
+            for pair, depth in overlaps(placed[who], None, self.exempt[label]).items():
+                found[f"{label} {pair[0]}", pair[1]] = depth
         for pair, depth in overlaps(placed["robot"], placed["human"]).items():
             found[f"robot {pair[0]}", f"{scene.human.label} {pair[1]}"] = depth
         box = coal.Box(*scene.payload.size)
