@@ -73,8 +73,10 @@ def test_without_the_keys_programs_are_those_without_the_terms(
     assert all(scene.payload.grasp_direction is GraspDirection.FREE for scene in problem.scenes)
     assert all(scene.human.coupled_joints == () for scene in problem.scenes)
     assert all(scene.human.gaze is None for scene in problem.scenes)
+    assert all(scene.human.measured is None for scene in problem.scenes)
+    assert all(scene.human.rhythms == () for scene in problem.scenes)
     before = expressions(problem)
-    for term in ("coupled_joints", "grip", "gaze"):
+    for term in ("coupled_joints", "grip", "gaze", "measured_posture"):
         monkeypatch.delitem(TERMS, term)
     assert expressions(problem) == before
 
