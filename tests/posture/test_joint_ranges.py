@@ -18,7 +18,8 @@ PI, INF = math.pi, math.inf
 def found(lower: float, upper: float) -> tuple[float, float]:
     joint = Joint("j", JointKind.REVOLUTE, "a", "b", Placement(), lower=lower, upper=upper)
     form: Any = SimpleNamespace(
-        joints=("j",), agent=SimpleNamespace(tree=SimpleNamespace(joint_by_name={"j": joint}))
+        joints=("j",),
+        agent=SimpleNamespace(tree=SimpleNamespace(joint_by_name={"j": joint}), bent_ranges={}),
     )
     return joint_ranges(form)[0]
 

@@ -16,7 +16,7 @@ DEEPEST = 0.003
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["g1", "gr1"])
+@pytest.mark.parametrize("name", ["gr1"])
 def test_a_robot_with_meshes_holds_the_load_without_overlap(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
