@@ -43,7 +43,7 @@ def check_prices(evaluator: Evaluator, wanted: int) -> None:
 def test_prices_of_the_default_problem_agree_with_differences(repository: Path) -> None:
     """With sized actuators, which keep their sizes, a disturbance, and bodies that keep apart."""
     check_prices(
-        evaluator_of(build_problem(read_source(repository / "problems" / "icub_lifting.toml")), 2), 3
+        evaluator_of(build_problem(read_source(repository / "problems" / "icub_lifting.toml")), 2), 2
     )
 
 
