@@ -65,6 +65,8 @@ def bent_ranges(
             for joint in chain
             if joint.name not in shared
         ]
+        if not hinges:  # both ends are of one limb, which `check` names
+            continue
         bend = _bend(hinges, places[ends[side]])
         wanted = f"at most what the {side} limb above '{ends[side]}' bends"
         if bend is None:
