@@ -2,8 +2,10 @@
 
 The robot has longer legs than it was built with; its motion is solved and checked as a search would.
 
-    python examples/lift.py
+    python examples/lift.py [PROBLEM]
 """
+
+import sys
 
 import numpy as np
 
@@ -11,7 +13,7 @@ import evodesign
 
 
 def main() -> None:
-    problem = evodesign.open_problem("icub-lift")
+    problem = evodesign.open_problem(*sys.argv[1:] or ["icub-lift"])
     longer = {parameter.name: 1.0 for parameter in problem.parameters if parameter.name.startswith("length.")}
     design = problem.evaluate(longer | {"length.shank": 1.3, "length.thigh": 1.3})
     if not design.postures:
