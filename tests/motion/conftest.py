@@ -20,7 +20,7 @@ from tests.motion.lifted import LIFT, Lifted
 def lifted(problem: DesignProblem) -> Lifted:
     """Lifts by the native method, compiled quickly; holds by IPOPT without a compiler."""
     holds = Setting(problem.scene, problem.space, problem.weights, problem.options)
-    native = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE)
+    native = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE, seconds=200.0)
     setting = replace(holds, options=native)
     return Lifted(
         setting=setting,
