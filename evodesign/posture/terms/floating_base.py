@@ -63,8 +63,9 @@ def _range_bounds(form: Form, ends: Sequence[float], *, at_most: bool) -> Iterat
     joints, bent = form.agent.tree.joint_by_name, form.agent.bent_ranges
     for name, end in zip(form.coordinates, ends, strict=True):
         if name in joints:
-            unit = "m" if joints[name].kind is JointKind.PRISMATIC else "rad"
-            known = "flexion" if name in bent else "joint range"
+            joint = joints[name]
+            unit = "m" if joint.kind is JointKind.PRISMATIC else "rad"
+            known = "flexion" if name in bent and end not in (joint.lower, joint.upper) else "joint range"
             yield Bound(known, end, unit, at_most, part=form.words_of(name))
         else:
             yield Bound("range that joints share", end, "rad", at_most, part=name)
