@@ -32,7 +32,7 @@ WITHOUT_BUTTONS = """
 def draw(tab: Tab) -> Image.Image:
     """The front, and under it the robots side by side."""
     tab.call("Emulation.setDeviceMetricsOverride", width=1240, height=900, deviceScaleFactor=1, mobile=False)
-    tab.value("document.querySelector('.chip').scrollIntoView()")
+    tab.value("document.getElementById('front').scrollIntoView()")
     front = part_of(tab, tab.place("document.getElementById('front')"))
     robots = []
     for mark in MARKS:
