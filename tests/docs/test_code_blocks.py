@@ -28,8 +28,9 @@ SMALLER = {
     r"pop_size=24": "pop_size=4",
     r'\("n_gen", 10\)': '("n_gen", 1)',
     r"n_trials=100": "n_trials=2",
+    r"\[0\.9, 1\.1\]": "[0.8, 1.0, 1.2]",
 }
-"""Budgets for a test."""
+"""Budgets for a test, and heights for which everything is precomputed."""
 
 
 def blocks(page: Path) -> list[str]:
