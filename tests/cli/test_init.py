@@ -14,8 +14,6 @@ import pytest
 import trimesh
 
 from evodesign.cli.main import main
-from evodesign.pool.worker import SerialPool
-from evodesign.posture.precompute import meetings
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.guess.humanoid import Build, humanoid
 from tests.robots import HUMANOIDS, NO_HUMANOIDS, SHAPELESS
@@ -151,13 +149,10 @@ def test_what_is_no_humanoid_is_refused_in_a_sentence(
 
 
 @pytest.mark.needs_robots
+@pytest.mark.usefixtures("few_designs_meet")
 def test_a_public_robot_without_shapes_is_left_to_a_person_who_then_evaluates_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Pairs that come near each other are looked for in a few designs, for time."""
-    monkeypatch.setattr("evodesign.problem.factory.make_pool", lambda *_, **__: SerialPool())
-    for number, few in {"DESIGNS": 4, "AT_REACH": 2, "FEWEST": 1}.items():
-        monkeypatch.setattr(meetings, number, few)
     file = tmp_path / "new.toml"
     assert run("init", SHAPELESS, "--to", file) == 0
     assert "1.777 x 1.777 m is more than a third of the robot's 1.38 m" in " ".join(file.read_text().split())
