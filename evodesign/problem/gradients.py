@@ -14,7 +14,7 @@ Everything else goes along the whole tangent, as in `sensitivities`, which takes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -123,6 +123,7 @@ class _Design:
         self._values, self._result = values, result
         self._known: dict[str, list[OverTime]] = {}
         self._near: dict[int, list[tuple[Instant, ...]]] = {}
+        self._moved: dict[int, tuple[float, tuple[DesignResult, ...]]] = {}
 
     @cached_property
     def _as_given(self) -> list[CaseDerivative | NotDifferentiable]:
@@ -263,25 +264,26 @@ class _Design:
         """What the parameters of actuators change of a quantity at the same torques."""
         found = np.zeros(len(self._values))
         given = self._given if isinstance(self._given, np.ndarray) else np.eye(len(found))
-        for position, (step, results) in self._with_other_actuators.items():
-            values = [quantity.value(result.scene_of(case), postures) for result in results]
-            found[position] = five_point(values, step)
+        for position, parameter in enumerate(self._problem.space.parameters):
+            if parameter.joints and not parameter.choices:
+                step, results = self._beside(position)
+                values = [quantity.value(result.scene_of(case), postures) for result in results]
+                found[position] = five_point(values, step)
         return np.asarray(found @ given)
 
-    @cached_property
-    def _with_other_actuators(self) -> dict[int, tuple[float, tuple[DesignResult, ...]]]:
-        """The same postures with other actuators: step and results at -2 to 2 steps, by parameter."""
-        space, tree = self._problem.space, self._result.robot.tree
-        found = {}
-        for position, parameter in enumerate(space.parameters):
-            if parameter.joints and not parameter.choices:
-                given = np.array(self._result.program_values)
-                step = STEP * given[position]
-                unit = np.eye(len(given))[position] * step
-                designs = [(given + count * unit).tolist() for count in range(-2, 3)]
-                results = [replace(self._result, tree=space.resized(tree, values)) for values in designs]
-                found[position] = (step, tuple(results))
-        return found
+    def _beside(self, position: int) -> tuple[float, tuple[DesignResult, ...]]:
+        """The same postures with another value of a parameter: a step, and results at -2 to 2 steps."""
+        if position not in self._moved:
+            given = np.array(self._result.program_values)
+            step = STEP * (abs(given[position]) or 1.0)
+            unit = np.eye(len(given))[position] * step
+            designs = [(given + count * unit).tolist() for count in (-2, -1, 1, 2)]
+            space, tree = self._problem.space, self._result.robot.tree
+            before, lower, upper, after = (
+                replace(self._result, tree=space.resized(tree, values)) for values in designs
+            )
+            self._moved[position] = (step, (before, lower, self._result, upper, after))
+        return self._moved[position]
 
     def _of_shared_reach(self) -> Found:
         people, robot = self._result.people_highest, self._result.reach.highest
@@ -338,25 +340,15 @@ class _Design:
         return found
 
     def _of_robot(self, name: str) -> Found:
-        space, tree = self._problem.space, self._result.robot.tree
         if isinstance(self._given, NotDifferentiable):
             return self._given
-        slopes = np.eye(len(self._values)) if self._given is None else self._given
-
-        def value(position: int, step: float) -> float:
-            moved = np.array(self._result.program_values) + step * slopes[:, position]
-            moved = moved.tolist()
-            found = objective_value(name, replace(self._result, tree=space.resized(tree, moved)))
-            return 0.0 if found is None else found  # it exists: it does for the design itself
-
-        steps = [STEP * p.slope_at(x) for p, x in zip(space.records, self._values, strict=True)]
-        return np.array(
-            [_difference(value, position, step) if step else 0.0 for position, step in enumerate(steps)]
-        )
-
-
-def _difference(value: Callable[[int, float], float], position: int, step: float) -> float:
-    return five_point([value(position, count * step) for count in range(-2, 3)], step)
+        found = np.zeros(len(self._values))
+        for position, parameter in enumerate(self._problem.space.parameters):
+            if not parameter.choices:
+                step, results = self._beside(position)
+                values = [objective_value(name, result) or 0.0 for result in results]
+                found[position] = five_point(values, step)
+        return found if self._given is None else np.asarray(found @ self._given)
 
 
 def _slope(derivative: ReachDerivative | NotDifferentiable) -> Found:
