@@ -1,0 +1,98 @@
+"""How results spread over samples of people, as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from evodesign.analysis.people_spread import Moments, PeopleSpread
+from evodesign.cli.output import heading, markup, rounded
+from evodesign.cli.tables.table import FittedTable, names, numbers, titled
+from evodesign.records import Constraint, Objective
+
+__all__ = ["quantities_table", "spread_table"]
+
+CAPTION = "mean ± standard deviation over people of the measured distribution (docs/person.md)"
+
+
+def spread_table(
+    spread: PeopleSpread, objectives: Sequence[Objective], constraints: Sequence[Constraint]
+) -> FittedTable:
+    """A row for each sampled design: on how many fronts it is, and its quantities.
+
+    Args:
+        spread: of the designs.
+        objectives: of the problem.
+        constraints: of the problem.
+    """
+    headings = _headings(objectives, constraints)
+    varying = [name for name in headings if name in _varying(spread)]
+    compared = (
+        []
+        if spread.reference is None
+        else [f"{name} less that of design {spread.reference}" for name in varying]
+    )
+    columns = numbers("design", "on the front", *(headings[name] for name in headings), *compared)
+    title = f"{len(spread.designs)} designs beside {spread.samples} samples of people"
+    table = titled(title, columns, caption=CAPTION)
+    for number, own in spread.designs.items():
+        cells = [moments_text(own.quantities[name].values) for name in headings]
+        if compared:
+            cells += [moments_text(own.quantities[name].difference) for name in varying]
+        table.add_row(str(number), f"{own.on_front} of {spread.samples}", *cells)
+    return table
+
+
+def quantities_table(
+    spread: PeopleSpread,
+    number: int,
+    objectives: Sequence[Objective],
+    constraints: Sequence[Constraint],
+    means: Mapping[str, float],
+    reference: str,
+) -> FittedTable:
+    """A row for each quantity of a design.
+
+    Args:
+        spread: of the design and others.
+        number: of the design.
+        objectives: of the problem.
+        constraints: of the problem.
+        means: the quantities beside the mean people.
+        reference: what the reference design is called.
+    """
+    own, compared = spread.designs[number], spread.reference not in (None, number)
+    further = numbers(f"less that of {reference}", f"better than {reference}") if compared else []
+    columns = [*names("quantity"), *numbers("mean person", "people"), *further]
+    table = titled("", columns, caption=CAPTION)
+    for name, title in _headings(objectives, constraints).items():
+        each = own.quantities[name]
+        cells = [rounded(means.get(name)), moments_text(each.values)]
+        if compared:
+            count = each.difference.count if each.difference is not None else 0
+            better = "-" if each.better is None else f"{each.better} of {count}"
+            cells += [moments_text(each.difference), better]
+        table.add_row(markup(title), *cells)
+    return table
+
+
+def moments_text(moments: Moments | None) -> str:
+    """`118.9 ± 3.2`; the mean alone where nothing spreads, a dash for none."""
+    if moments is None or moments.deviation is None or not moments.spreads:
+        return rounded(None if moments is None else moments.mean)
+    return f"{rounded(moments.mean)} ± {moments.deviation:.2g}"
+
+
+def _headings(objectives: Sequence[Objective], constraints: Sequence[Constraint]) -> dict[str, str]:
+    """Of all quantities, by name."""
+    found = {each.name: heading(each) for each in objectives}
+    return found | {each.name: f"{each.name} [{each.unit}]" for each in constraints if each.name not in found}
+
+
+def _varying(spread: PeopleSpread) -> set[str]:
+    """Names of quantities that depend on the people."""
+    return {
+        name
+        for own in spread.designs.values()
+        for name, each in own.quantities.items()
+        if each.values is not None and each.values.spreads
+    }
