@@ -20,6 +20,7 @@ from evodesign.records import Constraint, Evaluation, Objective, SampledDesign, 
 from evodesign.runlog.run import RunLog
 
 __all__ = [
+    "NEGLIGIBLE",
     "DesignSpread",
     "Moments",
     "PeopleSpread",
@@ -33,7 +34,7 @@ __all__ = [
 ]
 
 NEGLIGIBLE = 1e-6
-"""Deviation, as a share of the mean's size, below which a quantity does not depend on the people."""
+"""Deviation or gain, as a share of a value's size, that counts as none: solvers leave as much open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +107,10 @@ class PeopleSpread:
 
 def spread_of_run(run: RunLog, sampled: SampledPeople | None) -> PeopleSpread | None:
     """Of the samples that are kept of a run; None where there are none."""
-    if sampled is None or not sampled.designs:
+    asked = [] if sampled is None else [each for each in sampled.designs if each.sample <= sampled.samples]
+    if sampled is None or not asked:
         return None
-    header = run.header
-    return people_spread(header.objectives, header.constrained, sampled.designs, sampled.reference)
+    return people_spread(run.header.objectives, run.header.constrained, asked, sampled.reference)
 
 
 def spread_among(spread: PeopleSpread, numbers: Sequence[int]) -> PeopleSpread | None:
@@ -177,12 +178,12 @@ def _quantity(
         if (value := _value(found[number], name)) is not None
         if (compared := _value(other, name)) is not None
     ]
-    better = None
+    better, differences = None, [value - compared for value, compared in pairs]
     if sense is not None:
-        better = sum(to_minimise(sense, value) < to_minimise(sense, compared) for value, compared in pairs)
-    return QuantitySpread(
-        Moments.of(values), Moments.of([value - compared for value, compared in pairs]), better
-    )
+        least = [NEGLIGIBLE * abs(compared) for _, compared in pairs]
+        gains = [-to_minimise(sense, difference) for difference in differences]
+        better = sum(gain > few for gain, few in zip(gains, least, strict=True))
+    return QuantitySpread(Moments.of(values), Moments.of(differences), better)
 
 
 def _value(evaluation: Evaluation, name: str) -> float | None:
@@ -192,6 +193,8 @@ def _value(evaluation: Evaluation, name: str) -> float | None:
 
 def spread_sentence(spread: PeopleSpread) -> str:
     """How firmly the sampled designs stand on the front."""
+    if not spread.samples:
+        return "no sample of people has met all designs yet"
     always = [n for n, each in spread.designs.items() if each.on_front == spread.samples]
     sometimes = [n for n, each in spread.designs.items() if 0 < each.on_front < spread.samples]
     many = len(spread.designs)

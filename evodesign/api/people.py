@@ -61,6 +61,8 @@ def draw_people(
 ) -> SampledPeople:
     """Evaluate designs of a run beside samples of people, as far as that has not been done.
 
+    Designs that met some of the samples before meet the others too, so that all can be compared.
+
     Args:
         run: that has the designs.
         samples: how many.
@@ -76,8 +78,8 @@ def draw_people(
     """
     refuse_unsampled(run.header.problem)
     known = {each.number for each in run.evaluations}
-    numbers = tuple(dict.fromkeys((*designs, *(() if reference is None else (reference,)))))
-    for number in numbers:
+    asked = (*designs, *(() if reference is None else (reference,)))
+    for number in asked:
         if number not in known:
             raise InputError(
                 "DESIGNS", "", f"designs of {run.directory}, which has {len(known)}", f"{number}"
@@ -85,6 +87,7 @@ def draw_people(
     with locked(run.directory):
         kept = msgspec.structs.replace(_kept(run, display), samples=samples, reference=reference)
         write_sampled(run, kept)
+        numbers = [*dict.fromkeys((*asked, *(each.design for each in kept.designs)))]
         done = {(each.sample, each.design) for each in kept.designs}
         missing = [
             (sample, number)

@@ -84,5 +84,5 @@ def spread_over_people(
         ):
             kept = draw_people(run, asked, chosen, compared, pool, display, stop)
     except KeyboardInterrupt:
-        raise Interrupted(f"stopped; go on with: evodesign spread {run.directory}") from None
+        raise Interrupted("stopped; what had arrived is kept, and the same call goes on") from None
     return spread_of_run(run, kept)

@@ -5,21 +5,23 @@ Samples differ in parameters of the programs alone, so that all evaluations of a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from evodesign.identity import digest
 from evodesign.nlp.solver import SolverCache
 from evodesign.pool.base import Limits, Pool
+from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.factory import cached_precomputed, values_factory
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.samples import sampled_source
-from evodesign.records import Assessed, ProblemSource
+from evodesign.records import Assessed, ProblemSource, SampledDesign
 
-__all__ = ["Sampled", "SampledFactory", "sampled_factory"]
+__all__ = ["Sampled", "SampledFactory", "sampled_beside", "sampled_factory"]
 
 Sampled = tuple[int, tuple[float, ...]]
 """The number of a sample, and a design as one value per parameter."""
@@ -72,3 +74,30 @@ def sampled_factory(
     known = {sample: cached_precomputed(each, pool, progress) for sample, each in problems.items()}
     both = {sample: (each, known[sample]) for sample, each in problems.items()}
     return SampledFactory(digest((source, samples)), both)
+
+
+def sampled_beside(
+    problem: DesignProblem,
+    designs: Sequence[tuple[float, ...]],
+    jobs: int,
+    progress: PrecomputeProgress = SILENT,
+) -> tuple[SampledDesign, ...]:
+    """Designs beside all samples of people that their problem asks for, evaluated in this process.
+
+    Args:
+        problem: that asks for samples.
+        designs: one value per parameter each; they are numbered from zero.
+        jobs: that work out what is missing.
+        progress: is shown what is worked out.
+    """
+    samples = [*range(1, problem.samples + 1)]
+    with make_pool("joblib", jobs, note=progress.note) as pool:
+        assess = sampled_factory(problem.source, samples, pool, progress)()
+    found = []
+    for sample in samples:
+        for number, values in enumerate(designs):
+            began = time.perf_counter()
+            assessment = assess((sample, values)).assessment
+            seconds = time.perf_counter() - began
+            found.append(SampledDesign(sample=sample, design=number, assessment=assessment, seconds=seconds))
+    return tuple(found)

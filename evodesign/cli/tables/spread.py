@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from evodesign.analysis.people_spread import Moments, PeopleSpread
+from evodesign.analysis.people_spread import NEGLIGIBLE, Moments, PeopleSpread, QuantitySpread
 from evodesign.cli.output import heading, markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Constraint, Objective
@@ -37,7 +37,7 @@ def spread_table(
     for number, own in spread.designs.items():
         cells = [moments_text(own.quantities[name].values) for name in headings]
         if compared:
-            cells += [moments_text(own.quantities[name].difference) for name in varying]
+            cells += [difference_text(own.quantities[name]) for name in varying]
         table.add_row(str(number), f"{own.on_front} of {spread.samples}", *cells)
     return table
 
@@ -70,7 +70,7 @@ def quantities_table(
         if compared:
             count = each.difference.count if each.difference is not None else 0
             better = "-" if each.better is None else f"{each.better} of {count}"
-            cells += [moments_text(each.difference), better]
+            cells += [difference_text(each), better]
         table.add_row(markup(title), *cells)
     return table
 
@@ -80,6 +80,16 @@ def moments_text(moments: Moments | None) -> str:
     if moments is None or moments.deviation is None or not moments.spreads:
         return rounded(None if moments is None else moments.mean)
     return f"{rounded(moments.mean)} ± {moments.deviation:.2g}"
+
+
+def difference_text(quantity: QuantitySpread) -> str:
+    """The same of the difference to the reference; zero where a solver leaves more open."""
+    values, found = quantity.values, quantity.difference
+    if values is not None and found is not None:
+        size = abs(found.mean) + (found.deviation or 0.0)
+        if size <= NEGLIGIBLE * abs(values.mean):
+            return "0"
+    return moments_text(found)
 
 
 def _headings(objectives: Sequence[Objective], constraints: Sequence[Constraint]) -> dict[str, str]:

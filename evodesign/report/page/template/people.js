@@ -1,0 +1,70 @@
+// How results spread over people drawn from the measured distribution.
+
+const overPeople = content.spread;
+const spreadOf = new Map((overPeople?.designs ?? []).map((one) => [one.id, one]));
+
+const momentsText = (moments) => {
+  if (!moments) return "–";
+  const spreads = moments.deviation !== null && moments.deviation > 1e-6 * Math.abs(moments.mean);
+  return spreads ? `${figure(moments.mean)} ± ${figure(moments.deviation, 2)}` : figure(moments.mean);
+};
+
+// What a solver leaves open is no difference.
+const differenceText = (quantity) => {
+  const { difference } = quantity ?? {};
+  if (!difference) return "–";
+  const size = Math.abs(difference.mean) + (difference.deviation ?? 0);
+  return size <= 1e-6 * Math.abs(quantity.mean) ? "0" : momentsText(difference);
+};
+
+const peopleRow = (own) =>
+  element(
+    "tr",
+    { "data-people": `${own.id}`, onclick: () => pick(own.id) },
+    element(
+      "td",
+      { class: "number" },
+      element("button", { type: "button", class: "open", text: `${own.id}`, "aria-label": `Show design ${own.id}` }),
+    ),
+    element("td", { class: "number", text: `${own.on_front} of ${overPeople.samples}` }),
+    ...resultAxes.map((axis) =>
+      element("td", { class: "number", text: momentsText(own.quantities[axis.name]) }),
+    ),
+  );
+
+const startPeople = () => {
+  if (!overPeople) return;
+  byId("people-section").hidden = false;
+  byId("people-hint").textContent =
+    `Mean ± standard deviation over ${overPeople.samples} people drawn from the measured distribution, whom all of these designs met; and in how many of the samples none of these designs dominates it.`;
+  const heads = [["Design"], ["On the front"], ...resultAxes.map((axis) => [label(axis)])];
+  byId("people").append(
+    element("table", {}, headRow(heads), element("tbody", {}, ...overPeople.designs.map(peopleRow))),
+  );
+};
+
+// The section of the card; nothing for a design that met no samples of people.
+const peopleSection = (number) => {
+  const own = spreadOf.get(number);
+  if (!own) return null;
+  const compared = overPeople.reference !== null && overPeople.reference !== number;
+  const heads = [["Quantity", ""], ["People"]];
+  if (compared) heads.push([`Less that of design ${overPeople.reference}`], ["Better"]);
+  const rows = resultAxes.map((axis) => {
+    const quantity = own.quantities[axis.name];
+    const cells = [momentsText(quantity)];
+    const { better, samples } = quantity?.difference ?? {};
+    if (compared) cells.push(differenceText(quantity), better === undefined ? "–" : `in ${better} of ${samples}`);
+    return element(
+      "tr",
+      {},
+      element("th", { scope: "row", text: capital(label(axis)) }),
+      ...cells.map((text) => element("td", { class: "number", text })),
+    );
+  });
+  const caption = element("caption", {
+    text: `Mean ± standard deviation over ${own.samples} people drawn from the measured distribution; feasible in ${own.feasible}. Differences are those beside the same person.`,
+  });
+  const table = element("table", { class: "bill" }, caption, headRow(heads), element("tbody", {}, ...rows));
+  return fold("People", `on the front in ${own.on_front} of ${overPeople.samples} samples`, table);
+};
