@@ -113,9 +113,9 @@ def deviation(
         drawn: z, numbers or a symbol.
     """
     weights, z = _hats(given.knots, eta), ca.vertcat(*drawn) if isinstance(drawn, tuple) else drawn
-    mean, roots = ca.mtimes(weights, ca.DM(np.array(given.means))).T, given.roots
+    mean, roots = ca.horzsplit(ca.mtimes(weights, ca.DM(np.array(given.means)))), given.roots
     for i, j in zip(*np.nonzero(np.any(roots != 0.0, axis=0)), strict=True):
-        mean[int(i)] += ca.mtimes(weights, ca.DM(roots[:, i, j])) * z[int(j)]
+        mean[i] = mean[i] + ca.mtimes(weights, ca.DM(roots[:, i, j])) * z[int(j)]
     away = [y[name] - mean[i] for i, name in enumerate(FEATURES)]
     precisions, found = np.array(given.precisions), 0.0
     for i, j in zip(*np.nonzero(np.any(precisions != 0.0, axis=0)), strict=True):
