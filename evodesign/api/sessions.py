@@ -27,6 +27,7 @@ from evodesign.problem.factory import Remembering, evaluation_factory
 from evodesign.problem.judge import judged_notes
 from evodesign.problem.notes import notes
 from evodesign.problem.reread import reread
+from evodesign.problem.samples import asked_samples
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
 from evodesign.runlog.directory import name_in_path, segments
 from evodesign.runlog.header import header_of, renewed, source_differences, version_differences, versions
@@ -236,11 +237,11 @@ def _pool(workers: Workers, display: Display, stop: Stop) -> Pool:
 
 def _sampled(run: RunLog, pool: Pool, display: Display, stop: Stop) -> None:
     """Let the front of a search that has ended meet as many samples of people as its problem asks for."""
-    problem = build_problem(run.header.problem)
-    designs = usual_designs(run)
-    if problem.samples and designs and run.header.search.algorithm != JOINT_STARTS:
+    samples, designs = asked_samples(run.header.problem), usual_designs(run)
+    if samples and designs and run.header.search.algorithm != JOINT_STARTS:
+        reference = usual_reference(build_problem(run.header.problem), run)
         with stop.heeded():
-            draw_people(run, problem.samples, designs, usual_reference(problem, run), pool, display, stop)
+            draw_people(run, samples, designs, reference, pool, display, stop)
 
 
 def _judged(run: RunLog, display: Display) -> RunLog:

@@ -19,7 +19,7 @@ from evodesign.problem.person_posture import is_measured
 from evodesign.problem.source import decode_toml
 from evodesign.records import ProblemSource
 
-__all__ = ["refuse_unsampled", "sampled_source", "samples_of"]
+__all__ = ["asked_samples", "refuse_unsampled", "sampled_source", "samples_of"]
 
 
 def samples_of(tables: ProblemFile, source: ProblemSource) -> int:
@@ -34,6 +34,14 @@ def samples_of(tables: ProblemFile, source: ProblemSource) -> int:
             wanted = f"the same number for all people, {next(iter(asked.values()))}"
             raise InputError(source.path, f"{key}.spread", wanted, f"{samples}")
     return next(iter(asked.values()), 0)
+
+
+def asked_samples(source: ProblemSource) -> int:
+    """The same from a problem's text; 0 also for one that this evodesign cannot read."""
+    try:
+        return samples_of(decode_toml(source.text, source.path, ProblemFile), source)
+    except InputError:
+        return 0
 
 
 def refuse_unsampled(source: ProblemSource) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,29 +24,13 @@ from evodesign.problem.sampled_designs import sampled_beside, sampled_factory
 from evodesign.problem.samples import refuse_unsampled, sampled_source
 from evodesign.problem.source import source_of
 from evodesign.records import ProblemSource
-
-LIFTING = Path(__file__).parents[1] / "golden" / "lifting"
+from tests.measured_people import LIFTING, measured_tables
 
 SAMPLES, DESIGNS = 10, 10
 
 
-def tables(grasp: str = "rigid", **human: Any) -> dict[str, Any]:
-    """One person, one height, two lengths."""
-    found = tomllib.loads((LIFTING / "problem.toml").read_text(encoding="utf-8"))
-    found["human"] = [{**found["human"][0], "posture": "measured", **human}]
-    found["payload"] = {key: found["payload"][key] for key in ("size_m", "mass_kg")} | {"grasp": grasp}
-    if grasp == "rigid":
-        found["payload"]["hand_moment_n_m"] = 7.0
-    found["task"]["heights_m"] = [1.0]
-    found["design"] = {"length": found["design"]["length"]}
-    found["search"].pop("start")
-    found["solver"] = {"start_portfolio": False}
-    del found["disturbance"]
-    return found
-
-
 def source(**human: Any) -> ProblemSource:
-    return source_of(tables(**human), LIFTING)
+    return source_of(measured_tables(**human), LIFTING)
 
 
 def some_designs(problem: DesignProblem, count: int) -> list[tuple[float, ...]]:
@@ -66,12 +49,14 @@ def test_samples_of_designs_agree_with_separate_runs(
     grasp: str, samples: int, designs: int, pool: Pool
 ) -> None:
     """To the last bit: a problem of its own for each sample, with programs of its own."""
-    asked = source_of(tables(grasp, spread=samples), LIFTING)
+    asked = source_of(measured_tables(grasp, spread=samples), LIFTING)
     chosen = some_designs(build_problem(asked), designs)
     together = sampled_factory(asked, [*range(1, samples + 1)], pool)()
     torques = []
     for sample in range(1, samples + 1):
-        alone = evaluator_of(build_problem(source_of(tables(grasp, posture_sample=sample), LIFTING)), 1)
+        alone = evaluator_of(
+            build_problem(source_of(measured_tables(grasp, posture_sample=sample), LIFTING)), 1
+        )
         assert bool(alone.known.values) == (grasp == "point"), (
             "the person's own part is known with point grasps"
         )
@@ -108,7 +93,7 @@ def test_a_sample_is_the_problem_that_says_so() -> None:
 
 
 def test_where_some_people_have_a_spread_the_others_stay_the_mean() -> None:
-    several = tables()
+    several = measured_tables()
     first = several["human"][0]
     several["human"] = [{**first, "name": "a", "spread": 3}, {**first, "name": "b"}]
     drawn = [
@@ -124,7 +109,8 @@ def test_where_some_people_have_a_spread_the_others_stay_the_mean() -> None:
 
 def test_samples_share_programs_and_starts_but_the_persons_own_part() -> None:
     mean, drawn = (
-        build_problem(source_of(tables("point", **keys), LIFTING)) for keys in ({}, {"posture_sample": 2})
+        build_problem(source_of(measured_tables("point", **keys), LIFTING))
+        for keys in ({}, {"posture_sample": 2})
     )
     keys = [
         {piece: key_of(precompute_setting(each), piece) for stage in staged_pieces(each) for piece in stage}
@@ -144,7 +130,8 @@ def test_a_spread_changes_no_evaluation_and_no_prepared_piece() -> None:
 
 def test_the_persons_own_part_is_that_of_the_sample(pool: Pool) -> None:
     mean, drawn = (
-        build_problem(source_of(tables("point", **keys), LIFTING)) for keys in ({}, {"posture_sample": 2})
+        build_problem(source_of(measured_tables("point", **keys), LIFTING))
+        for keys in ({}, {"posture_sample": 2})
     )
     (one,), (other,) = ([*cached_precomputed(each, pool).values.values()] for each in (mean, drawn))
     assert one.coefficients[0] != pytest.approx(other.coefficients[0], rel=1e-3)
@@ -183,7 +170,7 @@ def test_people_who_cannot_be_drawn_and_unequal_numbers_are_refused() -> None:
     with pytest.raises(InputError, match='wanted a person with posture = "measured"'):
         refuse_unsampled(source(posture="least_torque"))
     refuse_unsampled(source())
-    several = tables()
+    several = measured_tables()
     first = several["human"][0]
     several["human"] = [{**first, "name": "a", "spread": 3}, {**first, "name": "b", "spread": 4}]
     with pytest.raises(
