@@ -50,6 +50,10 @@ def spread(
         InputError: designs that the run has not, people who cannot be drawn, or nobody says how many.
         RunError: not a run, or another process is writing it.
         Interrupted: stopped by Ctrl-C; what had arrived is kept.
+    Example:
+        >>> people = evodesign.spread("runs/people", reference=0).spread
+        >>> people["samples"], people["reference"]
+        (3, 0)
     """
     directory = run.log.directory if isinstance(run, Run) else Path(run)
     opened = read_run(directory)

@@ -34,9 +34,8 @@ def test_the_page_shows_on_how_many_fronts_a_design_is(
     path.write_text(page_html(content), encoding="utf-8")
     chromium.events.clear()
     open_page(chromium, path)
-    rows = chromium.value(
-        "[...document.querySelectorAll('[data-people]')].map(row => [...row.cells].map(each => each.textContent))"
-    )
+    cells = "[...row.cells].map(one => one.textContent)"
+    rows = chromium.value(f"[...document.querySelectorAll('[data-people]')].map(row => {cells})")
     assert [row[:2] for row in rows] == [
         [f"{own['id']}", f"{own['on_front']} of {SAMPLES}"] for own in content.spread["designs"]
     ]
