@@ -6,6 +6,8 @@ looked at, and is never evaluated again.
 
 from __future__ import annotations
 
+import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from statistics import median
@@ -100,9 +102,14 @@ def draw_people(
             with display.precompute() as progress:
                 drawn = sorted({sample for sample, _ in missing})
                 factory = sampled_factory(run.header.problem, drawn, pool, progress)
+            left, began = Counter(sample for sample, _ in missing), time.monotonic()
             for found in _evaluated(run, factory, missing, pool, stop):
                 kept = msgspec.structs.replace(kept, designs=(*kept.designs, found))
                 write_sampled(run, kept)
+                left[found.sample] -= 1
+                if left.total() and not left[found.sample]:
+                    pace = (time.monotonic() - began) / (len(missing) - left.total())
+                    display.note(f"sample {found.sample} has met all: {in_words(pace * left.total())}")
     return kept
 
 

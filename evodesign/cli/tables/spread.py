@@ -35,9 +35,9 @@ def spread_table(
     title = f"{len(spread.designs)} designs beside {spread.samples} samples of people"
     table = titled(title, columns, caption=CAPTION)
     for number, own in spread.designs.items():
-        cells = [moments_text(own.quantities[name].values) for name in headings]
+        cells = [moments_text(own.quantities[name].values, own.samples) for name in headings]
         if compared:
-            cells += [difference_text(own.quantities[name]) for name in varying]
+            cells += [difference_text(own.quantities[name], own.samples) for name in varying]
         table.add_row(str(number), f"{own.on_front} of {spread.samples}", *cells)
     return table
 
@@ -66,30 +66,35 @@ def quantities_table(
     table = titled("", columns, caption=CAPTION)
     for name, title in _headings(objectives, constraints).items():
         each = own.quantities[name]
-        cells = [rounded(means.get(name)), moments_text(each.values)]
+        cells = [rounded(means.get(name)), moments_text(each.values, own.samples)]
         if compared:
             count = each.difference.count if each.difference is not None else 0
             better = "-" if each.better is None else f"{each.better} of {count}"
-            cells += [difference_text(each), better]
+            cells += [difference_text(each, own.samples), better]
         table.add_row(markup(title), *cells)
     return table
 
 
-def moments_text(moments: Moments | None) -> str:
-    """`118.9 ± 3.2`; the mean alone where nothing spreads, a dash for none."""
-    if moments is None or moments.deviation is None or not moments.spreads:
-        return rounded(None if moments is None else moments.mean)
-    return f"{rounded(moments.mean)} ± {moments.deviation:.2g}"
+def moments_text(moments: Moments | None, samples: int) -> str:
+    """`118.9 ± 3.2`; the mean alone where nothing spreads, a dash for none.
+
+    `(7 of 10)` follows where the quantity exists in some of the samples only.
+    """
+    if moments is None:
+        return rounded(None)
+    some = f" ({moments.count} of {samples})" if moments.count < samples else ""
+    spread = f" ± {moments.deviation:.2g}" if moments.deviation is not None and moments.spreads else ""
+    return f"{rounded(moments.mean)}{spread}{some}"
 
 
-def difference_text(quantity: QuantitySpread) -> str:
+def difference_text(quantity: QuantitySpread, samples: int) -> str:
     """The same of the difference to the reference; zero where a solver leaves more open."""
     values, found = quantity.values, quantity.difference
     if values is not None and found is not None:
         size = abs(found.mean) + (found.deviation or 0.0)
         if size <= NEGLIGIBLE * abs(values.mean):
             return "0"
-    return moments_text(found)
+    return moments_text(found, samples)
 
 
 def _headings(objectives: Sequence[Objective], constraints: Sequence[Constraint]) -> dict[str, str]:

@@ -38,7 +38,8 @@ def test_a_card_compares_a_design_with_the_reference() -> None:
 
 def test_what_a_solver_leaves_open_is_no_difference() -> None:
     quantity = QuantitySpread(Moments(100.0, 3.0, 10), Moments(2e-8, 1e-8, 10), 0)
-    assert difference_text(quantity) == "0"
-    assert moments_text(quantity.values) == "100 ± 3"
-    assert moments_text(None) == "-"
-    assert moments_text(Moments(2.5, None, 1)) == "2.5"
+    assert difference_text(quantity, 10) == "0"
+    assert moments_text(quantity.values, 10) == "100 ± 3"
+    assert moments_text(None, 10) == "-"
+    assert moments_text(Moments(2.5, None, 1), 10) == "2.5 (1 of 10)"
+    assert moments_text(Moments(2.5, 0.5, 7), 10) == "2.5 ± 0.5 (7 of 10)"

@@ -3,18 +3,20 @@
 const overPeople = content.spread;
 const spreadOf = new Map((overPeople?.designs ?? []).map((one) => [one.id, one]));
 
-const momentsText = (moments) => {
+// In how many of the samples a quantity exists is said where it is not all of them.
+const momentsText = (moments, samples) => {
   if (!moments) return "–";
+  const some = moments.samples < samples ? ` (${moments.samples} of ${samples})` : "";
   const spreads = moments.deviation !== null && moments.deviation > 1e-6 * Math.abs(moments.mean);
-  return spreads ? `${figure(moments.mean)} ± ${figure(moments.deviation, 2)}` : figure(moments.mean);
+  return figure(moments.mean) + (spreads ? ` ± ${figure(moments.deviation, 2)}` : "") + some;
 };
 
 // What a solver leaves open is no difference.
-const differenceText = (quantity) => {
+const differenceText = (quantity, samples) => {
   const { difference } = quantity ?? {};
   if (!difference) return "–";
   const size = Math.abs(difference.mean) + (difference.deviation ?? 0);
-  return size <= 1e-6 * Math.abs(quantity.mean) ? "0" : momentsText(difference);
+  return size <= 1e-6 * Math.abs(quantity.mean) ? "0" : momentsText(difference, samples);
 };
 
 const peopleRow = (own) =>
@@ -28,7 +30,7 @@ const peopleRow = (own) =>
     ),
     element("td", { class: "number", text: `${own.on_front} of ${overPeople.samples}` }),
     ...resultAxes.map((axis) =>
-      element("td", { class: "number", text: momentsText(own.quantities[axis.name]) }),
+      element("td", { class: "number", text: momentsText(own.quantities[axis.name], own.samples) }),
     ),
   );
 
@@ -52,9 +54,9 @@ const peopleSection = (number) => {
   if (compared) heads.push([`Less that of design ${overPeople.reference}`], ["Better"]);
   const rows = resultAxes.map((axis) => {
     const quantity = own.quantities[axis.name];
-    const cells = [momentsText(quantity)];
+    const cells = [momentsText(quantity, own.samples)];
     const { better, samples } = quantity?.difference ?? {};
-    if (compared) cells.push(differenceText(quantity), better === undefined ? "–" : `in ${better} of ${samples}`);
+    if (compared) cells.push(differenceText(quantity, own.samples), better === undefined ? "–" : `in ${better} of ${samples}`);
     return element(
       "tr",
       {},
