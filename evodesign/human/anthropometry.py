@@ -71,13 +71,15 @@ def landmarks(person: Person) -> Mapping[str, Vector]:
 
     Spine: with u the height of a lumbar and t = 0.75 u that of a lower thoracic segment, xiphion to
     omphalion is T9..T12 and L1..L3, 4 t + 3 u; L4 and L5 lie below the omphalion (joint jL4L3), the xiphion
-    is joint jT9T8. The frame of a link stands where its joint to the parent is.
+    is joint jT9T8. A man's joint jL5S1 is where it was measured: two lumbars below the omphalion is too low.
+    The frame of a link stands where its joint to the parent is.
     """
     length, foot, trunk = tables().lengths, tables().foot, tables().trunk
     column = tables().de_leva.of(person.sex)
     omphalion = column.lower_trunk_m / column.stature_m
     xiphion = omphalion + column.middle_trunk_m / column.stature_m
     lumbar = (xiphion - omphalion) / (3.0 + 4.0 * trunk.thoracic_to_lumbar)
+    lumbosacral = omphalion - 2.0 * lumbar if person.sex is Sex.FEMALE else tables().lumbosacral.male
     vertex = length.trunk + length.neck + length.head
     hip = trunk.hip_joint_separation / 2.0
     shoulder = length.shoulder_width / 2.0
@@ -93,7 +95,7 @@ def landmarks(person: Person) -> Mapping[str, Vector]:
     foot_center = floor + foot.centre_height * length.ankle_height
     fractions: dict[str, Vector] = {
         "Pelvis": (0.0, 0.0, 0.0),
-        "L5": (0.0, 0.0, omphalion - 2.0 * lumbar),
+        "L5": (0.0, 0.0, lumbosacral),
         "L3": (0.0, 0.0, omphalion),
         "T12": (0.0, 0.0, omphalion + 3.0 * lumbar),
         "T8": (0.0, 0.0, xiphion),

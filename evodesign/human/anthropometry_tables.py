@@ -100,6 +100,13 @@ class Trunk(Record, frozen=True):
     shoulder_mass_share: float
 
 
+class Lumbosacral(Record, frozen=True):
+    """Height of men's L5/S1 above the hip joints, over stature; women's follows from the trunk's levels."""
+
+    source: str
+    male: float
+
+
 class Looks(Record, frozen=True):
     """Figures that are only seen."""
 
@@ -174,6 +181,7 @@ class Tables(Record, frozen=True):
     shoulders: Shoulders
     foot: Foot
     trunk: Trunk
+    lumbosacral: Lumbosacral
     looks: Looks
     de_leva: DeLeva
     articulation: Articulations

@@ -103,7 +103,7 @@ class HumanPosture(StrEnum):
     MEASURED = "measured"
 
 
-USUAL_POSTURE = HumanPosture.LEAST_TORQUE
+USUAL_POSTURE = HumanPosture.MEASURED
 """Of a generated person whose table says nothing; that of a URDF is by least torque."""
 
 

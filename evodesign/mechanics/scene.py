@@ -182,6 +182,7 @@ class Agent:
         gaze: from where it looks at the load; None: it may look anywhere.
         bent_ranges: of joints that stay bent in postures, within their limits [rad], by name.
         measured: what its posture is drawn to; None: torques alone decide.
+        stance: limits of its postures; None: those of the scene.
     """
 
     name: str
@@ -201,6 +202,7 @@ class Agent:
     gaze: Gaze | None = None
     bent_ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     measured: MeasuredPosture | None = None
+    stance: StanceLimits | None = None
 
     @property
     def pushed_frame(self) -> str:
@@ -226,7 +228,7 @@ class Scene:
         robot, human: the agents.
         payload: the load.
         ground: under all feet.
-        stance: limits of postures.
+        stance: limits of postures of agents that have none of their own.
         disturbances: further load cases.
         robot_share: part of what the hands carry that the robot carries, disturbed or not; None where statics
             or the posture problem decides.
@@ -259,6 +261,10 @@ class Scene:
     def undisturbed(self) -> Scene:
         """The same without disturbances."""
         return replace(self, disturbances=Disturbances())
+
+    def stance_of(self, agent: Agent) -> StanceLimits:
+        """The limits under which an agent stands."""
+        return self.stance if agent.stance is None else agent.stance
 
     def case(self, task: Task) -> Case:
         """Its person with its load at a task, undisturbed."""

@@ -32,6 +32,7 @@ from evodesign.problem.file import (
 from evodesign.problem.flexion import bent_ranges
 from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.person_posture import HEAD, with_posture
+from evodesign.problem.stance import stance_of
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree
@@ -87,6 +88,10 @@ def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...
     """The people of the `human` tables; where there are several, each has a label of its own."""
     entries = everyone(tables, source)
     people = [_human(key, table, source) for key, table in entries]
+    people = [
+        person if table.urdf else replace(person, stance=stance_of(tables, source, person))
+        for person, (_, table) in zip(people, entries, strict=True)
+    ]
     if len(people) == 1:
         return tuple(people)
     labels: list[str] = []

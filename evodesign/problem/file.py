@@ -243,13 +243,16 @@ class DisturbanceTable(Table, frozen=True):
 
 
 class LimitsTable(Table, frozen=True):
-    """`[limits]`: ground and stance; see `StanceLimits` and `Ground` for each."""
+    """`[limits]`: ground and stance; see `StanceLimits` and `Ground` for each.
+
+    Left out, clearance of the trunk and distance of the feet follow from the size of a generated person.
+    """
 
     friction: Positive = 0.5
     torsional_friction_m: NotNegative = 0.02
     least_foot_force_n: NotNegative = 0.0
-    trunk_clearance_m: NotNegative = 0.15
-    feet_apart_m: tuple[NotNegative, Positive] = (0.12, 0.50)
+    trunk_clearance_m: NotNegative | None = None
+    feet_apart_m: tuple[NotNegative, Positive] | None = None
     feet_stagger_m: NotNegative = 0.30
     feet_gap_m: NotNegative | None = None
     foot_yaw_rad: NotNegative = 0.35

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
-from evodesign.mechanics.scene import Scene, StanceLimits
+from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
 from evodesign.problem.agents import (
     refuse_unknown,
@@ -36,7 +36,7 @@ from evodesign.records import (
 )
 from evodesign.tree.model import Tree
 
-__all__ = ["ground_of", "objectives_of", "space_of", "stance_of", "tasks_of", "worker_limits"]
+__all__ = ["ground_of", "objectives_of", "space_of", "tasks_of", "worker_limits"]
 
 GIGABYTE = 10**9
 
@@ -45,23 +45,6 @@ def ground_of(tables: ProblemFile) -> Ground:
     """Friction and least forces on the ground."""
     limits = tables.limits
     return Ground(limits.friction, limits.torsional_friction_m, limits.least_foot_force_n)
-
-
-def stance_of(tables: ProblemFile, source: ProblemSource) -> StanceLimits:
-    """Where feet and trunk may be; InputError for a pair that does not rise."""
-    limits = tables.limits
-    least, most = limits.feet_apart_m
-    if least >= most:
-        raise InputError(source.path, "limits.feet_apart_m", "a rising pair", f"[{least:g}, {most:g}]")
-    return StanceLimits(
-        trunk_clearance=limits.trunk_clearance_m,
-        feet_apart=limits.feet_apart_m,
-        feet_stagger=limits.feet_stagger_m,
-        foot_yaw=limits.foot_yaw_rad,
-        base_tilt=limits.base_tilt_rad,
-        push=limits.push_n,
-        feet_gap=limits.feet_gap_m,
-    )
 
 
 def worker_limits(tables: ProblemFile) -> Limits:

@@ -62,7 +62,7 @@ def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource)
     """The person, drawn to measured postures.
 
     Raises:
-        InputError: lumbar joints that are to bend separately, a sample that is to have samples, or a person
+        InputError: lumbar joints that are not to bend as one, a sample that is to have samples, or a person
             from a URDF without the links and joints that postures were measured of.
     """
     if table.spread is not None and table.posture_sample is not None:
@@ -70,9 +70,9 @@ def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource)
         raise InputError(
             source.path, f"{key}.spread", wanted, f"both, and posture_sample = {table.posture_sample}"
         )
-    if table.joint_ranges is JointRanges.SEPARATE:
+    if table.joint_ranges not in (None, JointRanges.RHYTHM):
         wanted = "'rhythm', which a measured posture has, or posture = \"least_torque\""
-        raise InputError(source.path, f"{key}.joint_ranges", wanted, "'separate'")
+        raise InputError(source.path, f"{key}.joint_ranges", wanted, f"'{table.joint_ranges}'")
     tree = person.tree
     lacking = [f"root link '{ROOT}'"] * (tree.root != ROOT)
     lacking += [f"link '{name}'" for name in NEEDED_LINKS if name not in tree.link_by_name]

@@ -14,10 +14,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.stance_case import StanceCase, StanceTorques
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit, LimitTable
@@ -58,12 +60,13 @@ def program_slopes(
     tangents = [each for each in cases if isinstance(each, PostureDerivative)]
     count, places = len(result.values), result.space.margins
     by_given, by_margin = np.zeros((len(places), count)), np.zeros(len(places))
+    stances = _Stances(as_given, result.standing)
     for row, place in enumerate(places):
         asked = float(np.abs(demand.torques[:, list(demand.members[row])]).max(initial=0.0))
         if not BOUNDS[0] < result.values[place] * asked < BOUNDS[1]:
             continue
         by_margin[row] = asked
-        by_given[row] = result.values[place] * _slope(as_given, result.standing, demand, row, tangents)
+        by_given[row] = result.values[place] * _slope(as_given, stances, demand, row, tangents)
     others = [place for place in range(count) if place not in places]
     slopes = np.eye(count)
     held = np.eye(len(places)) - by_given[:, list(places)]
@@ -74,7 +77,7 @@ def program_slopes(
 
 def _slope(
     result: DesignResult,
-    model: StanceModel,
+    stances: _Stances,
     demand: Demand,
     row: int,
     cases: Sequence[PostureDerivative],
@@ -89,7 +92,7 @@ def _slope(
     if case < len(lifted):
         number, instant, load_case = lifted[case]
         return cases[number].along_torques(instant, load_case, {ROBOT: {joint: sign}})
-    return _stance_slope(result, model, int(case) - len(lifted), joint, demand)
+    return stances.slope(int(case) - len(lifted), joint, demand)
 
 
 def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
@@ -100,19 +103,45 @@ def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
                 yield number, instant, load_case
 
 
-def _stance_slope(result: DesignResult, model: StanceModel, case: int, joint: str, demand: Demand) -> Array:
-    """By differences: a standing posture is found in half a millisecond."""
-    space, tree = result.space, result.robot.tree
-    known = abs(float(model.torques(result.tree)[case][1].torques[joint]))
-    share = float(np.abs(demand.torques[case - len(model.cases), demand.joints.index(joint)])) / known
+class _Stances:
+    """Torques of standing cases beside a design, for differences: one is found in half a millisecond.
 
-    def torque(position: int, step: float) -> float:
-        values = list(result.values)
-        values[position] += step
-        return share * abs(float(model.torques(space.resized(tree, values))[case][1].torques[joint]))
+    Args:
+        result: of the design, with the values that programs are given.
+        model: of the cases.
+    """
 
-    steps = [STEP * max(abs(value), 1e-3) for value in result.values]
-    return np.array([(torque(i, step) - torque(i, -step)) / (2.0 * step) for i, step in enumerate(steps)])
+    def __init__(self, result: DesignResult, model: StanceModel) -> None:
+        self._result, self._model = result, model
+        self._steps = [STEP * max(abs(value), 1e-3) for value in result.values]
+
+    def slope(self, case: int, joint: str, demand: Demand) -> Array:
+        """Of what a case asks of a joint, by what programs are given."""
+        model = self._model
+        known = self._size(model.torques(self._result.tree), case, joint)
+        asked = demand.torques[case - len(model.cases), demand.joints.index(joint)]
+        ends = [[self._size(end, case, joint) for end in both] for both in self._beside]
+        differences = [
+            (above - below) / (2.0 * step) for (above, below), step in zip(ends, self._steps, strict=True)
+        ]
+        return abs(float(asked)) / known * np.array(differences)
+
+    @cached_property
+    def _beside(self) -> list[list[list[tuple[StanceCase, StanceTorques]]]]:
+        """Of each value, a step above and below."""
+        return [
+            [self._torques(place, sign * step) for sign in (1.0, -1.0)]
+            for place, step in enumerate(self._steps)
+        ]
+
+    def _torques(self, place: int, step: float) -> list[tuple[StanceCase, StanceTorques]]:
+        values = list(self._result.values)
+        values[place] += step
+        return self._model.torques(self._result.space.resized(self._result.robot.tree, values))
+
+    @staticmethod
+    def _size(found: list[tuple[StanceCase, StanceTorques]], case: int, joint: str) -> float:
+        return abs(float(found[case][1].torques[joint]))
 
 
 def along_design(

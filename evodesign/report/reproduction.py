@@ -122,6 +122,7 @@ class Reproduction:
         found: the best robots with limits: by gradients, by evolution.
         claims: each with its verdict.
         stricter: torque norms by setting, each stricter than the one before, and by robot.
+        measured: torque norms under limits by robot, where the person stands as measured people do.
     """
 
     published: Published
@@ -130,21 +131,28 @@ class Reproduction:
     found: tuple[Found, ...]
     claims: tuple[Claim, ...]
     stricter: Mapping[str, Mapping[str, TorqueNormsByHeight]]
+    measured: Mapping[str, TorqueNormsByHeight]
 
     @property
     def by_setting(self) -> dict[str, dict[str, TorqueNormsByHeight]]:
         """Table II of the paper with ours beside it: torque norms by model and setting."""
-        published, limits = self.published, "with limits"
+        published, limits, measured = self.published, "with limits", "measured person"
         return {
             "original": {
                 PAPER: PAPER_ORIGINAL,
                 "published": published.original.torque_norms,
                 limits: self.original.torque_norms,
+                measured: self.measured[self.original.name],
             },
             "optimised": {
                 PAPER: PAPER_OPTIMISED,
                 "published": published.optimised.torque_norms,
                 **{f"{limits}, {one.robot.name}": one.robot.torque_norms for one in self.found},
+                **{
+                    f"{measured}, {name}": rows
+                    for name, rows in self.measured.items()
+                    if name != self.original.name
+                },
             },
         }
 

@@ -22,11 +22,14 @@ from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.session import Display
 
-__all__ = ["STRICTER", "Effort", "Experiment", "stricter_problem"]
+__all__ = ["MEASURED", "STRICTER", "Effort", "Experiment", "stricter_problem"]
 
 GRIPS: Mapping[str, Mapping[str, Any]] = {"payload": {"grasp_direction": "side"}}
 STRICTER = {"and grips": GRIPS, "and collisions": {**GRIPS, "collisions": {}}}
 """Tables of a problem that are changed, each setting stricter than the one before."""
+
+MEASURED: Mapping[str, Mapping[str, Any]] = {"human": {"posture": "measured"}}
+"""Likewise: the person stands as people who were measured do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ from evodesign.problem.factory import evaluator_of
 from evodesign.records import Evaluation
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
-from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
+from evodesign.reproduction.experiment import MEASURED, STRICTER, Experiment, stricter_problem
 from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_search
@@ -85,15 +85,20 @@ def reproduction(experiment: Experiment, without: DesignProblem, starts: int) ->
     robots = {ORIGINAL: space.unscaled(tree)} | {
         one.robot.name: tuple(one.design.values()) for one in runs if one.design
     }
-    stricter = {name: _torque_norms(experiment, name, problem, robots) for name, problem in problems.items()}
-    return Reproduction(published, original, highest, runs, tuple(claims), stricter)
+    stricter = {
+        name: _torque_norms(experiment, f"with limits {name}", problem, robots)
+        for name, problem in problems.items()
+    }
+    standing = stricter_problem(experiment.problem, MEASURED)
+    measured = _torque_norms(experiment, "with a measured person", standing, robots)
+    return Reproduction(published, original, highest, runs, tuple(claims), stricter, measured)
 
 
 def _torque_norms(
     experiment: Experiment, name: str, problem: DesignProblem, robots: Mapping[str, Sequence[float]]
 ) -> dict[str, TorqueNormsByHeight]:
-    """Torque norms of robots in a stricter setting."""
-    experiment.display.note(f"the robots with limits {name}")
+    """Torque norms of robots in another setting, which has a name."""
+    experiment.display.note(f"the robots {name}")
     with experiment.display.precompute() as progress:
         evaluator = evaluator_of(problem, experiment.effort.jobs, progress)
     found: dict[str, TorqueNormsByHeight] = {}

@@ -228,6 +228,7 @@ def test_the_tables_of_a_reproduction_are_whole(place: Path, both: BothWidths) -
             human_claim("evolution", norms, norms),
         ),
         stricter={"and grips": {"original": norms, "evolution": norms}},
+        measured={"original": norms, "evolution": norms},
     )
     output.console().print(torque_table(done))
     output.console().print(stricter_table(done))

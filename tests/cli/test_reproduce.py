@@ -63,6 +63,9 @@ def test_the_paper_is_reproduced_with_verdicts_and_figures(
     assert stricter["with limits"] == shown["torque_norms"]["original"]["with limits"]
     assert all(rows and rows[0]["human"] > 0.0 for rows in stricter.values())
     assert [row["height_m"] for row in shown["torque_norms"]["original"]["with limits"]] == [1.0]
+    (measured,) = shown["torque_norms"]["original"]["measured person"]
+    (least,) = shown["torque_norms"]["original"]["with limits"]
+    assert measured["human"] > 2.0 * least["human"]
     assert shown["torque_norms"]["optimised"]["paper"][0]["human"] == 192.4057
     assert shown["found"]["gradient"]["statuses"] == {"infeasible": 1} or shown["found"]["gradient"]["cost"]
     assert len(read_run(to / "evolution").evaluations) == 2

@@ -161,7 +161,8 @@ def test_spine_has_three_lumbar_and_four_thoracic_segments_between_navel_and_xip
     z = {name: point[2] for name, point in landmarks(person).items()}
     u, t = (z["T12"] - z["L3"]) / 3.0, (z["T8"] - z["T12"]) / 4.0
     assert t == pytest.approx(0.75 * u, rel=1e-12)
-    assert z["L3"] - z["L5"] == pytest.approx(2.0 * u, rel=1e-12)
+    below = z["L3"] - 0.060 * person.stature if person.sex is Sex.MALE else 2.0 * u
+    assert z["L3"] - z["L5"] == pytest.approx(below, rel=1e-12)
     assert 0.0 < z["L5"] < z["L3"] < z["T12"] < z["T8"] < z["Neck"] < z["Head"] < z["Vertex"]
 
 

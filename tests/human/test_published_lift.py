@@ -127,7 +127,7 @@ def test_the_torque_of_the_joint_is_the_moment_of_what_is_beyond_it(state: BodyS
 def test_arms_are_as_heavy_and_the_trunk_is_a_little_shorter(ours: Moments) -> None:
     for joint in ("shoulder", "elbow", "wrist"):
         assert ours[joint, True] == pytest.approx(published(joint, loaded=True), rel=0.05)
-    assert 0.85 < ours["L5/S1", True] / published("L5/S1", loaded=True) < 0.9
+    assert 0.80 < ours["L5/S1", True] / published("L5/S1", loaded=True) < 0.85
 
 
 @pytest.mark.parametrize("loaded", [True, False])

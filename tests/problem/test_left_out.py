@@ -11,6 +11,8 @@ from evodesign.records import ProblemSource
 WHOLE = """
 name = "whole"
 [[human]]
+[[human]]
+posture = "least_torque"
 joint_ranges = "coupled"
 [[human]]
 urdf = "person.urdf"

@@ -63,7 +63,7 @@ def expressions(problem: DesignProblem) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", ["point_grasp", "three_people_three_loads", "sartore2022", "sartore2022_as_published"]
+    "name", ["point_grasp", "sartore2023_motors", "sartore2022", "sartore2022_as_published"]
 )
 def test_without_the_keys_programs_are_those_without_the_terms(
     name: str, repository: Path, monkeypatch: pytest.MonkeyPatch

@@ -12,7 +12,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.mechanics.scene import SIDES
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row, both_ways
 
@@ -21,13 +21,13 @@ __all__ = ["STANCE"]
 
 def rows(body: Body) -> Iterator[Row]:
     """Trunk frames behind the load's edge, and the soles' distances."""
-    form, stance = body.form, body.scene.stance
+    form, stance = body.form, body.scene.stance_of(body.agent)
     soles = [body.poses[form.agent.soles[side]].position for side in form.sides]
     if form.trunk:
         trunk = ca.vertcat(*[body.poses[frame].position[0] for frame in form.trunk])
         key, clear = "limits.trunk_clearance_m", stance.trunk_clearance
         bounds = [Bound("trunk clearance", clear, "m", False, -1.0, key, frame) for frame in form.trunk]
-        row = _row("trunk_clear", trunk, -np.inf, _nearest(body.scene), most=tuple(bounds))
+        row = _row("trunk_clear", trunk, -np.inf, _nearest(body), most=tuple(bounds))
         yield replace(row, labels=form.trunk)
     (least, most), name, key = stance.feet_apart, "feet apart", "limits.feet_apart_m"
     ends = Bound(name, least, "m", False, key=key), Bound(name, most, "m", True, key=key)
@@ -52,18 +52,18 @@ def _row(
     return Row(name, expression, lower, upper, found, group=group, posture_only=True, least=least, most=most)
 
 
-def _nearest(scene: Scene) -> float:
+def _nearest(body: Body | MeasuredBody) -> float:
     """Largest x of a trunk frame, in the agent's frame [m]."""
-    return float(-scene.payload.size[0] / 2.0 - scene.stance.trunk_clearance)
+    return float(-body.scene.payload.size[0] / 2.0 - body.scene.stance_of(body.agent).trunk_clearance)
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """Distances [m] by which feet and trunk are where they should not be."""
-    state, stance = body.state, body.scene.stance
+    state, stance = body.state, body.scene.stance_of(body.agent)
     left, right = (state.pose(body.agent.soles[side])[1] for side in SIDES)
     ahead, apart, _ = (left - right).tolist()
     least, most = stance.feet_apart
-    trunk = [float(state.pose(name)[1][0]) - _nearest(body.scene) for name in body.agent.trunk]
+    trunk = [float(state.pose(name)[1][0]) - _nearest(body) for name in body.agent.trunk]
     for name, size, words in (
         ("feet_apart", max(0.0, least - apart, apart - most), "the feet's distance"),
         ("feet_stagger", max(0.0, abs(ahead) - stance.feet_stagger), "the feet's stagger"),
