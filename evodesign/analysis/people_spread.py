@@ -4,8 +4,8 @@
     mean +- deviation of differences    to a reference design, sample by sample
     on the front in k of n samples      front of the sampled designs beside the people of one sample
 
-All designs meet the same people, so that what two of them have in common drops out of their difference. A
-sample counts for fronts once every sampled design has been evaluated in it.
+All designs are evaluated beside the same people, so that what two of them have in common drops out of their
+difference. A sample counts for fronts once every sampled design has been evaluated in it.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def spread_of_run(run: RunLog, sampled: SampledPeople | None) -> PeopleSpread | 
 
 
 def spread_among(spread: PeopleSpread, numbers: Sequence[int]) -> PeopleSpread | None:
-    """That of some designs only; None where none of them met people. Fronts are those of all that did."""
+    """That of some designs only; None where none of them was sampled. Fronts are those of all that were."""
     designs = {number: spread.designs[number] for number in numbers if number in spread.designs}
     return PeopleSpread(spread.samples, spread.reference, designs) if designs else None
 
@@ -194,7 +194,7 @@ def _value(evaluation: Evaluation, name: str) -> float | None:
 def spread_sentence(spread: PeopleSpread) -> str:
     """How firmly the sampled designs stand on the front."""
     if not spread.samples:
-        return "no sample of people has met all designs yet"
+        return "no sample of people has all designs yet"
     always = [n for n, each in spread.designs.items() if each.on_front == spread.samples]
     sometimes = [n for n, each in spread.designs.items() if 0 < each.on_front < spread.samples]
     many = len(spread.designs)

@@ -1,7 +1,7 @@
 """Designs of a run beside people drawn from the distribution of measured ones.
 
-Every design meets the same people. What has been evaluated is on the disk before the next evaluation is
-looked at, and is never evaluated again.
+All designs are evaluated beside the same people. What has been evaluated is on the disk before the next
+evaluation is looked at, and is never evaluated again.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from evodesign.session import Display, evaluation_outcome
 __all__ = ["MOST_DESIGNS", "draw_people", "usual_designs", "usual_reference"]
 
 MOST_DESIGNS = 20
-"""Designs of a front that meet samples of people where nobody says which: its most different ones."""
+"""Designs of a front that are evaluated where nobody says which: its most different ones."""
 
 
 def usual_designs(run: RunLog) -> tuple[int, ...]:
@@ -63,7 +63,7 @@ def draw_people(
 ) -> SampledPeople:
     """Evaluate designs of a run beside samples of people, as far as that has not been done.
 
-    Designs that met some of the samples before meet the others too, so that all can be compared.
+    Designs that were evaluated beside some of the samples before are so beside the others, too: all compare.
 
     Args:
         run: that has the designs.
@@ -109,7 +109,8 @@ def draw_people(
                 left[found.sample] -= 1
                 if left.total() and not left[found.sample]:
                     pace = (time.monotonic() - began) / (len(missing) - left.total())
-                    display.note(f"sample {found.sample} has met all: {in_words(pace * left.total())}")
+                    time_left = in_words(pace * left.total())
+                    display.note(f"all designs beside sample {found.sample} of {samples}: {time_left}")
     return kept
 
 
@@ -165,5 +166,6 @@ def _kept(run: RunLog, display: Display) -> SampledPeople:
 def _cost(run: RunLog, samples: int, designs: int, left: int, processes: int) -> str:
     """What it takes, by the times of the run's evaluations without their gradients."""
     each = median(one.seconds - one.gradient_seconds for one in run.evaluations)
-    time = in_words(left * each / processes)
-    return f"{designs} designs meet {samples} samples of people: {left} evaluations, {time} at the run's pace"
+    time_left = in_words(left * each / processes)
+    what = f"{designs} designs beside {samples} samples of people: {left} evaluations"
+    return f"{what}, {time_left} at the pace of the run's"

@@ -31,7 +31,7 @@ def spread(
     scheduler: str | None = None,
     progress: bool = False,
 ) -> Run:
-    """Let designs of a run meet people drawn from the distribution of measured ones.
+    """Evaluate designs of a run beside people drawn from the distribution of measured ones.
 
     What was evaluated before is not evaluated again. `Run.spread` has the results.
 

@@ -38,7 +38,7 @@ def spread(
     json: options.Json = False,
     damaged: options.Damaged = False,
 ) -> None:
-    """Let designs meet people drawn from the measured distribution; keeps, and never repeats, evaluations."""
+    """Evaluate designs beside people drawn from the measured distribution; nothing is evaluated twice."""
     from evodesign.analysis.people_spread import all_spreads_json, spread_sentence
     from evodesign.api.sessions import Workers
     from evodesign.api.spread import spread_over_people

@@ -146,8 +146,8 @@ class HumanTable(Table, frozen=True):
     whether measured postures draw the person, `joint_ranges` whether the
     joints of the spine share ranges, or one flexion and one bending within them; `shoulder_width` how far a
     generated person's shoulder joints are apart. `gaze_cone_deg` is the largest angle of the load from where
-    the head looks. Of a person with a measured posture, `spread` says how many people of the measured
-    distribution the front of a search meets once it has ended, `posture_sample` which of them this one is.
+    the head looks. Of a person with a measured posture, `spread` says beside how many people of the measured
+    distribution a front is evaluated once its search has ended, `posture_sample` which of them this one is.
     """
 
     name: Name | None = None

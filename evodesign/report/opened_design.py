@@ -91,7 +91,7 @@ class OpenedDesign:
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
 
     def spread(self) -> PeopleSpread | None:
-        """Of the run's designs over samples of people; None where this one met none."""
+        """Of the run's designs over samples of people; None where this one has none."""
         found = spread_of_run(self.run, read_sampled(self.run)[0])
         return found if found is not None and self.evaluation.number in found.designs else None
 

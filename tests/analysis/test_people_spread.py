@@ -98,7 +98,7 @@ def test_a_sample_counts_for_fronts_once_all_designs_have_met_it() -> None:
     assert found.samples == 3
     assert {number: each.on_front for number, each in found.designs.items()} == {0: 0, 3: 1, 5: 1, 8: 1, 9: 3}
     none = people_spread(OBJECTIVES, BOUND, [sampled(3, 1, 1.0), sampled(5, 2, 1.0)], None)
-    assert spread_sentence(none) == "no sample of people has met all designs yet"
+    assert spread_sentence(none) == "no sample of people has all designs yet"
 
 
 def test_a_gain_that_a_solver_leaves_open_is_none() -> None:

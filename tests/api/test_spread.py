@@ -83,7 +83,7 @@ def test_a_larger_front_is_completed_and_another_reference_costs_nothing(copied:
     assert {each["id"] for each in run.spread["designs"]} == {*front, 0, other}
     again = evodesign.spread(copied, samples=SAMPLES, pool="serial").spread
     assert again is not None
-    assert again["samples"] == SAMPLES, "the design that was added has met all of them, too"
+    assert again["samples"] == SAMPLES, "the design that was added has all of them, too"
     assert {each["samples"] for each in again["designs"]} == {SAMPLES}
 
 

@@ -38,14 +38,14 @@ const startPeople = () => {
   if (!overPeople) return;
   byId("people-section").hidden = false;
   byId("people-hint").textContent =
-    `Mean ± standard deviation over ${overPeople.samples} people drawn from the measured distribution, whom all of these designs met; and in how many of the samples none of these designs dominates it.`;
+    `Mean ± standard deviation over ${overPeople.samples} people drawn from the measured distribution, the same for all designs; and in how many of the samples none of these designs dominates it.`;
   const heads = [["Design"], ["On the front"], ...resultAxes.map((axis) => [label(axis)])];
   byId("people").append(
     element("table", {}, headRow(heads), element("tbody", {}, ...overPeople.designs.map(peopleRow))),
   );
 };
 
-// The section of the card; nothing for a design that met no samples of people.
+// The section of the card; nothing for a design that was not sampled.
 const peopleSection = (number) => {
   const own = spreadOf.get(number);
   if (!own) return null;
