@@ -236,7 +236,7 @@ def _pool(workers: Workers, display: Display, stop: Stop) -> Pool:
 
 
 def _sampled(run: RunLog, pool: Pool, display: Display, stop: Stop) -> None:
-    """Evaluate the front of a search that has ended beside the samples of people that its problem asks for."""
+    """Evaluate the front of an ended search beside the samples of people that its problem asks for."""
     samples, designs = asked_samples(run.header.problem), usual_designs(run)
     if samples and designs and run.header.search.algorithm != JOINT_STARTS:
         reference = usual_reference(build_problem(run.header.problem), run)
