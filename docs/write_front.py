@@ -17,7 +17,7 @@ from benchmarks.your_robot_pictures import COMMAND, choose, part_of, write
 from tests.report.page.chromium import Tab, browser
 from tests.report.page.reading import open_page
 
-MARKS = ("unscaled robot", "least robot torque", "least human torque")
+MARKS = ("least robot torque", "knee", "least human torque")
 SHOWN = (0.2, 0.02, 0.6, 0.97)
 """Left, top, width and height of the part of the posture's canvas that holds robot and person [share]."""
 
@@ -32,7 +32,7 @@ WITHOUT_BUTTONS = """
 def draw(tab: Tab) -> Image.Image:
     """The front, and under it the robots side by side."""
     tab.call("Emulation.setDeviceMetricsOverride", width=1240, height=900, deviceScaleFactor=1, mobile=False)
-    tab.value("document.querySelector('.chip').scrollIntoView()")
+    tab.value("document.getElementById('front').scrollIntoView()")
     front = part_of(tab, tab.place("document.getElementById('front')"))
     robots = []
     for mark in MARKS:

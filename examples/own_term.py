@@ -1,4 +1,4 @@
-"""A physical statement of your own: nobody's centre of mass is lower than 0.5 m. About a minute.
+"""A physical statement of your own: nobody's centre of mass is lower than 0.5 m. Half a minute.
 
 A term enters every program, the independent check and the derivatives of the process that registers it. The
 processes of a search would not know it: to search with it, put the term into a file of a checkout, in
@@ -39,6 +39,7 @@ def residuals(body):
 
 
 tables = tomllib.loads(evodesign.open_problem("point-grasp").source.text)
+tables["task"]["heights_m"] = [1.0]
 tables["solver"] = {"start_portfolio": False, "compile": False}
 for words, term in {"without": None, "with": BodyTerm("mass_height", rows=rows, residuals=residuals)}.items():
     if term is not None:

@@ -14,6 +14,8 @@ from hypothesis import HealthCheck, settings
 
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
+from evodesign.pool.worker import SerialPool
+from evodesign.posture.precompute import meetings
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.plan import OF_STARTS
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -161,6 +163,14 @@ def keys_of_starts(problem: DesignProblem) -> list[str]:
 def evaluator(problem: DesignProblem, known: Precomputed) -> Evaluator:
     """The point-grasp problem's inner problems."""
     return Evaluator(problem, known)
+
+
+@pytest.fixture
+def few_designs_meet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pairs of bodies near each other are looked for in a few designs, in this process, for time."""
+    monkeypatch.setattr("evodesign.problem.factory.make_pool", lambda *_, **__: SerialPool())
+    for number, few in {"DESIGNS": 4, "AT_CORNERS": 4, "AT_REACH": 2, "FEWEST": 1}.items():
+        monkeypatch.setattr(meetings, number, few)
 
 
 @pytest.fixture(scope="session")

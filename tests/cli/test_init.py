@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 import tomllib
+from collections.abc import Callable
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -146,6 +149,7 @@ def test_what_is_no_humanoid_is_refused_in_a_sentence(
 
 
 @pytest.mark.needs_robots
+@pytest.mark.usefixtures("few_designs_meet")
 def test_a_public_robot_without_shapes_is_left_to_a_person_who_then_evaluates_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -171,14 +175,27 @@ def test_a_public_robot_without_shapes_is_left_to_a_person_who_then_evaluates_it
     assert {height["status"] for height in found["heights"]} == {"solved"}
 
 
+@pytest.fixture(scope="module")
+def guessed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The problem file that `init` writes for a public humanoid, once for all tests that begin with it."""
+    folder = tmp_path_factory.mktemp("guessed")
+
+    def written(name: str) -> Path:
+        file = folder / f"{name}.toml"
+        if not file.exists():
+            with redirect_stdout(io.StringIO()) as shown:
+                assert run("init", HUMANOIDS[name], "--to", file) == 0
+            assert "evodesign check" in shown.getvalue()
+            assert "FILL IN" not in file.read_text() + shown.getvalue()
+        return file
+
+    return written
+
+
 @pytest.mark.needs_robots
 @pytest.mark.parametrize("name", HUMANOIDS)
-def test_a_public_humanoid_is_guessed_whole(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "new.toml"
-    assert run("init", HUMANOIDS[name], "--to", file) == 0
-    assert "FILL IN" not in file.read_text() + capsys.readouterr().out
+def test_a_public_humanoid_is_guessed_whole(name: str, guessed: Callable[[str], Path]) -> None:
+    file = guessed(name)
     assert len(tomllib.loads(file.read_text())["design"]["length"]) == 5
     assert run("check", file) == 0
 
@@ -187,11 +204,11 @@ def test_a_public_humanoid_is_guessed_whole(
 @pytest.mark.needs_robots
 @pytest.mark.parametrize("name", ["g1", "icub_reduced", "talos"])
 def test_a_public_humanoid_holds_the_load_without_editing(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, guessed: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The same with portfolios of starts, which take minutes, is measured in `benchmarks.public_robots`."""
-    file = tmp_path / "new.toml"
-    assert run("init", HUMANOIDS[name], "--to", file) == 0
+    file = guessed(name).with_name(f"{name}_in_a_hurry.toml")
+    file.write_text(guessed(name).read_text())
     hurry(file)
     capsys.readouterr()
     assert run("evaluate", file, "--json") == 0
@@ -202,9 +219,11 @@ def test_a_public_humanoid_holds_the_load_without_editing(
 
 @pytest.mark.slow
 @pytest.mark.needs_robots
-def test_a_public_humanoid_is_searched_without_editing(tmp_path: Path) -> None:
-    file, folder = tmp_path / "new.toml", tmp_path / "run"
-    assert run("init", HUMANOIDS["g1"], "--to", file) == 0
+def test_a_public_humanoid_is_searched_without_editing(
+    guessed: Callable[[str], Path], tmp_path: Path
+) -> None:
+    file, folder = guessed("g1").with_name("g1_searched.toml"), tmp_path / "run"
+    file.write_text(guessed("g1").read_text())
     hurry(file)
     sizes = ("--evaluations", 6, "--population", 3, "--jobs", 2)
     assert run("search", file, "--run", folder, *sizes) == 0

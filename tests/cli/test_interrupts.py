@@ -78,7 +78,7 @@ AGAIN = ((), (0.05,), (0.4, 0.1))
 
 MOMENTS = [
     (delay, *AGAIN[place % len(AGAIN)])
-    for place, delay in enumerate((0.02, 0.2, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0, 8.0))
+    for place, delay in enumerate((0.02, 0.2, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0, 6.0))
 ]
 
 

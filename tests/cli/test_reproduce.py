@@ -84,6 +84,7 @@ def test_the_paper_is_reproduced_with_verdicts_and_figures(
         reproduce(to, problem=limited, published=limited, **effort, json=True)
 
 
+@pytest.mark.usefixtures("few_designs_meet")
 def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

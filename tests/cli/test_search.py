@@ -20,7 +20,7 @@ from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.cli.here import evodesign
 
-POPULATION, BUDGET, ENDLESS = 4, 24, 4000
+POPULATION, BUDGET, ENDLESS = 4, 12, 4000
 COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
@@ -106,7 +106,7 @@ def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     assert known[: 2 * POPULATION] == remembered(whole[0])[: 2 * POPULATION], "whole generations are kept"
     assert len(known) < ENDLESS
     generations = -(-max(BUDGET, len(known)) // POPULATION)
-    finish([*COMMAND, "resume", str(run), "--evaluations", str(generations * POPULATION)])
+    finish([*COMMAND, "resume", str(run), "--evaluations", str(generations * POPULATION), "--pool", "serial"])
     assert set(known) <= set(remembered(run)), "what had arrived is kept, in whatever order it came"
     assert remembered(run)[:BUDGET] == remembered(whole[0])
 
@@ -116,7 +116,7 @@ def test_larger_budget_continues_the_same_search(
     whole: tuple[Path, str, str], repository: Path, tmp_path: Path
 ) -> None:
     run = tmp_path / "short"
-    finish([*arguments(repository, run), "--evaluations", "10"])
+    finish([*arguments(repository, run, "--pool", "serial"), "--evaluations", "10"])
     finish([*COMMAND, "resume", str(run), "--evaluations", str(BUDGET), "--pool", "serial"])
     assert remembered(run) == remembered(whole[0])
 
@@ -126,7 +126,7 @@ def test_a_branch_begins_with_the_past_and_is_verified_like_any_run(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:
     branch = ["--branch-from", "2", "--run", str(tmp_path / "branch"), "--seed", "8", "--evaluations", "14"]
-    done = finish([*COMMAND, "branch", str(whole[0]), *branch, "--jobs", "2"])
+    done = finish([*COMMAND, "branch", str(whole[0]), *branch, "--pool", "serial"])
     assert "8 evaluations taken over" in done.stderr
     new = remembered(tmp_path / "branch")
     assert len(new) == 14

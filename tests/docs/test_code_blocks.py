@@ -23,13 +23,14 @@ NOT_RUN = {"distributed.md": "from dask_jobqueue"}
 
 SMALLER = {
     "icub-lifting": "point-grasp",
-    r"evaluations=240": "evaluations=12, population=6",
-    r"evaluations=480": "evaluations=18",
+    r"evaluations=240": "evaluations=8, population=4",
+    r"evaluations=480": "evaluations=12",
     r"pop_size=24": "pop_size=4",
     r'\("n_gen", 10\)': '("n_gen", 1)',
     r"n_trials=100": "n_trials=2",
+    r"\[0\.9, 1\.1\]": "[0.8, 1.0, 1.2]",
 }
-"""Budgets for a test."""
+"""Budgets for a test, and heights for which everything is precomputed."""
 
 
 def blocks(page: Path) -> list[str]:

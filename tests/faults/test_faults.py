@@ -38,7 +38,8 @@ def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["report", *(pytest.param(name, marks=pytest.mark.slow) for name in COMMANDS)]
+    "name",
+    [pytest.param(name, marks=() if name == "report" else pytest.mark.slow) for name in COMMANDS],
 )
 def test_a_killed_command_leaves_the_old_or_the_new_and_its_next_call_tidies_up(
     name: str, tmp_path: Path

@@ -24,7 +24,7 @@ def test_feet_and_trunk_have_the_room_that_the_body_needs(person: Person) -> Non
     leg = (0.530 - 0.039) * h  # from hip to ankle, by Drillis and Contini's shares
     assert least == pytest.approx(0.055 * h)
     assert most == pytest.approx(0.100 * h + 2.0 * leg * math.sin(math.pi / 9.0), rel=1e-3)
-    # a box of the trunk's mass, as dense as water is near enough, as broad as the hips and as high as trunk and neck
+    # a box of the trunk's mass, about as dense as water, as broad as the hips and as high as the trunk
     trunk = sum(segment.mass for name, segment in segments(person).items() if name.endswith("trunk"))
     depth = trunk / (1000.0 * 0.191 * 0.288 * h**2)
     assert trunk_clearance(tree) == pytest.approx(depth / 2.0 + 0.02, rel=0.1)

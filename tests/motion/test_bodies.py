@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from evodesign.collision.scene_bodies import SceneBodies
+from evodesign.motion import lifting
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lifting import LiftProblem
 from evodesign.motion.parting import LiftSolve, PartedLift
@@ -78,8 +79,10 @@ def deepest(lifted: Lifted, solution: LiftSolution) -> float:
 
 
 def test_overlaps_that_no_row_parts_are_refused_by_name(
-    problem: DesignProblem, lifted: Lifted, holds: list
+    problem: DesignProblem, lifted: Lifted, holds: list, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """At once: more knots, which are tried before, part nothing."""
+    monkeypatch.setattr(lifting, "REFINEMENTS", 0)
     without = keeping_clear(problem, lifted, [])
     found = without.lifts.solve(without.design, LOW, holds, without.robot, without.human)
     assert found.status is Status.NUMERICAL_FAILURE

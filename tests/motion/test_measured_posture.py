@@ -11,7 +11,6 @@ from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import measured_posture
 from evodesign.mechanics.scene import HUMAN
 from evodesign.motion.lifting import LiftProblem
-from evodesign.nlp.method import MethodName
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
@@ -26,16 +25,14 @@ LIFT = Lift(0.8, 1.1, 1.5, knots=8)
 def lifted(problem: DesignProblem) -> Lifted:
     human = replace(problem.scene.human, measured=measured_posture(1.82), rhythms=rhythms())
     scene = replace(problem.scene, human=human)
-    holds = Setting(scene, problem.space, problem.weights, problem.options)
-    native = replace(problem.options, compiled=True, seldom=True, method=MethodName.NATIVE)
-    setting = replace(holds, options=native)
+    setting = Setting(scene, problem.space, problem.weights, problem.options)
     return Lifted(
         setting=setting,
         design=tuple(problem.space.unscaled(scene.robot.tree)),
         robot=AgentModel.of(scene.robot, scene.robot.tree),
         human=AgentModel.of(human, human.tree),
         lifts=LiftProblem(setting, symmetric=True),
-        holds=PostureProblem(holds, Symmetry.ON),
+        holds=PostureProblem(setting, Symmetry.ON),
     )
 
 

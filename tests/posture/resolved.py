@@ -14,7 +14,7 @@ from dataclasses import replace
 import msgspec
 import tomli_w
 
-from evodesign.mechanics.scene import Scene
+from evodesign.mechanics.scene import Scene, StanceLimits
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
@@ -52,6 +52,8 @@ def with_number(problem: DesignProblem, number: Number, step: float) -> DesignPr
         table = table.setdefault(part, {})
     defaults = {**defaults_of(LimitsTable()), **defaults_of(CollisionsTable())}
     value = table.get(name, defaults.get(name))
+    if value is None:  # of the size of who stands
+        return _with_stance(problem, name.removesuffix("_m"), step, at_most=at_most)
     step = math.degrees(step) if name.endswith("_deg") else step
     if isinstance(value, list | tuple):
         place = 1 if at_most else 0
@@ -61,6 +63,28 @@ def with_number(problem: DesignProblem, number: Number, step: float) -> DesignPr
     return as_before(
         problem, build_problem(msgspec.structs.replace(problem.source, text=tomli_w.dumps(tables)))
     )
+
+
+def _with_stance(problem: DesignProblem, name: str, step: float, *, at_most: bool) -> DesignProblem:
+    """The problem with a limit of stance larger by a step [m], of robot and person."""
+
+    def moved(stance: StanceLimits) -> StanceLimits:
+        value = getattr(stance, name)
+        if isinstance(value, tuple):
+            return replace(
+                stance, **{name: tuple(each + step * (at == at_most) for at, each in enumerate(value))}
+            )
+        return replace(stance, **{name: value + step})
+
+    def changed(scene: Scene) -> Scene:
+        human = (
+            scene.human
+            if scene.human.stance is None
+            else replace(scene.human, stance=moved(scene.human.stance))
+        )
+        return replace(scene, stance=moved(scene.stance), human=human)
+
+    return as_before(problem, scene_with(problem, changed))
 
 
 def defaults_of(table: msgspec.Struct) -> dict[str, object]:

@@ -29,6 +29,7 @@ from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, r
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
 from evodesign.posture.postures import Symmetry
+from evodesign.posture.precompute import meetings
 from evodesign.posture.precompute.meetings import _Finder, found_meetings, with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.separating_axes import ways_of
@@ -166,7 +167,11 @@ def setting_of(problem: DesignProblem) -> Setting:
 
 @pytest.fixture(scope="module")
 def met(apart: DesignProblem) -> dict:
-    found = found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)
+    """Looked for in a third of the usual designs, for time."""
+    with pytest.MonkeyPatch.context() as patch:
+        for number in ("DESIGNS", "AT_REACH"):
+            patch.setattr(meetings, number, getattr(meetings, number) // 3)
+        found = found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)
     return {(name, ""): tuple(pairs) for name, pairs in found.items()}
 
 
