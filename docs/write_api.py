@@ -33,7 +33,8 @@ HEAD = """# Python API
 Written from the docstrings by `make api`. [python.md](python.md) is the introduction. Quantities are SI;
 units stand in brackets. In the examples `run` is `evodesign.open_run("runs/first")`, a small run of two
 people, `design` is its design 4, and `problem` is `evodesign.open_problem("problem.toml")`, the problem that
-the run was started with.
+the run was started with; `runs/people` is a run whose front was evaluated beside three
+people of the measured distribution.
 """
 
 RECORDS = (CaseDetail, InstantDetail, AgentDetail, LoadCaseDetail, CaseOutcome, ReachOutcome)

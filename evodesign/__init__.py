@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from evodesign.api.run import Run, open_run
     from evodesign.api.search import resume, search
     from evodesign.api.simulate import simulate
+    from evodesign.api.spread import spread
 
 HOMES = {
     "Design": "evodesign.api.design",
@@ -37,6 +38,7 @@ HOMES = {
     "resume": "evodesign.api.search",
     "search": "evodesign.api.search",
     "simulate": "evodesign.api.simulate",
+    "spread": "evodesign.api.spread",
 }
 """Where each public name lives."""
 
@@ -53,6 +55,7 @@ __all__ = [
     "resume",
     "search",
     "simulate",
+    "spread",
 ]
 
 

@@ -25,6 +25,7 @@ from evodesign.problem.precompute import precompute_setting, precomputed, staged
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
 from tests.machine import NEEDS, leave_out, left_out
+from tests.measured_people import search_with_people
 from tests.pool.cluster import Cluster
 
 REPOSITORY = Path(__file__).parents[1]
@@ -142,6 +143,14 @@ def known(problem: DesignProblem) -> Precomputed:
             assert content is not None
             cache.store(key, content)
         return precomputed(problem, cache, pool, PrecomputeProgress())
+
+
+@pytest.fixture(scope="session")
+def run_with_people(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run whose front met samples of people; to be read, or copied."""
+    directory = tmp_path_factory.mktemp("people") / "run"
+    search_with_people(directory)
+    return directory
 
 
 def keys_of_starts(problem: DesignProblem) -> list[str]:

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 from evodesign.analysis.choice import Choice, Order, choose
 from evodesign.analysis.conditions import Quantity, all_conditions, quantities
+from evodesign.analysis.people_spread import all_spreads_json, spread_of_run
 from evodesign.api.columns import Column, case_columns, evaluation_columns
 from evodesign.api.design import Design
 from evodesign.errors import InputError, on_one_line
 from evodesign.files import write_whole
 from evodesign.records import CaseDetail, Constraint, Evaluation, Objective, Parameter
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.sampled_file import read_sampled
 
 if TYPE_CHECKING:
     from optuna import Study
@@ -104,6 +106,17 @@ class Run:
     def front(self) -> tuple[Design, ...]:
         """The designs that no other one dominates, best first in the first objective."""
         return self.choose()
+
+    @property
+    def spread(self) -> dict[str, Any] | None:
+        """How designs spread over samples of people, as `evodesign spread --json`; None without samples.
+
+        Example:
+            >>> run.spread is None
+            True
+        """
+        found = spread_of_run(self.log, read_sampled(self.log)[0])
+        return None if found is None else all_spreads_json(found)
 
     def design(self, number: int) -> Design:
         """The design of a number.

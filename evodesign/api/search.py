@@ -21,7 +21,7 @@ from evodesign.runlog.run import RunLog
 from evodesign.runlog.session_log import Observer
 from evodesign.session import Display
 
-__all__ = ["Callback", "resume", "search"]
+__all__ = ["Callback", "display_of", "resume", "search"]
 
 LOGGER = logging.getLogger("evodesign")
 """Hears what is strange about a problem or a run, at the level of information."""
@@ -99,7 +99,7 @@ def search(
         least_growth_percent=least_growth_percent,
     )
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
-    display = _display(callback, progress)
+    display = display_of(callback, progress)
     with _ended_by_time() as deadline:
         return Run(begin(built, directory, settings, budgets, workers, display, deadline))
     return open_run(directory)
@@ -156,7 +156,7 @@ def resume(
         least_growth_percent=least_growth_percent,
     )
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
-    display = _display(callback, progress)
+    display = display_of(callback, progress)
     with _ended_by_time() as deadline:
         return Run(proceed(directory, budgets, workers, display, deadline, accept_versions=accept_versions))
     return open_run(directory)
@@ -208,7 +208,9 @@ class _Calls(Observer):
         self._shown.finished(run)
 
 
-def _display(callback: Callback | None, progress: bool) -> Display:
+def display_of(callback: Callback | None, progress: bool) -> Display:
+    """What shows a session to a callback, and with `progress` on standard error."""
+
     @contextmanager
     def shown_search() -> Iterator[Observer]:
         shown = SearchLines(sys.stderr) if progress else Observer()

@@ -14,22 +14,25 @@ from typing import Protocol
 import msgspec
 
 from evodesign import evolve
+from evodesign.api.people import draw_people, usual_designs, usual_reference
 from evodesign.errors import InputError, Interrupted, ResumeMismatch, RunError
 from evodesign.nlp.codegen import NotCompiled
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.native.calls import method_library
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
-from evodesign.problem.build import DesignProblem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering, evaluation_factory
 from evodesign.problem.judge import judged_notes
 from evodesign.problem.notes import notes
 from evodesign.problem.reread import reread
+from evodesign.problem.samples import asked_samples
 from evodesign.records import ProblemSource, RunHeader, SearchSettings
 from evodesign.runlog.directory import name_in_path, segments
 from evodesign.runlog.header import header_of, renewed, source_differences, version_differences, versions
 from evodesign.runlog.run import RunLog, read_run, refuse_run
+from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.session import Display, Evaluate
 
@@ -171,6 +174,7 @@ def begin(
         factory = _factory(header, pool, workers, display)
         with display.search() as observer, stop.heeded():
             run = evolve.start(directory, header, factory, pool, observer, stop=stop)
+        _sampled(run, pool, display, stop)
     return _judged(run, display)
 
 
@@ -214,21 +218,30 @@ def proceed(
     with (
         _resumable(directory, stop),
         _pool(workers, display, stop) as pool,
-        display.search() as observer,
-        stop.heeded(),
     ):
         factory_of = partial(_factory, pool=pool, workers=workers, display=display)
         try:
-            run = evolve.resume(
-                directory, factory_of, pool, observer, budgets.evaluations, stop=stop, renew=renew
-            )
+            with display.search() as observer, stop.heeded():
+                run = evolve.resume(
+                    directory, factory_of, pool, observer, budgets.evaluations, stop=stop, renew=renew
+                )
         except ResumeMismatch as mismatch:
             raise _explained(mismatch, logged) from mismatch
+        _sampled(run, pool, display, stop)
     return _judged(run, display)
 
 
 def _pool(workers: Workers, display: Display, stop: Stop) -> Pool:
     return make_pool(workers.pool, workers.jobs, workers.scheduler, note=display.note, stop=stop)
+
+
+def _sampled(run: RunLog, pool: Pool, display: Display, stop: Stop) -> None:
+    """Evaluate the front of an ended search beside the samples of people that its problem asks for."""
+    samples, designs = asked_samples(run.header.problem), usual_designs(run)
+    if samples and designs and run.header.search.algorithm != JOINT_STARTS:
+        reference = usual_reference(build_problem(run.header.problem), run)
+        with stop.heeded():
+            draw_people(run, samples, designs, reference, pool, display, stop)
 
 
 def _judged(run: RunLog, display: Display) -> RunLog:

@@ -12,6 +12,7 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.files import make_folder
 
 if TYPE_CHECKING:
+    from evodesign.analysis.people_spread import PeopleSpread
     from evodesign.problem.build import DesignProblem
     from evodesign.problem.design_result import DesignResult
 
@@ -36,9 +37,11 @@ def evaluate(
     plot: Plot = None,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals. Exit code 5: no case is solved."""
+    from evodesign.analysis.people_spread import spread_json
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.design import design_tables
+    from evodesign.cli.tables.spread import quantities_table
     from evodesign.problem.build import build_problem
     from evodesign.problem.clearance import overlaps, solved_distances
     from evodesign.problem.evaluation_json import evaluation_json
@@ -60,14 +63,37 @@ def evaluate(
         _write_figures(f"{built.name}, {chosen}", result, plot)
     sensitivities = Sensitivities(built, evaluator.known).at(values, result).sensitivities()
     solved = evaluator.details(result)
+    spread = _spread(built, values, jobs) if built.samples else None
     if json:
-        print_json(evaluation_json(built, values, result, assessment, sensitivities, solved))
+        told = evaluation_json(built, values, result, assessment, sensitivities, solved)
+        print_json(told if spread is None else {**told, "spread": spread_json(spread, 0)})
     else:
         for table in design_tables(built, chosen, result, assessment, sensitivities, solved):
+            console().print(table)
+        if spread is not None:
+            means = {**assessment.objectives, **assessment.constrained}
+            table = quantities_table(
+                spread, 0, built.objectives, built.constraints, means, "the unscaled robot"
+            )
+            table.title = f"beside {built.samples} samples of people"
             console().print(table)
         show_notes(overlaps(solved_distances(result).items()))
     if not any(case.solved for case in result.cases):
         raise typer.Exit(NOTHING_SOLVED)
+
+
+def _spread(built: DesignProblem, values: tuple[float, ...], jobs: int) -> PeopleSpread:
+    """Of a design over samples of people, compared with the unscaled robot if it is another one."""
+    from evodesign.analysis.people_spread import people_spread
+    from evodesign.cli.output import show_notes
+    from evodesign.cli.progress import precompute_progress
+    from evodesign.problem.sampled_designs import sampled_beside
+
+    designs = tuple(dict.fromkeys((values, built.space.unscaled(built.scene.robot.tree))))
+    show_notes([f"{built.samples} samples of people: {built.samples * len(designs)} further evaluations"])
+    with precompute_progress() as progress:
+        sampled = sampled_beside(built, designs, jobs, progress)
+    return people_spread(built.objectives, built.constraints, sampled, 1)
 
 
 def _write_figures(name: str, result: DesignResult, directory: Path) -> None:

@@ -60,6 +60,7 @@ def front(
     from evodesign.cli.output import printable, show_notes, write_text
     from evodesign.problem.left_out import left_out
     from evodesign.runlog.run import read_run
+    from evodesign.runlog.sampled_file import read_sampled
 
     if json and csv:
         raise InputError("--csv", "", "one form of output", "--json too")
@@ -70,7 +71,7 @@ def front(
     opened = read_run(run)
     choice = _choice(opened, asked, near, where or (), limit)
     frequent = (printable(each.sentence) for each in frequent_limits(opened))
-    show_notes([*opened.notes, *frequent, *left_out(opened.header.problem)])
+    show_notes([*opened.notes, *read_sampled(opened)[1], *frequent, *left_out(opened.header.problem)])
     if plot is not None:
         from evodesign.report.front_figure import front_html  # plotly takes its time to load
 
@@ -101,17 +102,24 @@ def _choice(
 def print_front(run: RunLog, choice: Choice | None = None, *, json: bool = False, csv: bool = False) -> None:
     """Print the front of a run, or a choice of it."""
     from evodesign.analysis.choice import Choice, choose
+    from evodesign.analysis.people_spread import spread_among, spread_of_run
     from evodesign.cli.output import console, print_json, print_lines, printable
     from evodesign.cli.tables.front import front_csv, front_json, front_lines, front_table
+    from evodesign.cli.tables.spread import spread_table
+    from evodesign.runlog.sampled_file import read_sampled
 
     choice = Choice() if choice is None else choice
     chosen = choose(run.header.objectives, run.evaluations, choice)
+    spread = spread_of_run(run, read_sampled(run)[0])
     if json:
-        print_json(front_json(run, choice, chosen))
+        print_json(front_json(run, choice, chosen, spread))
     elif csv:
-        sys.stdout.write(front_csv(run, chosen.designs))
+        sys.stdout.write(front_csv(run, chosen.designs, spread))
     else:
         rows = chosen.designs if choice.limit is not None else chosen.designs[:ROWS]
         if rows:
             console().print(front_table(run, choice, rows))
-        print_lines(*map(printable, front_lines(run, choice, chosen, len(rows))))
+        shown = None if spread is None else spread_among(spread, [each.number for each in rows])
+        if shown is not None:
+            console().print(spread_table(shown, run.header.objectives, run.header.constrained))
+        print_lines(*map(printable, front_lines(run, choice, chosen, len(rows), spread)))

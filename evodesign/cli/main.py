@@ -37,6 +37,7 @@ from evodesign.cli.resume import resume
 from evodesign.cli.search import search
 from evodesign.cli.show import show
 from evodesign.cli.simulate import simulate
+from evodesign.cli.spread import spread
 from evodesign.cli.starts import starts
 from evodesign.cli.validate import validate
 from evodesign.cli.verify import verify
@@ -61,6 +62,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "compare": compare,
     "matters": matters,
     "families": families,
+    "spread": spread,
     "evaluate": evaluate,
     "lift": lift,
     "simulate": simulate,

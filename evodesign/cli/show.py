@@ -47,15 +47,19 @@ def show(
         figures = write_design_figures(name, opened.scene_set(), opened.cases, plot)
         show_notes(f"written: {path}" for path in figures)
     if json:
+        from evodesign.analysis.people_spread import spread_json
         from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
         from evodesign.report.export.design import design_json
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
         asked = [ergonomics_json(one) for one in _ergonomics(opened)]
         nearest = [task_names(case) | distance_json(each) for case, each in _distances(opened).items()]
-        bill = _bill(opened)
+        bill, spread = _bill(opened), opened.spread()
         hardware = {"hardware": bill} if bill else {}
-        print_json({"run": str(run), **told, **hardware, "ergonomics": asked, "clearances": nearest})
+        people = {} if spread is None else {"spread": spread_json(spread, design)}
+        print_json(
+            {"run": str(run), **told, **people, **hardware, "ergonomics": asked, "clearances": nearest}
+        )
     else:
         from evodesign.cli.tables.card import card
 

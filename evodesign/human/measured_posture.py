@@ -5,6 +5,11 @@
 with eta the height of the palms over stature and y the features. P is the inverse of the covariance, with the
 arm's features correlated where people hold the same height in several ways.
 
+One of the people of this distribution is drawn by one standard normal number z for each feature, the same at
+every height, so that who is more bent than others is so at all heights:
+
+    mean_z(eta) = mean(eta) + L(eta) z        L L^T = P^-1 at the knots, L linear in eta between them
+
 Source: `data/measured_posture.csv`, where each row says where it is from and what supports it.
 """
 
@@ -26,6 +31,7 @@ __all__ = [
     "ASSUMPTION",
     "FEATURES",
     "MARK",
+    "MEAN_PERSON",
     "NEEDED_JOINTS",
     "NEEDED_LINKS",
     "SIDES",
@@ -36,6 +42,7 @@ __all__ = [
     "HumanPosture",
     "MeasuredPosture",
     "PostureRow",
+    "drawn_person",
     "gaussians",
     "measured_posture",
     "posture_rows",
@@ -52,6 +59,9 @@ forward and in flexion.
 """
 
 PURE_NUMBERS = frozenset({"ahead", "sideways"})
+
+MEAN_PERSON = (0.0,) * len(FEATURES)
+"""Who is drawn to the mean."""
 
 MARK = 0.111
 """Height above the hip joints, over stature, of the mark on the back where lower and upper trunk meet.
@@ -124,9 +134,14 @@ class Gaussians:
     means: tuple[tuple[float, ...], ...]
     precisions: tuple[tuple[tuple[float, ...], ...], ...]
 
-    def mean(self, eta: float) -> dict[str, float]:
-        """Of each feature at a height."""
-        columns = zip(FEATURES, np.array(self.means).T, strict=True)
+    @property
+    def roots(self) -> Array:
+        """L at each knot, lower triangular with L L^T the covariance, shape (knots, features, features)."""
+        return np.linalg.cholesky(np.linalg.inv(np.array(self.precisions)))
+
+    def mean(self, eta: float, drawn: Sequence[float] = MEAN_PERSON) -> dict[str, float]:
+        """Of each feature at a height, of the person of some standard normal numbers."""
+        columns = zip(FEATURES, (np.array(self.means) + self.roots @ np.array(drawn)).T, strict=True)
         return {name: float(np.interp(eta, self.knots, column)) for name, column in columns}
 
 
@@ -139,6 +154,7 @@ class MeasuredPosture:
         hold, lift: of the features, of a person who stands still or lifts.
         joints: standard deviation about zero [rad] of joints that no feature has, by name without the side.
         weight: cost of one squared standard deviation, in units of 100 N^2 m^2.
+        drawn: by which standard normal numbers the person differs from the mean, by feature.
     """
 
     stature: float
@@ -146,6 +162,14 @@ class MeasuredPosture:
     lift: Gaussians
     joints: Mapping[str, float]
     weight: float = WEIGHT
+    drawn: tuple[float, ...] = MEAN_PERSON
+
+
+def drawn_person(sample: int) -> tuple[float, ...]:
+    """The standard normal numbers z of a sample, by feature; 0 is the mean person."""
+    if sample == 0:
+        return MEAN_PERSON
+    return tuple(np.random.default_rng(sample).standard_normal(len(FEATURES)).tolist())
 
 
 def unmeasured_heights() -> tuple[float, float]:

@@ -52,6 +52,7 @@ from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import CLEAR, COLLISIONS, meetings
 from evodesign.posture.terms.grasp import GRASP
 from evodesign.posture.terms.load import any_load
+from evodesign.posture.terms.measured_posture import any_person, person_parameters
 from evodesign.posture.terms.registry import TERMS
 from evodesign.tree.model import Tree
 
@@ -130,6 +131,8 @@ class KnotBlocks:
         self.design = ca.SX.sym("design", len(setting.space.parameters))
         self._step, self._inertia = ca.SX.sym("step"), ca.SX.sym("inertia")
         scene, self._mass = any_load(setting.scene)
+        scene, person = any_person(scene)
+        self._person = ca.vertcat(ca.SX(0, 1), *person.values())
         values = ca.vertsplit(self.design)
         self._scene = shared_scene(scene, setting.space, values)
         self._weights = shared_weights(setting.weights, setting.space, values)
@@ -251,9 +254,14 @@ class KnotBlocks:
 
     @property
     def shared(self) -> Expression:
-        """Design, step [s], the load's mass [kg], the share of inertia that counts, and a start's hands."""
+        """Design, step [s], the load's mass [kg], the share of inertia, who it is, and a start's hands."""
         turns = [ca.vec(turn) for turn in self._turns.values()]
-        return ca.vertcat(self.design, self._step, self._mass, self._inertia, *turns)
+        return ca.vertcat(self.design, self._step, self._mass, self._inertia, self._person, *turns)
+
+    @property
+    def person(self) -> tuple[float, ...]:
+        """The numbers that say who of the people of a distribution it is; none where there is none."""
+        return tuple(number for each in person_parameters(self._setting.scene).values() for number in each)
 
     @cached_property
     def knot(self) -> Block:

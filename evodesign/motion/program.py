@@ -158,7 +158,7 @@ class LiftProgram:
             mass: of the load [kg].
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
         """
-        shared = np.array([*design, lift.step, mass, inertia, *start.hands])
+        shared = self._shared(design, lift, mass, inertia, start.hands)
         (low, high), program = self._bounds(lift), self._with_rows_of(start)
         own = program._own(start)
         return program._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
@@ -167,7 +167,7 @@ class LiftProgram:
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float
     ) -> Ending | NotDifferentiable:
         """A solve's end made so exact that it can be differentiated; arguments as in `slopes`."""
-        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        shared = self._shared(design, lift, mass, 1.0, start.hands)
         program, bounds = self._with_rows_of(start), self._bounds(lift)
         return program._program.exact(ending, bounds, shared, program._own(start))
 
@@ -183,9 +183,15 @@ class LiftProgram:
             design: one number per parameter.
             mass: of the load [kg].
         """
-        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        shared = self._shared(design, lift, mass, 1.0, start.hands)
         program, bounds = self._with_rows_of(start), self._bounds(lift)
         return program._program.slopes(ending, bounds, shared, program._own(start), len(design))
+
+    def _shared(
+        self, design: Sequence[float], lift: Lift, mass: float, inertia: float, hands: Array
+    ) -> Array:
+        """The numbers that all blocks share, in the order of `KnotBlocks.shared`."""
+        return np.array([*design, lift.step, mass, inertia, *self._blocks.person, *hands])
 
     def _own(self, start: LiftStart) -> list[Array]:
         """What each knot has for itself: its weight in the cost, by the trapezoidal rule, and directions."""
@@ -230,7 +236,7 @@ class LiftProgram:
         places = np.arange(2.0 * self._knots - 1.0) / 2.0
         image = RestingSpline(self._knots).image(places)
         postures, load = self._splines(symbols)
-        shared = np.array([*design, lift.step, mass, 1.0, *start.hands])
+        shared = self._shared(design, lift, mass, 1.0, start.hands)
         along = zip(image @ postures, image @ load, start.directions, strict=True)
         return [[posture, np.array([height]), held, shared] for posture, height, held in along]
 
@@ -294,7 +300,7 @@ class LiftProgram:
         closure, path = self._blocks.closure, np.empty((self._knots, self._postures))
         order = range(self._knots) if begin == 0 else range(self._knots - 1, -1, -1)
         hands = np.asarray(self._blocks.hands(moving, design)).ravel()
-        shared = np.array([*design, lift.step, 0.0, 0.0, *hands])  # of which a place does not ask the rest
+        shared = self._shared(design, lift, 0.0, 0.0, hands)  # of which a place does not ask the rest
         places, worst = self._places_of(moving, lift.knot_heights[begin], shared), 0.0
         for knot in order:
             moving, open_by = self._closed(closure, moving, lift.knot_heights[knot], places, shared)

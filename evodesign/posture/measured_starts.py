@@ -67,7 +67,7 @@ def mean_posture(form: Form, given: MeasuredPosture, hand: float, eta: float) ->
         hand: place of the palms along x, in the person's frame [m].
         eta: height of the palms over stature.
     """
-    return posture_of_features(form, given.stature, given.hold.mean(eta), hand)
+    return posture_of_features(form, given.stature, given.hold.mean(eta, given.drawn), hand)
 
 
 def posture_of_features(form: Form, stature: float, mean: Mapping[str, float], hand: float) -> AgentPosture:

@@ -41,6 +41,7 @@ from evodesign.problem.from_tables import (
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.objectives import SHARED_REACH
+from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance import stance_of
 from evodesign.problem.standing_cases import standing_cases
@@ -86,6 +87,7 @@ class DesignProblem:
         joint: the paper's joint problem.
         joint_start: genomes that its starts begin with.
         stances: postures in which the robot stands alone, for what they ask of actuators.
+        samples: how many people of measured distributions answer for a front; 0 for none.
     """
 
     name: str
@@ -106,6 +108,7 @@ class DesignProblem:
     joint: JointSettings
     joint_start: tuple[Genome, ...]
     stances: tuple[StanceCase, ...] = ()
+    samples: int = 0
 
     def __repr__(self) -> str:
         return f"<built problem {self.name}: {len(self.space.parameters)} parameters>"
@@ -273,4 +276,5 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
         stances=standing_cases(tables, source, robot),
+        samples=samples_of(tables, source),
     )

@@ -14,6 +14,7 @@ import msgspec
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
+from evodesign.nlp.solver import SolverCache
 from evodesign.pool.base import Limits
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
@@ -60,10 +61,15 @@ class Evaluator:
         inner: its inner problems.
     """
 
-    def __init__(self, problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> None:
+    def __init__(
+        self,
+        problem: DesignProblem,
+        known: Precomputed = NOTHING_PRECOMPUTED,
+        solvers: SolverCache | None = None,
+    ) -> None:
         self.problem = problem
         self.known = known
-        self.inner = inner_problems(problem, known)
+        self.inner = inner_problems(problem, known, solvers)
         self._solver = DesignSolver(problem, known, self.inner)
 
     def solve(self, values: Sequence[float]) -> DesignResult:

@@ -32,7 +32,7 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
-from evodesign.problem.file import ProblemFile, SolverTable
+from evodesign.problem.file import HumanTable, ProblemFile, SolverTable
 from evodesign.problem.precompute import COMPILING, precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
@@ -211,6 +211,7 @@ NO_PART_OF_EVALUATIONS: Exceptions = {
         "description": "is for people",
         "search": "says which designs are evaluated, and when",
     },
+    HumanTable: {"spread": "is asked after a search"},
     SolverTable: {
         "evaluation_seconds": "what such a limit ended is not kept",
         "evaluation_memory_gb": "what such a limit ended is not kept",

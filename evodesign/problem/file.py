@@ -41,6 +41,9 @@ __all__ = [
 
 T = TypeVar("T")
 
+MOST_SAMPLES = 1000
+"""People who are drawn from a distribution of measured ones."""
+
 
 class HandsTable(Table, frozen=True):
     """Frames that meet the load."""
@@ -143,7 +146,8 @@ class HumanTable(Table, frozen=True):
     whether measured postures draw the person, `joint_ranges` whether the
     joints of the spine share ranges, or one flexion and one bending within them; `shoulder_width` how far a
     generated person's shoulder joints are apart. `gaze_cone_deg` is the largest angle of the load from where
-    the head looks.
+    the head looks. Of a person with a measured posture, `spread` says beside how many people of the measured
+    distribution a front is evaluated once its search has ended, `posture_sample` which of them this one is.
     """
 
     name: Name | None = None
@@ -162,6 +166,8 @@ class HumanTable(Table, frozen=True):
     joint_ranges: JointRanges | None = None
     shoulder_width: ShoulderWidth | None = None
     gaze_cone_deg: Annotated[float, Meta(gt=0.0, lt=180.0)] | None = None
+    spread: Annotated[int, Meta(ge=2, le=MOST_SAMPLES)] | None = None
+    posture_sample: Annotated[int, Meta(ge=1, le=MOST_SAMPLES)] | None = None
 
 
 class GraspsTable(Table, frozen=True):

@@ -33,9 +33,11 @@ class InnerProblems:
     lifts: Mapping[tuple[str, str], LiftProblem]
 
 
-def inner_problems(problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED) -> InnerProblems:
-    """The inner problems of a problem, with what is known beforehand."""
-    symmetric, solvers = problem.symmetry is not Symmetry.OFF, SolverCache()
+def inner_problems(
+    problem: DesignProblem, known: Precomputed = NOTHING_PRECOMPUTED, solvers: SolverCache | None = None
+) -> InnerProblems:
+    """The inner problems of a problem, with what is known beforehand, and solvers of others like it."""
+    symmetric, solvers = problem.symmetry is not Symmetry.OFF, solvers or SolverCache()
     names = [*(each.name for each in problem.objectives), *(each.name for each in problem.constraints)]
     timed = any(name.endswith(LEAST_TIME) for name in names)
     scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]

@@ -16,6 +16,7 @@ from evodesign.human.measured_posture import (
     NEEDED_LINKS,
     USUAL_POSTURE,
     HumanPosture,
+    drawn_person,
     measured_posture,
 )
 from evodesign.mechanics.scene import Agent
@@ -23,7 +24,7 @@ from evodesign.problem.file import HumanTable, JointRanges
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 
-__all__ = ["HEAD", "with_posture"]
+__all__ = ["HEAD", "is_measured", "with_posture"]
 
 ROOT, HEAD = "Pelvis", "Head"
 """A person's links: the root, and the one that holds the eyes."""
@@ -38,23 +39,37 @@ def with_posture(key: str, table: HumanTable, person: Agent, source: ProblemSour
         person: without either.
         source: the problem, for messages.
     Raises:
-        InputError: a person from a URDF without the links and joints that this needs, or a spine whose joints
-            are to move together but not all do.
+        InputError: a person from a URDF without the links and joints that this needs, a spine whose joints
+            are to move together but not all do, or samples of a person whom no measured posture draws.
     """
-    usual = USUAL_POSTURE if table.urdf is None else HumanPosture.LEAST_TORQUE
-    if (table.posture or usual) is HumanPosture.MEASURED:
+    if is_measured(table):
         return _coupled(key, JointRanges.RHYTHM, _measured(key, table, person, source), source)
+    for name in ("spread", "posture_sample"):
+        if getattr(table, name) is not None:
+            wanted = 'posture = "measured", which has a distribution of people, or no such key'
+            raise InputError(source.path, f"{key}.{name}", wanted, f"{getattr(table, name)} of one posture")
     ranges = table.joint_ranges or JointRanges.SEPARATE
     return person if ranges is JointRanges.SEPARATE else _coupled(key, ranges, person, source)
+
+
+def is_measured(table: HumanTable) -> bool:
+    """Whether measured postures draw the person of a table."""
+    usual = USUAL_POSTURE if table.urdf is None else HumanPosture.LEAST_TORQUE
+    return (table.posture or usual) is HumanPosture.MEASURED
 
 
 def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource) -> Agent:
     """The person, drawn to measured postures.
 
     Raises:
-        InputError: lumbar joints that are not to bend as one, or a person from a URDF without the links and
-            joints that postures were measured of.
+        InputError: lumbar joints that are not to bend as one, a sample that is to have samples, or a person
+            from a URDF without the links and joints that postures were measured of.
     """
+    if table.spread is not None and table.posture_sample is not None:
+        wanted = "either how many people to draw, or spread left out: this one is drawn already"
+        raise InputError(
+            source.path, f"{key}.spread", wanted, f"both, and posture_sample = {table.posture_sample}"
+        )
     if table.joint_ranges not in (None, JointRanges.RHYTHM):
         wanted = "'rhythm', which a measured posture has, or posture = \"least_torque\""
         raise InputError(source.path, f"{key}.joint_ranges", wanted, f"'{table.joint_ranges}'")
@@ -65,7 +80,10 @@ def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource)
     if lacking:
         wanted = f"'least_torque', or a person with the generated one's body, such as its {lacking[0]}"
         raise InputError(source.path, f"{key}.posture", wanted, f"'measured' of '{tree.name}'")
-    return replace(person, measured=measured_posture(table.stature_m or _stature(person)))
+    drawn = drawn_person(table.posture_sample or 0)
+    return replace(
+        person, measured=replace(measured_posture(table.stature_m or _stature(person)), drawn=drawn)
+    )
 
 
 def _stature(person: Agent) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from evodesign.errors import InputError, RunError
 from evodesign.motion.starts import lift_portfolio
@@ -11,7 +11,13 @@ from evodesign.nlp.disk_cache import Cache
 from evodesign.pool.base import Limits, Pool
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import compute_piece, encoded_piece, with_piece
-from evodesign.posture.precompute.plan import Piece, PrecomputeSetting, Subject, stages
+from evodesign.posture.precompute.plan import (
+    Piece,
+    PrecomputeSetting,
+    Subject,
+    all_mean_people,
+    stages,
+)
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.prepared import prepared_pieces
@@ -80,6 +86,8 @@ def precomputed(
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
 
+    That of people who were drawn from a distribution is that of the mean ones, but for their own part.
+
     Args:
         problem: to be made ready.
         cache: of pieces worked out before; None to work out everything that is not given.
@@ -92,9 +100,31 @@ def precomputed(
         RunError: a piece could not be worked out; it says which and why.
         InputError: a height at which one of the people cannot hold a load.
     """
-    setting, known = precompute_setting(problem), Precomputed()
+    setting, staged = precompute_setting(problem), staged_pieces(problem, lifts)
+    mean = all_mean_people(setting)
     given = prepared_pieces(problem.source) if given is None else given
-    staged = staged_pieces(problem, lifts)
+    known = _all_of(problem, mean, Precomputed(), staged, cache, pool, watcher, after, given)
+    if mean == setting:
+        return known
+    own = [piece for stage in staged for piece in stage if piece.subject is Subject.PERSON]
+    return _all_of(problem, setting, replace(known, values={}), [own], cache, pool, watcher, (), {})
+
+
+def _all_of(
+    problem: DesignProblem,
+    setting: PrecomputeSetting,
+    known: Precomputed,
+    staged: Sequence[Sequence[Piece]],
+    cache: Cache | None,
+    pool: Pool,
+    watcher: PrecomputeProgress,
+    after: Sequence[PendingPiece],
+    given: Mapping[Piece, bytes],
+) -> Precomputed:
+    """What is known with all of some pieces; stages in turn, other arguments as in `precomputed`.
+
+    `setting` is the problem's or that of mean people, and `known` is known already.
+    """
     pieces = {
         piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
         for stage, pieces in enumerate(staged)
@@ -122,7 +152,7 @@ def precomputed(
             spoilt = [told for piece, told in missing.items() if piece not in absent]
             if spoilt:
                 watcher.missing(spoilt, pool.processes)
-            for piece, content in _worked_out(problem, missing, known, pool, watcher).items():
+            for piece, content in _worked_out(problem, setting, missing, known, pool, watcher).items():
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)
                 found = with_piece(known, piece, content)
@@ -155,6 +185,7 @@ def refuse_heights(problem: DesignProblem, known: Precomputed) -> None:
 
 def _worked_out(
     problem: DesignProblem,
+    setting: PrecomputeSetting,
     missing: Mapping[Piece, PendingPiece],
     known: Precomputed,
     pool: Pool,
@@ -163,8 +194,9 @@ def _worked_out(
     """Contents of the pieces, in the order in which they are missing."""
     contents: dict[Piece, bytes] = {}
     pieces = [*missing]
-    name = " ".join(key_of(precompute_setting(problem), piece) for piece in pieces)
-    factory = _PieceFactory(name, problem.source, known)
+    name = " ".join(key_of(setting, piece) for piece in pieces)
+    drawn = setting != all_mean_people(setting)
+    factory = _PieceFactory(name, problem.source, known, drawn)
     for finished in pool.run(factory, pieces):
         piece = pieces[finished.index]
         if finished.value is None:
@@ -181,11 +213,15 @@ machine."""
 
 @dataclass(frozen=True, slots=True)
 class _PieceFactory:
-    """Builds, in whichever process it is called, the function from a piece to its content."""
+    """Builds, in whichever process it is called, the function from a piece to its content.
+
+    `drawn` says whether people are as they were drawn, in place of the mean ones.
+    """
 
     name: str
     source: ProblemSource = field(compare=False)
     known: Precomputed = field(compare=False)
+    drawn: bool
 
     @property
     def limits(self) -> Limits:
@@ -194,6 +230,7 @@ class _PieceFactory:
 
     def __call__(self) -> Callable[[Piece], bytes]:
         setting = precompute_setting(build_problem(self.source))
+        setting = setting if self.drawn else all_mean_people(setting)
         return lambda piece: _content(setting, piece, self.known)
 
 

@@ -15,7 +15,7 @@ import msgspec
 
 from evodesign.identity import Exceptions, digest
 from evodesign.posture.precompute.plan import Piece
-from evodesign.problem.file import ProblemFile, SolverTable
+from evodesign.problem.file import HumanTable, ProblemFile, SolverTable
 from evodesign.problem.source import decode_toml
 from evodesign.records import ProblemSource
 
@@ -32,6 +32,10 @@ NO_PART_OF_PREPARED: Exceptions = {
         "constraints": "judge what postures give",
         "search": "says which designs are evaluated, and when",
         "baseline": "is solved from starts of its own",
+    },
+    HumanTable: {
+        "spread": "is asked after a search",
+        "posture_sample": "begins where the mean person begins; its own part is no such piece",
     },
     SolverTable: {
         "method": "begins where others begin",

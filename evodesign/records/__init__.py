@@ -32,6 +32,7 @@ from evodesign.records.parameters import (
     materials_of,
     middle_of,
 )
+from evodesign.records.people import SampledDesign, SampledPeople
 from evodesign.records.postures import (
     ActiveLimit,
     AgentDetail,
@@ -81,6 +82,8 @@ __all__ = [
     "ReachOutcome",
     "Record",
     "RunHeader",
+    "SampledDesign",
+    "SampledPeople",
     "SearchSettings",
     "SearchStage",
     "Sense",

@@ -8,11 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from evodesign.analysis.front import front
+from evodesign.analysis.people_spread import PeopleSpread, spread_of_run
 from evodesign.errors import EvodesignError, InputError, RunError, on_one_line
 from evodesign.mechanics.scene import HUMAN
 from evodesign.records import Case, CaseDetail, Detail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
+from evodesign.runlog.sampled_file import read_sampled
 from evodesign.searches.base import JOINT_STARTS
 
 if TYPE_CHECKING:
@@ -87,6 +89,11 @@ class OpenedDesign:
         space = problem.space
         values = space.given([design[each.name] for each in space.parameters], assessment.rated_torques)
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+
+    def spread(self) -> PeopleSpread | None:
+        """Of the run's designs over samples of people; None where this one has none."""
+        found = spread_of_run(self.run, read_sampled(self.run)[0])
+        return found if found is not None and self.evaluation.number in found.designs else None
 
     def bill(self) -> dict[str, Any]:
         """Its bill of materials; empty where the problem has no hardware."""

@@ -103,9 +103,10 @@ def both(monkeypatch: pytest.MonkeyPatch) -> BothWidths:
 
 
 @pytest.fixture
-def place(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def place(repository: Path, tmp_path: Path, run_with_people: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The golden runs, and small problems, in a directory in which commands name them in short."""
     monkeypatch.chdir(tmp_path)
+    shutil.copytree(run_with_people, "peopled")
     for name in ("run", "other"):
         shutil.copytree(GOLDEN / "lifting" / "format-2", name)
     for name in ("toy", "toy-again"):
@@ -144,14 +145,20 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
     "branch": (
         ("branch", "run", "--branch-from", 1, "--run", "new", "--algorithm", "random", *THREE, *QUICK),
     ),
-    "front": (("front", "run"), ("front", "toy", "--knee"), ("front", "run", "--where", "reach_height > 9")),
+    "front": (
+        ("front", "run"),
+        ("front", "toy", "--knee"),
+        ("front", "peopled"),
+        ("front", "run", "--where", "reach_height > 9"),
+    ),
     "report": (("report", "run"),),
-    "show": (("show", "run", 1),),
+    "show": (("show", "run", 1), ("show", "peopled", 0)),
     "export": (("export", "run", 1, "--to", "exported"),),
     "watch": (("watch", "run", "--once"), ("watch", "toy", "--once")),
     "compare": (("compare", "run", "other"), ("compare", "toy", "toy-again", "run")),
     "matters": (("matters", "run"), ("matters", "many", "--design", 3)),
     "families": (("families", "run"), ("families", "many", "--by", "arm.0 + arm.1", "--cells", 5)),
+    "spread": (("spread", "peopled"),),
     "evaluate": (("evaluate", "small.toml"),),
     "lift": (("lift", "small.toml", "--from", 0.9, "--to", 2.5, "--csv", "lift.csv"),),
     "simulate": (

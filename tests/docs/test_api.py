@@ -23,10 +23,13 @@ OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 @pytest.fixture(scope="module")
-def names(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
-    """What examples may name, in a directory that holds `runs/first` and `problem.toml`."""
+def names(
+    repository: Path, run_with_people: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[str, Any]]:
+    """What examples may name, in a directory that holds `runs/first`, `runs/people` and `problem.toml`."""
     place = tmp_path_factory.mktemp("examples")
     shutil.copytree(LIFTING / "format-2", place / "runs" / "first")
+    shutil.copytree(run_with_people, place / "runs" / "people")
     (place / "problems").symlink_to(repository / "problems")
     (place / "populations").symlink_to(repository / "populations")
     text = (LIFTING / "problem.toml").read_text(encoding="utf-8").replace("../../../problems/", "problems/")

@@ -12,7 +12,7 @@ import pytest
 
 from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
-from evodesign.human.measured_posture import FEATURES, MARK, PostureRow, posture_rows
+from evodesign.human.measured_posture import FEATURES, MARK, PostureRow, drawn_person, posture_rows
 from evodesign.mechanics.floating_base import BodyState
 from evodesign.mechanics.scene import HUMAN, Scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, PostureMotion, assemble, free_hands_beside
@@ -24,7 +24,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import Form, half, whole
-from evodesign.posture.terms.measured_posture import MEASURED_POSTURE
+from evodesign.posture.terms.measured_posture import MEASURED_POSTURE, any_person
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.problem.build import DesignProblem, build_problem
@@ -105,15 +105,15 @@ def at_height(rows: list[PostureRow], quantity: str, field: str, eta: float) -> 
     return float(np.interp(eta, *zip(*own, strict=True)))
 
 
-def expected_cost(features: Mapping[str, float], task: str, eta: float) -> float:
-    """(y - m)^T P (y - m), the precision linear between those of the knots on both sides."""
+def expected_cost(features: Mapping[str, float], task: str, eta: float, drawn: np.ndarray) -> float:
+    """(y - m)^T P (y - m), precision and the drawn person's way from m linear between knots on both sides."""
     own = [row for row in posture_rows() if row.task in (task, "both") and not math.isnan(row.eta)]
     unit = {name: 1.0 if name in ("ahead", "sideways") else math.radians(1.0) for name in FEATURES}
     away = np.array([features[n] - unit[n] * at_height(own, n, "mean", eta) for n in FEATURES])
     knots = sorted({row.eta for row in own})
     share = np.interp(eta, knots, range(len(knots)))
     below = min(int(share), len(knots) - 2)
-    costs = []
+    scales, moved = [], []
     for knot in knots[below : below + 2]:
         here = {row.quantity: row for row in own if row.eta == knot}
         deviation = np.array([unit[name] * here[name].deviation for name in FEATURES])
@@ -122,8 +122,10 @@ def expected_cost(features: Mapping[str, float], task: str, eta: float) -> float
             i, j = (FEATURES.index(name) for name in pair)
             row = here.get(" ".join(pair))
             correlation[i, j] = correlation[j, i] = 0.0 if row is None else row.mean
-        scaled = away / deviation
-        costs.append(float(scaled @ np.linalg.solve(correlation, scaled)))
+        scales.append(correlation * np.outer(deviation, deviation))
+        moved.append(deviation * (np.linalg.cholesky(correlation) @ drawn))
+    away = away - moved[0] - (share - below) * (moved[1] - moved[0])
+    costs = [float(away @ np.linalg.solve(covariance, away)) for covariance in scales]
     return costs[0] + (share - below) * (costs[1] - costs[0])
 
 
@@ -152,19 +154,21 @@ def flat_posture(form: Form, rng: np.random.Generator) -> AgentPosture:
 
 @pytest.mark.parametrize("height", [0.1, 0.45, 0.9, 1.58, 2.2])
 @pytest.mark.parametrize("task", ["hold", "lift"])
+@pytest.mark.parametrize("sample", [0, 5])
 def test_the_cost_is_what_numpy_makes_of_pinocchios_frames(
-    scene: Scene, form: Form, height: float, task: str
+    scene: Scene, form: Form, height: float, task: str, sample: int
 ) -> None:
     motions = {}
+    symbolic, given = any_person(scene)
     if task == "lift":
         count = len(form.coordinates)
         parts = {"base_position": ca.DM.zeros(3), "base_angles": ca.DM.zeros(3), "joints": ca.DM.zeros(count)}
         motions = {HUMAN: PostureMotion(parts, parts)}
     parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
-    made = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,), motions))
+    made = assemble(parties, TERMS.values(), CaseSymbols(symbolic, (height,), motions))
     cost = MEASURED_POSTURE.posture_cost(made.undisturbed.bodies[HUMAN])
     symbols = ca.vertcat(*[variable.symbol for variable in made.variables])
-    function = ca.Function("cost", [symbols], [cost])
+    function = ca.Function("cost", [symbols, *given.values()], [cost])
     posture = flat_posture(form, np.random.default_rng(int(10.0 * height)))
     known = form.parts(posture)
     packed = [
@@ -174,13 +178,14 @@ def test_the_cost_is_what_numpy_makes_of_pinocchios_frames(
     model = AgentModel.of(form.agent, form.agent.tree)
     state = model.at(posture)
     eta = (height + scene.payload.grasp_point(form.agent, "left")[2]) / STATURE
-    expected = np.mean([expected_cost(seen(state, side), task, eta) for side in ("left", "right")])
+    drawn = np.array(drawn_person(sample))
+    expected = np.mean([expected_cost(seen(state, side), task, eta, drawn) for side in ("left", "right")])
     for name in OTHERS:
         deviation = math.radians(30.0 if name == "jElbow_roty" else 10.0)
         for side in ("jLeft", "jRight"):
             expected += (posture.joints[name.replace("j", side, 1)] / deviation) ** 2 / 2.0
     expected += (posture.joints["jT9T8_roty"] / math.radians(10.0)) ** 2
-    assert float(function(np.concatenate(packed))) == pytest.approx(30.0 * expected, rel=1e-6)
+    assert float(function(np.concatenate(packed), drawn)) == pytest.approx(30.0 * expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("eta", [0.15, 0.3, 0.44, 0.6, 0.8, 1.0])

@@ -9,6 +9,7 @@ from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.text import Text
 
+from evodesign.analysis.people_spread import PeopleSpread
 from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
@@ -19,6 +20,7 @@ from evodesign.cli.tables.effort import effort_table
 from evodesign.cli.tables.limits import TITLE as TITLE_OF_LIMITS
 from evodesign.cli.tables.limits import limits_table
 from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
+from evodesign.cli.tables.spread import quantities_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
 from evodesign.errors import on_one_line
@@ -44,12 +46,16 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, A
         bill: of materials; empty to leave it out.
     """
     assessment = opened.evaluation.assessment
+    spread = opened.spread()
     several = any(outcome.case.label for outcome in assessment.cases)
     reach = f"reach: {_reach(assessment)}"
     made_of = materials_of(opened.run.header.parameters, assessment.design)
     sections = {"objectives": _objectives(opened)}
     if constraints := opened.run.header.constrained:
         sections["constraints"] = constraints_table(constraints, "", ("value", assessment))
+    if spread is not None:
+        title, table = _people(opened, spread)
+        sections[title] = table
     sections["parameters"] = _parameters(opened)
     if made_of:
         sections["materials"] = _materials(made_of)
@@ -113,6 +119,17 @@ def _objectives(opened: OpenedDesign) -> FittedTable:
     label = violation_heading(opened.run.header.constrained)
     table.add_row(escape(label), rounded(assessment.violation), "")
     return table
+
+
+def _people(opened: OpenedDesign, spread: PeopleSpread) -> tuple[str, FittedTable]:
+    """How its results spread over samples of people, and on how many fronts it is."""
+    header, assessment, number = opened.run.header, opened.evaluation.assessment, opened.evaluation.number
+    own, samples = spread.designs[number], spread.samples
+    means = {**assessment.objectives, **assessment.constrained}
+    reference = f"design {spread.reference}"
+    table = quantities_table(spread, number, header.objectives, header.constrained, means, reference)
+    lost = "" if own.feasible == own.samples else f", feasible in {own.feasible}"
+    return f"beside {own.samples} samples of people: on the front in {own.on_front} of {samples}{lost}", table
 
 
 def _parameters(opened: OpenedDesign) -> FittedTable:

@@ -9,6 +9,7 @@ from typing import Any
 from evodesign.analysis.active_limits import frequent_limits, limits_json
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.analysis.failures import causes, failures
+from evodesign.analysis.people_spread import PeopleSpread, spread_json, spread_sentence
 from evodesign.cli.output import printable
 from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.records import Evaluation, materials_of
@@ -26,8 +27,12 @@ TITLES = {
 }
 
 
-def front_json(run: RunLog, choice: Choice, chosen: Chosen) -> dict[str, Any]:
+def front_json(
+    run: RunLog, choice: Choice, chosen: Chosen, spread: PeopleSpread | None = None
+) -> dict[str, Any]:
     """Chosen designs as a JSON object; its shape is a promise."""
+    sampled = {} if spread is None else spread.designs
+    people = {} if spread is None else {"samples": spread.samples, "reference": spread.reference}
     return {
         "run": str(run.directory),
         "objectives": [objective.name for objective in run.header.objectives],
@@ -36,6 +41,7 @@ def front_json(run: RunLog, choice: Choice, chosen: Chosen) -> dict[str, Any]:
         "order": choice.order,
         "where": [str(condition) for condition in choice.where],
         "limits": limits_json(frequent_limits(run)),
+        **({"spread": people} if people else {}),
         "statuses": Counter(str(evaluation.assessment.status) for evaluation in run.evaluations),
         "designs": [
             {
@@ -44,6 +50,11 @@ def front_json(run: RunLog, choice: Choice, chosen: Chosen) -> dict[str, Any]:
                 "parameters": evaluation.assessment.design,
                 **_materials(run, evaluation),
                 **_constraints(run, evaluation),
+                **(
+                    {"spread": spread_json(spread, evaluation.number)}
+                    if spread is not None and evaluation.number in sampled
+                    else {}
+                ),
             }
             for evaluation in chosen.designs
         ],
@@ -62,14 +73,21 @@ def _constraints(run: RunLog, evaluation: Evaluation) -> dict[str, Any]:
     return {"constraints": constraints_json(constraints, evaluation.assessment)} if constraints else {}
 
 
-def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
-    """Designs as comma-separated values: number, objectives, constraints, parameters (in full), materials."""
+def front_csv(run: RunLog, designs: Sequence[Evaluation], spread: PeopleSpread | None = None) -> str:
+    """Designs as comma-separated values: number, objectives, constraints, parameters (in full), materials.
+
+    Where people were drawn, also in how many samples it is on the front, and mean and standard deviation of
+    objectives and constraints.
+    """
     objectives = [objective.name for objective in run.header.objectives]
     constraints = [constraint.name for constraint in run.header.constrained_alone]
     parameters = [parameter.name for parameter in run.header.parameters]
     made_of = [parameter for parameter in run.header.parameters if parameter.materials]
     materials = [f"{parameter.name}.material" for parameter in made_of]
-    columns = ["design", *objectives, *constraints, *parameters, *materials]
+    spreads = [] if spread is None else [*objectives, *constraints]
+    people = ["samples_on_front"] if spread is not None else []
+    people += [f"{name}.{part}" for name in spreads for part in ("mean", "deviation")]
+    columns = ["design", *objectives, *constraints, *parameters, *materials, *people]
     rows = [
         [
             evaluation.number,
@@ -77,10 +95,25 @@ def front_csv(run: RunLog, designs: Sequence[Evaluation]) -> str:
             *(evaluation.assessment.constrained.get(name) for name in constraints),
             *(evaluation.assessment.design[name] for name in parameters),
             *(parameter.material_of(evaluation.assessment.design[parameter.name]) for parameter in made_of),
+            *_people_cells(spread, evaluation.number, spreads),
         ]
         for evaluation in designs
     ]
     return csv_text([columns, *rows])
+
+
+def _people_cells(
+    spread: PeopleSpread | None, number: int, quantities: Sequence[str]
+) -> list[float | int | None]:
+    """A design's cells of what spreads over people; empty ones of a design that met none."""
+    if spread is None:
+        return []
+    own = spread.designs.get(number)
+    cells: list[float | int | None] = [None if own is None else own.on_front]
+    for name in quantities:
+        values = None if own is None else own.quantities[name].values
+        cells += [None, None] if values is None else [values.mean, values.deviation]
+    return cells
 
 
 def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> FittedTable:
@@ -89,13 +122,16 @@ def front_table(run: RunLog, choice: Choice, designs: Sequence[Evaluation]) -> F
     return designs_table(title, run.header, designs)
 
 
-def front_lines(run: RunLog, choice: Choice, chosen: Chosen, rows: int) -> list[str]:
-    """What is not in a table of so many rows, and why; then what the run holds."""
+def front_lines(
+    run: RunLog, choice: Choice, chosen: Chosen, rows: int, spread: PeopleSpread | None = None
+) -> list[str]:
+    """What is not in a table of so many rows, and why; what people change; then what the run holds."""
     feasible = sum(evaluation.feasible for evaluation in run.evaluations)
     counts = failures(run.evaluations)
     failed = f", failed: {causes(counts)}" if counts else ""
     return [
         *_remarks(run, choice, chosen, rows),
+        *([] if spread is None else [spread_sentence(spread)]),
         f"{len(run.evaluations)} evaluations, {feasible} feasible, {len(chosen.front)} on the front"
         f"{_such(choice)}{failed}; the run lies in {run.directory}",
     ]

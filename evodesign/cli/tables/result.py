@@ -9,11 +9,13 @@ from statistics import median
 from evodesign.analysis.choice import Choice, choose
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import front, to_minimise
+from evodesign.analysis.people_spread import spread_of_run
 from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.front import front_lines, least_violated
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Evaluation, Objective
 from evodesign.runlog.run import RunLog
+from evodesign.runlog.sampled_file import read_sampled
 from evodesign.violations import bounds_text
 
 __all__ = ["chosen_designs", "next_commands", "result_lines", "result_table"]
@@ -62,7 +64,8 @@ def result_lines(run: RunLog, chosen: Chosen) -> list[str]:
     """What the run holds; where nothing is feasible, what comes nearest and what may help."""
     whole = Choice()
     found = choose(run.header.objectives, run.evaluations, whole)
-    lines = [*front_lines(run, whole, found, len(found.front)), *_gradient_lines(run)]
+    spread = spread_of_run(run, read_sampled(run)[0])
+    lines = [*front_lines(run, whole, found, len(found.front), spread), *_gradient_lines(run)]
     if not chosen and run.evaluations:
         lines.append(
             "what may help: lower heights in [task], wider bounds in [[design.length]], or more evaluations"

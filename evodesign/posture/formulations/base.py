@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from evodesign.design.space import DesignSpace
+from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.identity import Exceptions, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene
 from evodesign.nlp.landscape import Landscape
@@ -31,6 +32,7 @@ NO_PART_OF_PROGRAMS: Exceptions = {
     Scene: {"human": "only hands stand in for a person who has no body in the program"},
     Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},
     Agent: {"label": "is a word for results"},
+    MeasuredPosture: {"drawn": "is a parameter of every program with the person's body"},
 }
 
 

@@ -265,15 +265,15 @@ class DecoupledPostures:
     ) -> Optimum | NotDifferentiable:
         """The person under an internal force [N]; one that is held at its limit does not move the person."""
         humans, task = self._sensitivities[1], solution.case.task
-        parameters = {**task.given, "mass": self._setting.scene.payload.mass, "internal_force": internal}
+        parameters = self._human.parameters(task.heights[0], internal)
         if not held:
             start = start_from(humans.program, self._forms, solution.instants)
             return humans.at(parameters, start, exact=exact)
         push = float(np.copysign(self._setting.scene.stance.push, internal))
         raw = self._human.best(task.heights[0], push, self._values[task])
-        still = {name: np.zeros((len(value), len(parameters))) for name, value in raw.values.items()}
-        unmoved = np.zeros(len(parameters))
-        columns, limits = humans.program.columns, no_limits(len(parameters))
+        many = sum(np.size(value) for value in parameters.values())
+        still = {name: np.zeros((len(value), many)) for name, value in raw.values.items()}
+        columns, limits, unmoved = humans.program.columns, no_limits(many), np.zeros(many)
         return Optimum(raw.values, still, raw.cost, unmoved, limits, columns)
 
 

@@ -36,6 +36,7 @@ from evodesign.posture.starts import person_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.load import any_load, force_along_x
+from evodesign.posture.terms.measured_posture import any_person, person_parameters
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.records import Status
@@ -122,9 +123,10 @@ class HumanProblem:
         """What is solved."""
         return self.solver.program
 
-    def parameters(self, height: float, push: float) -> Mapping[str, float]:
+    def parameters(self, height: float, push: float) -> Mapping[str, Any]:
         """The program's, for a height [m] and a push [N]."""
-        return {"height": height, "mass": self._mass, "internal_force": push}
+        given = {"height": height, "mass": self._mass, "internal_force": push}
+        return {**given, **person_parameters(self._scene)}
 
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
@@ -216,9 +218,10 @@ class HumanProblem:
 
 
 def human_program(form: Form, scene: Scene, weight: float, *, switched: bool = False) -> Program:
-    """The person's program; its parameters are the load's height and mass, and the internal force."""
+    """The person's program; its parameters are the load's height and mass, the internal force, and who."""
     given_scene = scene
     scene, mass = any_load(scene)
+    scene, person = any_person(scene)
     height, internal = ca.SX.sym("height"), ca.SX.sym("internal_force")
     parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)), switched=switched)
@@ -229,6 +232,12 @@ def human_program(form: Form, scene: Scene, weight: float, *, switched: bool = F
         variables=assembly.variables,
         constraints=(*assembly.constraints, ConstraintBlock("load.given_internal_force", given, 0.0, 0.0)),
         cost=total([load_case.effort({HUMAN: weight}), *load_case.regularisation]),
-        parameters={"height": height, "mass": mass, "internal_force": internal, **assembly.given},
+        parameters={
+            "height": height,
+            "mass": mass,
+            "internal_force": internal,
+            **person,
+            **assembly.given,
+        },
         switches=parted(assembly.parted, lambda: human_program(form, given_scene, weight, switched=True)),
     )

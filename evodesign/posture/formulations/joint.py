@@ -43,6 +43,7 @@ from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import different_people, fixed_starts, named_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
+from evodesign.posture.terms.measured_posture import any_person, person_parameters
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, instants_of, layout_of, start_from
 from evodesign.records import ActiveLimit, Status
@@ -262,7 +263,8 @@ class JointPostures:
 
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The parameters beside the design."""
-        return {**task.given, "mass": self._setting.scene.payload.mass}
+        scene = self._setting.scene
+        return {**task.given, "mass": scene.payload.mass, **person_parameters(scene)}
 
     def _trial(
         self,
@@ -380,9 +382,10 @@ def _distinct(ends: Sequence[tuple[str, RawSolution]]) -> list[tuple[str, RawSol
 def posture_program(
     forms: tuple[Form, Form], setting: Setting, kind: type[TaskRecord] = Hold, *, switched: bool = False
 ) -> Program:
-    """The program over both agents; its parameters are the design, the task's numbers and the load's mass."""
+    """The program over both agents; parameters are the design, the task's numbers, load's mass, and who."""
     space = setting.space
     scene, mass = any_load(setting.scene)
+    scene, person = any_person(scene)
     design = ca.SX.sym("design", len(space.parameters))
     given = {name: ca.SX.sym(name) for name in kind.PARAMETERS}
     values = ca.vertsplit(design)
@@ -399,7 +402,7 @@ def posture_program(
         variables=assembly.variables,
         constraints=assembly.constraints,
         cost=total(whole),
-        parameters={"design": design, **given, "mass": mass, **assembly.given},
+        parameters={"design": design, **given, "mass": mass, **person, **assembly.given},
         switches=parted(assembly.parted, lambda: posture_program(forms, setting, kind, switched=True)),
     )
     if not scene.disturbances:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from evodesign.design.space import DesignSpace
+from evodesign.human.measured_posture import MEAN_PERSON
 from evodesign.mechanics.scene import Grasp, Scene
 from evodesign.nlp.solver import SolverOptions
 from evodesign.posture.allocation import EffortWeights
@@ -20,6 +21,7 @@ __all__ = [
     "Piece",
     "PrecomputeSetting",
     "Subject",
+    "all_mean_people",
     "all_undisturbed",
     "lift_pieces",
     "stages",
@@ -181,3 +183,16 @@ def all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
     """Without disturbances: starts are found so, and chosen with them."""
     scenes = tuple(scene.undisturbed for scene in setting.scenes)
     return replace(setting, scenes=scenes, middle=setting.middle.undisturbed)
+
+
+def all_mean_people(setting: PrecomputeSetting) -> PrecomputeSetting:
+    """With the mean person in the place of each drawn one: their starts and colliding pairs serve all."""
+    scenes = tuple(map(_with_mean_person, setting.scenes))
+    return replace(setting, scenes=scenes, middle=_with_mean_person(setting.middle))
+
+
+def _with_mean_person(scene: Scene) -> Scene:
+    given = scene.human.measured
+    if given is None or given.drawn == MEAN_PERSON:
+        return scene
+    return replace(scene, human=replace(scene.human, measured=replace(given, drawn=MEAN_PERSON)))

@@ -6,7 +6,8 @@ with eta the height of the palms over stature, y the features of `human.measured
 that no feature has. The lean of a chord between two points of the trunk is the mean of the leans of the links
 in between, by their lengths, so that all features but the arm's direction, sideways and the distance of the
 palms are linear in posture variables. A person who lifts is drawn to postures of people who lift
-(`Body.moving`).
+(`Body.moving`). The numbers by which a person differs from the mean are a parameter of programs, so that all
+samples of people share their machine code.
 
 Source: `human.measured_posture`; docs/person.md.
 """
@@ -15,18 +16,42 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.human.measured_posture import FEATURES, MARK, SIDES, SPINE, Gaussians
+from evodesign.human.measured_posture import FEATURES, MARK, MEAN_PERSON, SIDES, SPINE, Gaussians
+from evodesign.mechanics.scene import HUMAN, Scene
 from evodesign.posture.terms.base import Body, BodyTerm, Expression
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["MEASURED_POSTURE", "chords", "deviation", "features"]
+__all__ = ["MEASURED_POSTURE", "any_person", "chords", "deviation", "features", "person_parameters"]
+
+DRAWN = "drawn_person"
+"""Name of the parameter that holds the standard normal numbers of a person."""
+
+
+def any_person(scene: Scene) -> tuple[Scene, Mapping[str, Expression]]:
+    """A scene with any of the people of its person's distribution, and the parameter that says which.
+
+    There is none where no measured posture draws the person.
+    """
+    given = scene.human.measured
+    if given is None:
+        return scene, {}
+    drawn: Any = ca.SX.sym(DRAWN, len(FEATURES))
+    human = replace(scene.human, measured=replace(given, drawn=drawn))
+    return replace(scene, human=human), {DRAWN: drawn}
+
+
+def person_parameters(scene: Scene) -> Mapping[str, tuple[float, ...]]:
+    """The values of these parameters of a scene's person."""
+    return {} if scene.human.measured is None else {DRAWN: scene.human.measured.drawn}
 
 
 def chords(tree: Tree, stature: float) -> tuple[dict[str, float], dict[str, float]]:
@@ -76,10 +101,21 @@ def _upper_arm(tree: Tree, name: str) -> float:
     return math.dist(*(frames[f"{name}{link}"].translation for link in ("UpperArm", "ForeArm")))
 
 
-def deviation(y: Mapping[str, Expression], given: Gaussians, eta: Expression) -> Expression:
-    """(y - mean)^T P (y - mean) at a height eta, a number or an expression."""
-    weights = _hats(given.knots, eta)
-    mean = ca.mtimes(weights, ca.DM(np.array(given.means)))
+def deviation(
+    y: Mapping[str, Expression], given: Gaussians, eta: Expression, drawn: Any = MEAN_PERSON
+) -> Expression:
+    """(y - mean_z)^T P (y - mean_z) at a height eta, a number or an expression.
+
+    Args:
+        y: features by name.
+        given: means and inverse covariances.
+        eta: height of the palms over stature.
+        drawn: z, numbers or a symbol.
+    """
+    weights, z = _hats(given.knots, eta), ca.vertcat(*drawn) if isinstance(drawn, tuple) else drawn
+    mean, roots = ca.horzsplit(ca.mtimes(weights, ca.DM(np.array(given.means)))), given.roots
+    for i, j in zip(*np.nonzero(np.any(roots != 0.0, axis=0)), strict=True):
+        mean[i] = mean[i] + ca.mtimes(weights, ca.DM(roots[:, i, j])) * z[int(j)]
     away = [y[name] - mean[i] for i, name in enumerate(FEATURES)]
     precisions, found = np.array(given.precisions), 0.0
     for i, j in zip(*np.nonzero(np.any(precisions != 0.0, axis=0)), strict=True):
@@ -95,13 +131,14 @@ def _hats(knots: tuple[float, ...], eta: Expression) -> Expression:
 
 def posture_cost(body: Body) -> Expression | None:
     """Squared standard deviations from the mean of people who were measured; of a robot nothing is said."""
-    given, form = body.agent.measured, body.form
-    if given is None:
+    given, form = body.scene.human.measured, body.form
+    if given is None or body.agent.name != HUMAN:
         return None
     own, cost = given.lift if body.moving else given.hold, 0.0
     for side in form.sides:
         palm = body.load_height + body.scene.payload.grasp_point(body.agent, side)[2]
-        cost += deviation(features(body, side, given.stature), own, palm / given.stature) / len(form.sides)
+        found = features(body, side, given.stature)
+        cost += deviation(found, own, palm / given.stature, given.drawn) / len(form.sides)
     for place, (name, count) in enumerate(zip(form.joints, form.counts, strict=True)):
         bare = name.replace("jLeft", "j").replace("jRight", "j")
         if bare in given.joints:

@@ -333,7 +333,8 @@ class Content(Part, frozen=True):
     `urdf` is the unscaled robot's, empty where it is not known.
 
     `importance` is as in `analysis.importance_json`, `families` as `analysis.families` tells
-    them, `growth` a sentence or empty.
+    them, `growth` a sentence or empty. `spread` is that over samples of people, as `analysis.people_spread`
+    has it; None where none were drawn.
     """
 
     facts: Facts
@@ -355,3 +356,4 @@ class Content(Part, frozen=True):
     urdf: str
     designs: dict[int, DesignContent]
     notes: tuple[str, ...]
+    spread: dict[str, Any] | None = None

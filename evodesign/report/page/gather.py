@@ -14,6 +14,7 @@ from evodesign.analysis.front import front
 from evodesign.analysis.growth import growth
 from evodesign.analysis.importance import Importance, importance, slices
 from evodesign.analysis.importance_json import importance_json, slices_json
+from evodesign.analysis.people_spread import all_spreads_json, spread_of_run
 from evodesign.errors import EvodesignError, RunError
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.clearance import Clearances
@@ -42,6 +43,7 @@ from evodesign.report.page.postures import MOMENTS, details_shown, shown_cases
 from evodesign.report.page.static_torques import StaticTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
+from evodesign.runlog.sampled_file import read_sampled
 from evodesign.tree.urdf_write import urdf_text
 
 __all__ = ["Gradients", "gradients_of", "page_content", "with_gradients"]
@@ -75,6 +77,8 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     opened, more_notes = details_shown(run.details, marked, shown, on_front)
     found = importance(run.header, subsample(run.evaluations, MOST_LEARNT))
     known = growth(run.generations)
+    sampled, strange = read_sampled(run)
+    spread = spread_of_run(run, sampled)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     tasks = tuple(dict.fromkeys(case.task for case in cases)) if problem is None else problem.tasks
     return Content(
@@ -112,7 +116,9 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
             *(() if problem is None else more_notes),
             *(each.sentence for each in frequent_limits(run)),
             *left_out(run.header.problem),
+            *strange,
         ),
+        spread=None if spread is None else all_spreads_json(spread),
     )
 
 

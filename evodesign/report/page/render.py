@@ -53,6 +53,7 @@ SCRIPTS = (
     "hardware.js",
     "limits.js",
     "effort.js",
+    "people.js",
     "reach.js",
     "downloads.js",
     "card.js",

@@ -104,7 +104,7 @@ const drawWithoutPostures = (row) => {
   shownScene = null;
   const why = element("div", {}, element("p", { class: "plain", text: whyNoPosture(row) }));
   const files = downloads(row, content.designs[state.selected] ?? NOTHING_KNOWN);
-  fillCard([cardHead(row), why, fold("Parameters", `${parameters.length}`, parameterTable(row)), files]);
+  fillCard([cardHead(row), why, peopleSection(state.selected), fold("Parameters", `${parameters.length}`, parameterTable(row)), files]);
   Object.assign(shown, { redraw: () => {}, height: () => {} });
 };
 
@@ -123,6 +123,7 @@ const drawWithPostures = (row, design) => {
     height.box,
     downloads(row, design),
     cases?.section,
+    peopleSection(state.selected),
     fold("Parameters", `${parameters.length}`, parameterTable(row)),
     torques.section,
     motion?.section,

@@ -8,6 +8,7 @@ startProgress();
 startFailures();
 startImportance();
 startFamilies();
+startPeople();
 startTable();
 startCard();
 startBeside();
