@@ -48,7 +48,7 @@ def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Ma
 
 def coarse_pairs(
     tree: Tree, joints: Collection[str], pairs: Collection[BodyPair], margin: float
-) -> frozenset[BodyPair]:
+) -> tuple[BodyPair, ...]:
     """Pairs with meshes whose fitted shapes are often nearer than a margin where the hulls are apart.
 
     Args:
@@ -62,7 +62,7 @@ def coarse_pairs(
     own = [pair for pair in pairs if links.keys() >= set(pair) and not exact.issuperset(pair)]
     overlap = shares_of_postures(tree, joints, own)
     near = shares_of_postures(tree, joints, own, margin, bodies=_fitted(tree))
-    return frozenset(pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE)
+    return tuple(pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE)
 
 
 def _fitted(tree: Tree) -> SolidBodies:

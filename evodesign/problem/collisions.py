@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from evodesign.collision.clearance import SolidBodies
+from evodesign.collision.corners import deciding_corners
 from evodesign.collision.margins import coarse_pairs, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
@@ -17,12 +18,10 @@ from evodesign.nlp.landscape import spread_designs
 from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 
-DESIGNS = 16
-"""Of which it is asked what their build brings together."""
+DESIGNS, EXTREMES = 16, 2
+"""Of which it is asked what their build brings together, beside the least and the largest one."""
 
-OTHERWISE = (
-    "ignored by the file, exempt in another person, or meshes whose fitted shapes are too coarse to tell"
-)
+OTHERWISE = "ignored by the file, or exempt in another person"
 
 __all__ = ["may_overlap", "with_collisions"]
 
@@ -67,9 +66,9 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
         for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
         if frozenset(pair) not in ignored
     ]
+    resized = [space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT]
     coarse = coarse_pairs(agent.tree, agent.joints, checked, table.margin_m)
-    checked = [pair for pair in checked if pair not in coarse]
-    resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
+    corners = deciding_corners([agent.tree, *resized[:EXTREMES]], agent.joints, coarse)
     built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}
@@ -81,7 +80,10 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
     narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
-    return CollisionRules(table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow)
+    narrow = {**narrow, **dict.fromkeys(corners, 0.0)}
+    return CollisionRules(
+        table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow, corners=corners
+    )
 
 
 def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:
