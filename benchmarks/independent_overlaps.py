@@ -3,10 +3,14 @@
     python -m benchmarks.independent_overlaps RUN [RUN ...] [--designs N]
 
 Robot and people come from the URDF files that a design is exported as; pinocchio places their solids at the
-logged joint positions, and coal measures each pair (a mesh by its convex hull). Exempt are two links joined
-by one joint, or fixed to such; pairs that overlap in the unscaled robot at its zero posture or in more than
-half of 400 random postures, and likewise in a person; and the load against links within three joints of the
-grasp. No list, exemption or tolerance of `evodesign.collision` is used.
+logged joint positions, and coal says of each pair whether they meet: a mesh by its triangles, never by a hull
+(where no triangles cross, the winding number of a vertex says whether one mesh is within the other). Two
+simple shapes are as deep in each other as coal finds. A mesh is as deep in another body as it has to be moved
+until nothing meets, along the best of 26 directions and the line of centres: never less than the true depth.
+
+Exempt are two links joined by one joint, or fixed to such; pairs that overlap in the unscaled robot at its
+zero posture or in more than half of 400 random postures, and likewise in a person; and the load against links
+within three joints of the grasp. No list, exemption or tolerance of `evodesign.collision` is used.
 
 Told for each run: postures, the deepest overlap, and the pairs deeper than 3 mm.
 Written to benchmarks/results/independent_overlaps.json, printed as a table.
@@ -20,7 +24,8 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from functools import cache
+from itertools import combinations, product
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +47,12 @@ RANDOM = 400
 TURN = np.pi  # [rad], of a joint without limits
 FINGERS = 3  # joints between a hand's frame and what may touch the load
 
+WAYS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
+WAYS /= np.linalg.norm(WAYS, axis=1, keepdims=True)
+FARTHEST, FINE, TINY = 0.3, 1e-4, 1e-12  # [m]
+
 Pair = tuple[str, str]
+Placed = tuple[Any, Any]
 
 
 @dataclass
@@ -65,10 +75,6 @@ class Body:
         self.geometry = pin.buildGeomFromUrdf(
             self.model, str(path), pin.GeometryType.VISUAL, str(self.folder)
         )
-        for each in self.geometry.geometryObjects:
-            if isinstance(each.geometry, coal.BVHModelBase):
-                each.geometry.buildConvexHull(True, "Qt")
-                each.geometry = each.geometry.convex
         self.places = self.geometry.createData()
         frames = self.model.frames
         self.links = [frames[each.parentFrame].name for each in self.geometry.geometryObjects]
@@ -138,12 +144,71 @@ def overlaps(
         (low, high), (low_2, high_2) = boxes[id(first)], boxes[id(second)]
         if (first[0] == second[0] and other is None) or np.any(low > high_2) or np.any(low_2 > high):
             continue
-        result = coal.DistanceResult()
-        depth = -coal.distance(*first[1:], *second[1:], coal.DistanceRequest(), result)
+        depth = _depth(first[1:], second[1:])
         if depth > 0.0:
             key = (first[0], second[0])
             found[key] = max(depth, found.get(key, 0.0))
     return found
+
+
+def _depth(one: Placed, other: Placed) -> float:
+    """How deep two solids are in each other [m]; nothing where they are apart."""
+    if not (_is_mesh(one) or _is_mesh(other)):
+        return max(-float(coal.distance(*one, *other, coal.DistanceRequest(), coal.DistanceResult())), 0.0)
+    if not (_meet(one, other) or _is_within(one, other) or _is_within(other, one)):
+        return 0.0
+    centres = [geometry.aabb_center for geometry, _ in (one, other)]
+    between = other[1].transform(centres[1]) - one[1].transform(centres[0])
+    ways = np.array([*WAYS, between / max(float(np.linalg.norm(between)), TINY)])
+    return min(_shift(one, other, way) for way in (*ways, -ways[-1]))
+
+
+def _shift(one: Placed, other: Placed, way: Any) -> float:
+    """How far the other one has to be moved along a unit vector until it is outside of the one [m]."""
+    low, high = 0.0, FARTHEST
+    while high - low > FINE:
+        half = 0.5 * (low + high)
+        moved = other[0], coal.Transform3s(other[1].getRotation(), other[1].getTranslation() + half * way)
+        apart = not (_meet(one, moved) or _is_within(one, moved) or _is_within(moved, one))
+        low, high = (low, half) if apart else (half, high)
+    return high
+
+
+def _meet(one: Placed, other: Placed) -> bool:
+    """Whether surfaces, or a surface and a simple shape, have a point in common."""
+    return bool(coal.collide(*one, *other, coal.CollisionRequest(), coal.CollisionResult()))
+
+
+def _is_mesh(solid: Placed) -> bool:
+    return isinstance(solid[0], coal.BVHModelBase)
+
+
+def _is_within(one: Placed, other: Placed) -> bool:
+    """Whether a vertex or the centre of one solid is within another, a mesh: by its winding number.
+
+    Source: the solid angle of a triangle: van Oosterom and Strackee (1983).
+    """
+    if not _is_mesh(other):
+        return False  # simple shapes are solid for coal
+    geometry, place = one
+    point = np.array(geometry.vertices(0) if _is_mesh(one) else geometry.aabb_center)
+    local = other[1].getRotation().T @ (place.transform(point) - other[1].getTranslation())
+    a, b, c = np.moveaxis(_corners(other[0]) - local, 1, 0)
+    lengths = [np.linalg.norm(each, axis=1) for each in (a, b, c)]
+    above = np.einsum("ij,ij->i", a, np.cross(b, c))
+    below = np.prod(lengths, axis=0) + sum(
+        np.einsum("ij,ij->i", u, v) * length
+        for u, v, length in ((a, b, lengths[2]), (b, c, lengths[0]), (c, a, lengths[1]))
+    )
+    return bool(abs(np.arctan2(above, below).sum()) > np.pi)  # half of 4 pi, of half angles
+
+
+@cache
+def _corners(mesh: Any) -> Any:
+    """Those of a mesh's triangles, shape (n, 3, 3)."""
+    vertices = np.array(mesh.vertices())
+    faces = [mesh.tri_indices(place) for place in range(mesh.num_tris)]
+    return vertices[np.array([[face[k] for k in range(3)] for face in faces])]
 
 
 def _box(solid: tuple[str, Any, Any]) -> tuple[Any, Any]:

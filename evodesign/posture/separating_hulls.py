@@ -80,13 +80,10 @@ def hull_ways(pairs: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
     placed = [(_Placed.of(one), _Placed.of(other)) for one, other in pairs]
     held, units = [], []
     for one, other in placed:
-        between = (other.centre - one.centre)[None]
         (faces, edges), (others, other_edges) = one.faces_and_edges(), other.faces_and_edges()
         across = np.cross(edges[:, None], other_edges[None]).reshape(-1, 3)
-        in_one, in_other = (
-            _towards(vectors, between[0])
-            for vectors in (np.concatenate([faces, between, across]), others)
-        )
+        in_one = _both_ways(np.concatenate([faces, (other.centre - one.centre)[None], across]))
+        in_other = _both_ways(others)
         zeros = np.zeros
         held.append(np.concatenate([in_one @ one.axes, zeros(in_one.shape)], axis=1))
         held.append(np.concatenate([zeros(in_other.shape), in_other @ other.axes], axis=1))
@@ -100,11 +97,11 @@ def hull_ways(pairs: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
     return np.concatenate([np.ones((len(numbers), 1)), numbers], axis=1), np.min(apart, axis=0)
 
 
-def _towards(vectors: Array, between: Array) -> Array:
-    """Unit vectors along some that are not too short, on the side of another one."""
+def _both_ways(vectors: Array) -> Array:
+    """Unit vectors along and against some that are not too short."""
     lengths = np.linalg.norm(vectors, axis=1)
     units = vectors[lengths > SHORT] / lengths[lengths > SHORT, None]
-    return np.asarray(np.where((units @ between < 0.0)[:, None], -units, units))
+    return np.concatenate([units, -units])
 
 
 def _hull(corners: Array) -> tuple[Array, Array]:
@@ -118,6 +115,9 @@ def _hull(corners: Array) -> tuple[Array, Array]:
         flat = np.linalg.svd(corners - corners.mean(axis=0), full_matrices=True)[2]
         return flat[2:], corners[second] - corners[first]
     first, second = np.unique(
-        np.sort(np.concatenate([hull.simplices[:, [0, 1]], hull.simplices[:, [1, 2]], hull.simplices[:, [0, 2]]])), axis=0
+        np.sort(
+            np.concatenate([hull.simplices[:, [0, 1]], hull.simplices[:, [1, 2]], hull.simplices[:, [0, 2]]])
+        ),
+        axis=0,
     ).T
     return hull.equations[:, :3], corners[second] - corners[first]

@@ -175,9 +175,7 @@ def placed_pairs(body: Body, meeting: Meeting) -> list[tuple[PlacedShape, Placed
     above = next(name for name in both if links.get(name, name) == name)
     first, second = (
         _shapes_at(body, link, _pose_above(body, above, link), corners)
-        for link, corners in zip(
-            (meeting.first, meeting.second), corners_of(body.form, meeting), strict=True
-        )
+        for link, corners in zip((meeting.first, meeting.second), corners_of(body.form, meeting), strict=True)
     )
     if meeting.mirrored:
         plane = _middle_plane(tree, above)
