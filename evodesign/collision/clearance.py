@@ -75,9 +75,14 @@ class SolidBodies:
     solids: tuple[ConvexSolid, ...]
 
     @classmethod
-    def of_tree(cls, tree: Tree) -> SolidBodies:
-        """Those of a tree of numbers, by link; bare frames have none."""
-        found = [(link.name, solid) for link in tree.links for solid in solids_of(link)]
+    def of_tree(cls, tree: Tree, *, cut: bool = True) -> SolidBodies:
+        """Those of a tree of numbers, by link; bare frames have none.
+
+        Args:
+            tree: whose links.
+            cut: whether hollow meshes are cut into parts, or each is one hull.
+        """
+        found = [(link.name, solid) for link in tree.links for solid in solids_of(link, cut=cut)]
         return cls(tuple(name for name, _ in found), tuple(solid for _, solid in found))
 
     def named(self, name: Callable[[str], str]) -> SolidBodies:

@@ -45,7 +45,7 @@ def deciding_corners(
     """
     faced: defaultdict[tuple[BodyPair, int], list[Array]] = defaultdict(list)
     for tree in trees:
-        bodies, meshes = SolidBodies.of_tree(tree), _meshes(tree)
+        bodies, meshes = SolidBodies.of_tree(tree, cut=False), _meshes(tree)
         places = {pair: places_of(bodies.names, [pair]) for pair in pairs}
         for placed in placed_in_postures(tree, joints, bodies):
             for pair, own in places.items():
@@ -55,7 +55,7 @@ def deciding_corners(
                         for place, towards in ((one, normal), (other, -normal)):
                             local = placed.rotations[place].T @ towards
                             faced[pair, place].append(_in_mesh(meshes[place], local))
-    names, meshes = SolidBodies.of_tree(trees[0]).names, _meshes(trees[0])
+    names, meshes = SolidBodies.of_tree(trees[0], cut=False).names, _meshes(trees[0])
 
     def corners(pair: BodyPair, link: str) -> Corners:
         own = [(place, mesh) for place, mesh in enumerate(meshes) if mesh and names[place] == link]
@@ -66,7 +66,7 @@ def deciding_corners(
 
 
 def _meshes(tree: Tree) -> list[Mesh | None]:
-    """The mesh that each solid of `SolidBodies.of_tree` is the hull of; None for simple shapes."""
+    """The mesh that each uncut solid of `SolidBodies.of_tree` is the hull of; None for simple shapes."""
     found: list[Mesh | None] = []
     for link in tree.links:
         shown = [] if link.solids else [mesh for mesh in link.shown if mesh.surface is not None]

@@ -35,6 +35,7 @@ class CollisionRules:
         narrow: margins [m] of pairs that are built nearer to each other (`collision.margins`).
         corners: of the first's and the second's hulls, which rows of the pair know in place of fitted shapes
             (`collision.corners`); none for a link that has no meshes.
+        apart: pairs of these that no random posture brings together (`collision.margins`): they have no rows.
     """
 
     margin: float
@@ -44,10 +45,15 @@ class CollisionRules:
     built_in: tuple[BodyPair, ...] = ()
     narrow: Mapping[BodyPair, float] = field(default_factory=dict)
     corners: Mapping[BodyPair, tuple[Corners, Corners]] = field(default_factory=dict)
+    apart: frozenset[BodyPair] = frozenset()
 
     def margin_of(self, pair: BodyPair) -> float:
         """The least distance that programs ask for of a pair [m]."""
         return self.narrow.get(pair, self.narrow.get(pair[::-1], self.margin))
+
+    def is_apart(self, pair: BodyPair) -> bool:
+        """Whether a pair has no rows, for no random posture brings it together."""
+        return pair in self.apart or pair[::-1] in self.apart
 
     def corners_of(self, pair: BodyPair) -> tuple[Corners, Corners]:
         """The corners that rows of a pair know of the first and the second; none where these are fitted."""

@@ -8,7 +8,7 @@ from itertools import combinations
 
 from evodesign.collision.clearance import SolidBodies
 from evodesign.collision.corners import deciding_corners
-from evodesign.collision.margins import coarse_pairs, narrow_margins
+from evodesign.collision.margins import apart_pairs, coarse_pairs, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
@@ -68,7 +68,9 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     ]
     resized = [space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT]
     coarse = coarse_pairs(agent.tree, agent.joints, checked, table.margin_m)
-    corners = deciding_corners([agent.tree, *resized[:EXTREMES]], agent.joints, coarse)
+    extremes = [agent.tree, *resized[:EXTREMES]]
+    apart = apart_pairs(extremes, agent.joints, coarse)
+    corners = deciding_corners(extremes, agent.joints, [pair for pair in coarse if pair not in apart])
     built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}
@@ -80,9 +82,14 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
     narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
-    narrow = {**narrow, **dict.fromkeys(corners, 0.0)}
     return CollisionRules(
-        table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow, corners=corners
+        table.margin_m,
+        tuple(own.values()),
+        parted,
+        built_in=built_in,
+        narrow={**narrow, **dict.fromkeys(coarse, 0.0)},
+        corners=corners,
+        apart=apart,
     )
 
 
