@@ -22,7 +22,7 @@ import argparse
 import json
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations, product
@@ -110,17 +110,15 @@ class Body:
             for pair in combinations(links, 2)
             if own[pair[0]] in (own[pair[1]], parents[own[pair[1]]]) or own[pair[1]] == parents[own[pair[0]]]
         }
-        others = {pair for pair in combinations(links, 2) if pair not in joined}
-        zero = self._deep({}, others)
+        zero = self._deep({}, joined)
         rng, counts = np.random.default_rng(1), Counter[Pair]()
         for _ in range(RANDOM):
             drawn = {name: rng.uniform(*limits[name]) for name in joints}
-            counts.update(self._deep(drawn, others))
+            counts.update(self._deep(drawn, joined))
         return frozenset(joined) | zero | {pair for pair, count in counts.items() if 2 * count > RANDOM}
 
-    def _deep(self, joints: Mapping[str, float], pairs: set[Pair]) -> set[Pair]:
-        found = overlaps(self.placed(joints, pin.SE3.Identity()), None)
-        return {pair for pair in found if pair in pairs}
+    def _deep(self, joints: Mapping[str, float], joined: set[Pair]) -> set[Pair]:
+        return {*overlaps(self.placed(joints, pin.SE3.Identity()), None, joined, _overlap)}
 
     def limits(self, joints: Sequence[str]) -> dict[str, tuple[float, float]]:
         """Of joints, where they have any."""
@@ -134,19 +132,29 @@ class Body:
 
 
 def overlaps(
-    one: Sequence[tuple[str, Any, Any]], other: Sequence[tuple[str, Any, Any]] | None
+    one: Sequence[tuple[str, Any, Any]],
+    other: Sequence[tuple[str, Any, Any]] | None,
+    exempt: Collection[Pair] = (),
+    measure: Callable[[Placed, Placed], float] | None = None,
 ) -> dict[Pair, float]:
-    """Depth [m] of all overlaps among solids, or of one with another set, by links."""
+    """Depth [m] of overlaps among solids, or of one with another set, by links.
+
+    Args:
+        one: solids.
+        other: solids as well; None for the pairs among the one's.
+        exempt: pairs of links that may overlap.
+        measure: how deep two solids are in each other; `_depth` if left out.
+    """
     found: dict[Pair, float] = {}
     pairs = combinations(one, 2) if other is None else ((a, b) for a in one for b in other)
     boxes = {id(each): _box(each) for each in [*one, *(other or ())]}
     for first, second in pairs:
         (low, high), (low_2, high_2) = boxes[id(first)], boxes[id(second)]
+        key = (first[0], second[0])
         if (first[0] == second[0] and other is None) or np.any(low > high_2) or np.any(low_2 > high):
             continue
-        depth = _depth(first[1:], second[1:])
+        depth = 0.0 if key in exempt else (measure or _depth)(first[1:], second[1:])
         if depth > 0.0:
-            key = (first[0], second[0])
             found[key] = max(depth, found.get(key, 0.0))
     return found
 
@@ -155,7 +163,7 @@ def _depth(one: Placed, other: Placed) -> float:
     """How deep two solids are in each other [m]; nothing where they are apart."""
     if not (_is_mesh(one) or _is_mesh(other)):
         return max(-float(coal.distance(*one, *other, coal.DistanceRequest(), coal.DistanceResult())), 0.0)
-    if not (_meet(one, other) or _is_within(one, other) or _is_within(other, one)):
+    if not _overlap(one, other):
         return 0.0
     centres = [geometry.aabb_center for geometry, _ in (one, other)]
     between = other[1].transform(centres[1]) - one[1].transform(centres[0])
@@ -169,9 +177,12 @@ def _shift(one: Placed, other: Placed, way: Any) -> float:
     while high - low > FINE:
         half = 0.5 * (low + high)
         moved = other[0], coal.Transform3s(other[1].getRotation(), other[1].getTranslation() + half * way)
-        apart = not (_meet(one, moved) or _is_within(one, moved) or _is_within(moved, one))
-        low, high = (low, half) if apart else (half, high)
+        low, high = (half, high) if _overlap(one, moved) else (low, half)
     return high
+
+
+def _overlap(one: Placed, other: Placed) -> bool:
+    return _meet(one, other) or _is_within(one, other) or _is_within(other, one)
 
 
 def _meet(one: Placed, other: Placed) -> bool:
@@ -193,7 +204,10 @@ def _is_within(one: Placed, other: Placed) -> bool:
     geometry, place = one
     point = np.array(geometry.vertices(0) if _is_mesh(one) else geometry.aabb_center)
     local = other[1].getRotation().T @ (place.transform(point) - other[1].getTranslation())
-    a, b, c = np.moveaxis(_corners(other[0]) - local, 1, 0)
+    corners = _corners(other[0])
+    if np.any(local < corners.min(axis=(0, 1))) or np.any(local > corners.max(axis=(0, 1))):
+        return False
+    a, b, c = np.moveaxis(corners - local, 1, 0)
     lengths = [np.linalg.norm(each, axis=1) for each in (a, b, c)]
     above = np.einsum("ij,ij->i", a, np.cross(b, c))
     below = np.prod(lengths, axis=0) + sum(
@@ -212,11 +226,14 @@ def _corners(mesh: Any) -> Any:
 
 
 def _box(solid: tuple[str, Any, Any]) -> tuple[Any, Any]:
-    """Corners of an axis-aligned box about a solid's ball."""
+    """Corners of an axis-aligned box about the turned box of a solid's own axes."""
     _, geometry, where = solid
     geometry.computeLocalAABB()
-    centre = where.getRotation() @ geometry.aabb_center + where.getTranslation()
-    return centre - geometry.aabb_radius, centre + geometry.aabb_radius
+    low, high = geometry.aabb_local.min_, geometry.aabb_local.max_
+    turn = where.getRotation()
+    centre = turn @ (low + high) / 2.0 + where.getTranslation()
+    half = np.abs(turn) @ (high - low) / 2.0
+    return centre - half, centre + half
 
 
 class Judge:
@@ -273,9 +290,8 @@ class Judge:
             placed[who] = body.placed(posture.joints_rad, world)
         found: dict[Pair, float] = {}
         for who, label in (("robot", "robot"), ("human", scene.human.label)):
-            for pair, depth in overlaps(placed[who], None).items():
-                if pair not in self.exempt[label]:
-                    found[f"{label} {pair[0]}", pair[1]] = depth
+            for pair, depth in overlaps(placed[who], None, self.exempt[label]).items():
+                found[f"{label} {pair[0]}", pair[1]] = depth
         for pair, depth in overlaps(placed["robot"], placed["human"]).items():
             found[f"robot {pair[0]}", f"{scene.human.label} {pair[1]}"] = depth
         box = coal.Box(*scene.payload.size)

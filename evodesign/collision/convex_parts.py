@@ -99,7 +99,9 @@ class _Part:
         _, normal, height = self._best
         found = []
         for side in (normal, -normal):
-            vertices, faces, *_ = slice_faces_plane(self.vertices, self.faces, side, height * normal)
+            plane = side, height * normal
+            kept = slice_faces_plane(self.vertices, self.faces, *plane)  # type: ignore[no-untyped-call]
+            vertices, faces = kept[:2]
             used, places = np.unique(faces, return_inverse=True)
             found.append(_Part.of(vertices[used], places.reshape(-1, 3)))
         return found
