@@ -202,7 +202,7 @@ def _is_within(one: Placed, other: Placed) -> bool:
     if not _is_mesh(other):
         return False  # simple shapes are solid for coal
     geometry, place = one
-    point = np.array(geometry.vertices(0) if _is_mesh(one) else geometry.aabb_center)
+    point = np.array(geometry.vertex(0) if _is_mesh(one) else geometry.aabb_center)
     local = other[1].getRotation().T @ (place.transform(point) - other[1].getTranslation())
     corners = _corners(other[0])
     if np.any(local < corners.min(axis=(0, 1))) or np.any(local > corners.max(axis=(0, 1))):
