@@ -75,14 +75,9 @@ class SolidBodies:
     solids: tuple[ConvexSolid, ...]
 
     @classmethod
-    def of_tree(cls, tree: Tree, *, cut: bool = True) -> SolidBodies:
-        """Those of a tree of numbers, by link; bare frames have none.
-
-        Args:
-            tree: whose links.
-            cut: whether hollow meshes are cut into parts, or each is one hull.
-        """
-        found = [(link.name, solid) for link in tree.links for solid in solids_of(link, cut=cut)]
+    def of_tree(cls, tree: Tree) -> SolidBodies:
+        """Those of a tree of numbers, by link; bare frames have none."""
+        found = [(link.name, solid) for link in tree.links for solid in solids_of(link)]
         return cls(tuple(name for name, _ in found), tuple(solid for _, solid in found))
 
     def named(self, name: Callable[[str], str]) -> SolidBodies:
@@ -197,17 +192,14 @@ class PlacedSolids:
 
     def overlapping(self, places: Places, within: float = 0.0) -> list[BodyDistance]:
         """Those of some pairs that are nearer to each other than a distance [m], once each."""
+        near = places[self._balls_apart(places) < within]
+        near = near[self._boxes_apart(near) < within]
         found: dict[tuple[str, str], BodyDistance] = {}
-        for gap in map(self._gap, self.maybe_near(places, within)):
+        for gap in map(self._gap, near):
             known = found.get((gap.first, gap.second))
             if gap.distance < (within if known is None else known.distance):
                 found[gap.first, gap.second] = gap
         return list(found.values())
-
-    def maybe_near(self, places: Places, within: float) -> Places:
-        """Those of some pairs whose balls and boxes are nearer to each other than a distance [m]."""
-        near = places[self._balls_apart(places) < within]
-        return np.asarray(near[self._boxes_apart(near) < within])
 
     def near_floor(self, floor: Indices, within: float = 0.0) -> list[BodyDistance]:
         """Those of some solids that are nearer to the floor z = 0 than a distance [m]."""

@@ -2,15 +2,14 @@
 
 Parts that are built two millimetres from each other cannot keep five. Nor can parts of meshes whose fitted
 shapes (`collision.supports`), which programs know, are nearer than that while all joints are at zero and the
-meshes' hulls are apart; a margin is negative there, and the check of the hulls decides. Where fitted shapes
-are too near in many postures in which the hulls are apart, as those of wrists and shoulders are, programs
-know corners of the hulls in their place (`collision.corners`), and ask for no margin; or have no rows, where
-no posture brings the two together.
+hulls of the meshes' parts are apart; a margin is negative there, and the check of the hulls decides. Where
+fitted shapes are too near in many postures in which the hulls are apart, as those of wrists and shoulders
+are, programs have no rows: the check alone decides.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 
 import coal
 import numpy as np
@@ -24,7 +23,7 @@ from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["apart_pairs", "coarse_pairs", "narrow_margins"]
+__all__ = ["coarse_pairs", "narrow_margins"]
 
 COARSE = 0.1
 """Share of postures in which fitted shapes are too near though the bodies are apart."""
@@ -49,7 +48,7 @@ def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Ma
 
 def coarse_pairs(
     tree: Tree, joints: Collection[str], pairs: Collection[BodyPair], margin: float
-) -> tuple[BodyPair, ...]:
+) -> frozenset[BodyPair]:
     """Pairs with meshes whose fitted shapes are often nearer than a margin where the hulls are apart.
 
     Args:
@@ -63,20 +62,7 @@ def coarse_pairs(
     own = [pair for pair in pairs if links.keys() >= set(pair) and not exact.issuperset(pair)]
     overlap = shares_of_postures(tree, joints, own)
     near = shares_of_postures(tree, joints, own, margin, bodies=_fitted(tree))
-    return tuple(pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE)
-
-
-def apart_pairs(
-    trees: Sequence[Tree], joints: Collection[str], pairs: Collection[BodyPair]
-) -> frozenset[BodyPair]:
-    """Those of some pairs that overlap in no random posture of any tree, nor do their mirror images.
-
-    Args:
-        trees: of the agent in some designs.
-        joints: that move.
-        pairs: of links.
-    """
-    return frozenset(pairs).difference(*(shares_of_postures(tree, joints, pairs) for tree in trees))
+    return frozenset(pair for pair, share in near.items() if share - overlap.get(pair, 0.0) >= COARSE)
 
 
 def _fitted(tree: Tree) -> SolidBodies:

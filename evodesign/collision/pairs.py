@@ -41,7 +41,6 @@ __all__ = [
     "exempt_pairs",
     "feet_pairs",
     "holding_links",
-    "placed_in_postures",
     "shares_of_postures",
 ]
 
@@ -266,7 +265,7 @@ def shares_of_postures(
     images = _images(tree) if images is None else images
     counts: Counter[frozenset[str]] = Counter()
     places, samples = places_of(bodies.names, pairs), 0
-    for placed in placed_in_postures(tree, joints, bodies):
+    for placed in _placed_in_postures(tree, joints, bodies):
         counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places, within))
         samples += 1
     found: dict[BodyPair, float] = {}
@@ -278,7 +277,7 @@ def shares_of_postures(
     return found
 
 
-def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
+def _placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
     """Solids in random postures, always the same ones.
 
     Args:

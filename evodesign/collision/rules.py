@@ -7,13 +7,10 @@ from dataclasses import dataclass, field, replace
 
 from evodesign.body.placement import Vector
 
-__all__ = ["FLOOR", "LOAD", "PARTNER", "PLANES", "BodyPair", "CollisionRules", "Corners"]
+__all__ = ["FLOOR", "LOAD", "PARTNER", "PLANES", "BodyPair", "CollisionRules"]
 
 BodyPair = tuple[str, str]
 """Names of two links; the second may be the load, the floor or the partner."""
-
-Corners = tuple[tuple[int, ...], ...]
-"""Of each mesh of a link, places among the corners of its hull (`collision.shapes.hull_corners`)."""
 
 LOAD, FLOOR, PARTNER = "load", "floor", "partner"
 """What a link may meet beside other links: the partner's side begins half-way between robot and person."""
@@ -33,9 +30,8 @@ class CollisionRules:
         parted_at_reach: those that have rows in their place where the load is as high or low as it can be.
         built_in: pairs of links that some design's build brings together (`collision.pairs`).
         narrow: margins [m] of pairs that are built nearer to each other (`collision.margins`).
-        corners: of the first's and the second's hulls, which rows of the pair know in place of fitted shapes
-            (`collision.corners`); none for a link that has no meshes.
-        apart: pairs of these that no random posture brings together (`collision.margins`): they have no rows.
+        coarse: pairs whose fitted shapes are too coarse for rows (`collision.margins`): only the check knows
+            them.
     """
 
     margin: float
@@ -44,23 +40,11 @@ class CollisionRules:
     parted_at_reach: tuple[BodyPair, ...] = ()
     built_in: tuple[BodyPair, ...] = ()
     narrow: Mapping[BodyPair, float] = field(default_factory=dict)
-    corners: Mapping[BodyPair, tuple[Corners, Corners]] = field(default_factory=dict)
-    apart: frozenset[BodyPair] = frozenset()
+    coarse: frozenset[BodyPair] = frozenset()
 
     def margin_of(self, pair: BodyPair) -> float:
         """The least distance that programs ask for of a pair [m]."""
         return self.narrow.get(pair, self.narrow.get(pair[::-1], self.margin))
-
-    def is_apart(self, pair: BodyPair) -> bool:
-        """Whether a pair has no rows, for no random posture brings it together."""
-        return pair in self.apart or pair[::-1] in self.apart
-
-    def corners_of(self, pair: BodyPair) -> tuple[Corners, Corners]:
-        """The corners that rows of a pair know of the first and the second; none where these are fitted."""
-        if pair in self.corners:
-            return self.corners[pair]
-        second, first = self.corners.get(pair[::-1], ((), ()))
-        return first, second
 
     @property
     def at_reach(self) -> CollisionRules:

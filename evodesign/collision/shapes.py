@@ -51,13 +51,8 @@ class ConvexSolid:
     half_sides: Array
 
 
-def solids_of(link: Link, *, cut: bool = True) -> tuple[ConvexSolid, ...]:
-    """The solids of a link of numbers; none for a bare frame.
-
-    Args:
-        link: whose.
-        cut: whether hollow meshes are cut into parts, or each is one hull.
-    """
+def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
+    """The solids of a link of numbers; none for a bare frame."""
     if link.solids:
         return tuple(_of_shape(solid.shape, solid.link_from_solid) for solid in link.solids)
     if link.shown:
@@ -65,7 +60,7 @@ def solids_of(link: Link, *, cut: bool = True) -> tuple[ConvexSolid, ...]:
             _of_part(mesh, mesh.surface, part)
             for mesh in link.shown
             if mesh.surface is not None
-            for part in (range(len(convex_parts(mesh.surface))) if cut else (None,))
+            for part in range(len(convex_parts(mesh.surface)))
         )
     return tuple(_of_shape(look.shape, look.link_from_look) for look in link.looks)
 
@@ -91,11 +86,10 @@ def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
 
 
 @functools.lru_cache(maxsize=512)
-def _of_part(mesh: Mesh, surface: Surface, part: int | None) -> ConvexSolid:
-    """The hull of a mesh, or of a part of it, in its link: a design stretches a few, others are met again."""
+def _of_part(mesh: Mesh, surface: Surface, part: int) -> ConvexSolid:
+    """The hull of a part of a mesh in its link: a design stretches a few, all others are met again."""
     turn = np.array(mesh.stretch, float) @ np.array(mesh.link_from_mesh.rotation, float)
-    corners = hull_corners(surface) if part is None else convex_parts(surface)[part]
-    points = corners * np.array(mesh.scale, float) @ turn.T
+    points = convex_parts(surface)[part] * np.array(mesh.scale, float) @ turn.T
     points = points + np.array(mesh.link_from_mesh.translation, float)
     low, high = points.min(axis=0), points.max(axis=0)
     centre = (high + low) / 2.0

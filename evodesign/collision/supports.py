@@ -11,8 +11,7 @@ says how far it reaches from there along a direction n given in its own axes (it
     capsule     b = r,  h_z = half the distance of its ends' centres
 
 A stretched shape, of the points S x, spans s(S^T n). Meshes are fitted by the box, cylinder or capsule of
-least volume along the axes of their points; the independent check takes the meshes' convex hulls. Where that
-is too coarse, a shape is the hull of some corners c_k and a ball, with s(n) = max_k c_k . n + b |n|.
+least volume along the axes of their points; the independent check takes the meshes' convex hulls.
 
 Source: support functions: Boyd and Vandenberghe, Convex Optimization, section 2.2.6 and exercise 3.35.
 """
@@ -28,12 +27,11 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Matrix, Placement, Scalar, Vector, add, rotate
 from evodesign.body.shape import Cylinder, Shape, Sphere
-from evodesign.collision.rules import Corners
 from evodesign.collision.shapes import hull_corners
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface
 
-__all__ = ["ConvexShape", "corner_shapes_of", "shapes_of"]
+__all__ = ["ConvexShape", "shapes_of"]
 
 Array = NDArray[np.float64]
 
@@ -50,7 +48,6 @@ class ConvexShape:
         disc: radius of its disc.
         ball: radius of its ball.
         stretch: what is done to its points about its centre, in the link's axes.
-        corners: whose hull it has beside, in its own axes; at least two, or none.
     """
 
     link_from_shape: Placement
@@ -58,7 +55,6 @@ class ConvexShape:
     disc: Scalar = 0.0
     ball: Scalar = 0.0
     stretch: Matrix = UNSTRETCHED
-    corners: tuple[Vector, ...] = ()
 
 
 def shapes_of(link: Link) -> tuple[ConvexShape, ...]:
@@ -68,31 +64,6 @@ def shapes_of(link: Link) -> tuple[ConvexShape, ...]:
     if link.shown:
         return tuple(_of_mesh(mesh, mesh.surface) for mesh in link.shown if mesh.surface is not None)
     return tuple(_of_shape(look.shape, look.link_from_look) for look in link.looks)
-
-
-def corner_shapes_of(link: Link, corners: Corners, ball: float) -> tuple[ConvexShape, ...]:
-    """The hulls of some corners of a link's meshes; meshes of which there are none are left out.
-
-    Args:
-        link: with meshes.
-        corners: of each mesh's hull, by place.
-        ball: that is about each corner [m].
-    """
-    meshes = [(mesh, mesh.surface) for mesh in link.shown if mesh.surface is not None]
-    return tuple(
-        _of_corners(mesh, hull_corners(surface)[[*places]] * np.array(mesh.scale, float), ball)
-        for (mesh, surface), places in zip(meshes, corners, strict=True)
-        if places
-    )
-
-
-def _of_corners(mesh: Mesh, points: Array, ball: float) -> ConvexShape:
-    middle = points.mean(axis=0)
-    x, y, z = middle.tolist()
-    centre = rotate(mesh.stretch, rotate(mesh.link_from_mesh.rotation, (x, y, z)))
-    place = Placement(mesh.link_from_mesh.rotation, add(mesh.link_from_mesh.translation, centre))
-    about = tuple((x, y, z) for x, y, z in (points - middle).tolist())
-    return ConvexShape(place, ball=ball, stretch=mesh.stretch, corners=about)
 
 
 def _of_shape(shape: Shape, place: Placement) -> ConvexShape:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import ConstraintBlock, Program, Start
 from evodesign.nlp.solver import has_any
-from evodesign.posture.placed_shape import PlacedShape
+from evodesign.posture.placed_shape import SHAPE, PlacedShape
 from evodesign.posture.separating_axes import Ways, ways_of
 from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
@@ -167,8 +167,7 @@ class Meetings:
 
     Args:
         screen: how far each pair of shapes is apart at least, and along its meeting's direction [m].
-        shapes: numbers of each pair's two shapes.
-        ends: where the numbers of each shape end, but for the last one.
+        shapes: numbers of each pair.
         places: the meeting of each pair.
         starts: the first pair of each meeting.
         rows: the row of each pair in its program.
@@ -177,7 +176,6 @@ class Meetings:
 
     screen: BufferedFunction
     shapes: BufferedFunction
-    ends: Places
     places: Places
     starts: Places
     rows: Places
@@ -250,9 +248,8 @@ class Meetings:
         places = np.flatnonzero(looked_at(_Screened(on, least, along, self.margins))).tolist()
         if not places:
             return {}
-        columns = np.split(self.shapes(*at)[0].ravel(), self.ends)
-        pairs = [*zip(columns[::2], columns[1::2], strict=True)]
-        ways = ways_of([[pairs[pair] for pair in np.flatnonzero(self.places == place)] for place in places])
+        pairs = self.shapes(*at)[0].reshape(-1, 2, SHAPE)
+        ways = ways_of([pairs[self.places == place] for place in places])
         found = {place: wanted(own, place, along[place]) for place, own in zip(places, ways, strict=True)}
         return {place: new for place, new in found.items() if new is not None}
 
@@ -288,12 +285,11 @@ def meetings_of(
             places += [len(margins)] * len(own)
             margins.append(margin_of(each.body.form, meeting))
     least = [_least_apart(*pair) for pair in pairs]
-    shapes = [shape.numbers for pair in pairs for shape in pair]
+    shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
     given = list(arguments)
     return Meetings(
         _buffered("screen", given, [ca.vertcat(ca.SX(0, 1), *each) for each in (least, along)]),
-        _buffered("shapes", given, [ca.vertcat(ca.SX(0, 1), *shapes)]),
-        np.cumsum([shape.numel() for shape in shapes[:-1]], dtype=np.intp),
+        _buffered("shapes", given, [ca.horzcat(ca.SX(2 * SHAPE, 0), *shapes)]),
         np.array(places, np.intp),
         np.searchsorted(places, np.arange(len(margins))),
         rows_of(bodies, constraints),

@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import casadi as ca
 
 from evodesign.collision.supports import ConvexShape
 from evodesign.tree.kinematics import Expression, Pose, vector
 
-__all__ = ["ROUNDING", "SHAPE", "PlacedShape", "Plane", "placed_shape", "smooth_max"]
+__all__ = ["ROUNDING", "SHAPE", "PlacedShape", "Plane", "placed_shape"]
 
 SHAPE = 36
-"""Numbers of a placed shape: centre, axes, box, disc, ball; then three for each corner."""
+"""Numbers of a placed shape: centre, axes, box, disc, ball."""
 
 ROUNDING = 0.01
 """By how much a corner is rounded off, as a share of the half side."""
-
-BLEND = 2e-4
-"""By how much an edge between corners of a hull is rounded off [m]."""
-
-NO_CORNERS = ca.DM(3, 0)
 
 Plane = tuple[Expression, Expression]
 """A unit normal n and an offset d [m]: points x with n . x + d = 0."""
@@ -36,7 +29,6 @@ class PlacedShape:
         centre: where it is [m].
         axes: of its link, as columns; those of a mirror image are mirrored.
         box, disc, ball: columns that span its box, disc and ball, in these axes [m].
-        corners: columns from its centre, likewise, whose hull it has beside; or none.
     """
 
     centre: Expression
@@ -44,27 +36,26 @@ class PlacedShape:
     box: Expression
     disc: Expression
     ball: Expression
-    corners: Expression = NO_CORNERS
 
     @property
     def numbers(self) -> Expression:
-        """All of it as one column of `SHAPE`, and of its corners."""
-        spans = (self.axes, self.box, self.disc, self.ball, self.corners)
-        return ca.vertcat(self.centre, *(ca.vec(each) for each in spans))
+        """All of it as one column of `SHAPE`."""
+        return ca.vertcat(
+            self.centre, *(ca.vec(each) for each in (self.axes, self.box, self.disc, self.ball))
+        )
 
     @staticmethod
     def of(numbers: Expression) -> PlacedShape:
         """That which a column of numbers stands for."""
-        columns = ca.reshape(numbers, 3, numbers.numel() // 3)
-        spans = ca.horzsplit(columns[:, 1:], [0, 3, 6, 8, 11, columns.shape[1] - 1])
-        return PlacedShape(columns[:, 0], *spans)
+        columns = ca.reshape(numbers, 3, SHAPE // 3)
+        return PlacedShape(columns[:, 0], *ca.horzsplit(columns[:, 1:], [0, 3, 6, 8, 11]))
 
     def mirrored(self, plane: Plane) -> PlacedShape:
         """Its mirror image in a plane."""
         normal, offset = plane
         away = ca.dot(normal, self.centre) + offset
         axes = self.axes - 2.0 * normal @ (normal.T @ self.axes)
-        return replace(self, centre=self.centre - 2.0 * away * normal, axes=axes)
+        return PlacedShape(self.centre - 2.0 * away * normal, axes, self.box, self.disc, self.ball)
 
     @property
     def sides(self) -> list[Expression]:
@@ -91,18 +82,12 @@ class PlacedShape:
         if not self.ball.is_zero():  # a row that is off has no direction, and a derivative all the same
             size = ca.sumsqr(self.ball[:, 0])
             reach += ca.sqrt(ca.sumsqr(self.ball.T @ direction) + ROUNDING**2 * size)
-        if self.corners.numel():
-            reach += smooth_max(ca.vertsplit(self.corners.T @ direction))
         return reach
-
-    def support_back(self, direction: Expression) -> Expression:
-        """How far it reaches against a unit vector in the link's axes [m]: as far but for its corners."""
-        return self.support_within(-direction if self.corners.numel() else direction)
 
     def apart(self, other: PlacedShape, direction: Expression) -> Expression:
         """How far another one is from this one along a unit vector [m]."""
         between = ca.dot(direction, other.centre - self.centre)
-        return between - self.support(direction) - other.support_back(other.axes.T @ direction)
+        return between - self.support(direction) - other.support(direction)
 
     def apart_along(self, other: PlacedShape, numbers: Expression) -> Expression:
         """How far another one is from this one along the direction of a meeting's numbers [m]."""
@@ -110,21 +95,7 @@ class PlacedShape:
         from_mine, from_its = self.axes @ mine, other.axes @ its
         between = ca.dot(from_mine + from_its, other.centre - self.centre)
         within = self.support_within(mine + self.axes.T @ from_its)
-        return between - within - other.support_back(other.axes.T @ from_mine + its)
-
-
-def smooth_max(values: Sequence[Any]) -> Any:
-    """A little more than the largest value, smooth, from pairs (a + b + sqrt((a - b)^2 + e^2)) / 2.
-
-    Args:
-        values: at least one; expressions, or arrays of the same shape.
-    """
-    left = [*values]
-    while len(left) > 1:
-        pairs = zip(left[::2], left[1::2], strict=False)
-        larger = [0.5 * (a + b + ((a - b) ** 2 + BLEND**2) ** 0.5) for a, b in pairs]
-        left = larger + left[2 * len(larger) :]
-    return left[0]
+        return between - within - other.support_within(other.axes.T @ from_mine + its)
 
 
 def placed_shape(shape: ConvexShape, pose: Pose) -> PlacedShape:
@@ -137,7 +108,6 @@ def placed_shape(shape: ConvexShape, pose: Pose) -> PlacedShape:
         turn @ ca.diag(vector(shape.half_sides)),
         turn[:, :2] * shape.disc,
         turn * shape.ball,
-        turn @ ca.DM([[*corner] for corner in shape.corners]).T if shape.corners else NO_CORNERS,
     )
 
 

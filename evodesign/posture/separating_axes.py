@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.codegen import compiled_function
 from evodesign.posture.placed_shape import SHAPE, PlacedShape
-from evodesign.posture.separating_hulls import hull_ways
 from evodesign.posture.terms.collisions import NUMBERS
 
 __all__ = ["Ways", "ways_of"]
@@ -60,19 +59,17 @@ class Ways:
         return np.asarray(self.numbers[int(self.apart.argmax())])
 
 
-def ways_of(meetings: Sequence[Sequence[tuple[Array, Array]]]) -> list[Ways]:
+def ways_of(meetings: Sequence[Array]) -> list[Ways]:
     """The ways to part the bodies of each meeting.
 
     Args:
-        meetings: of each, the numbers of every shape of the one with every shape of the other.
+        meetings: of each, the numbers of every shape of the one with every shape of the other, shape
+            (pairs, 2, SHAPE).
     """
     candidates, apart = _functions()
     ways = []
     for pairs in meetings:
-        if any(len(column) > SHAPE for pair in pairs for column in pair):
-            ways.append(Ways(*hull_ways(pairs)))
-            continue
-        columns = [np.concatenate(pair) for pair in pairs]
+        columns = [pair.ravel() for pair in pairs]
         units, numbers, distances = zip(*map(candidates, columns), strict=True)
         found = np.concatenate(distances)
         if len(columns) > 1:  # along the directions of every pair of shapes, all of them

@@ -7,8 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from evodesign.collision.clearance import SolidBodies
-from evodesign.collision.corners import deciding_corners
-from evodesign.collision.margins import apart_pairs, coarse_pairs, narrow_margins
+from evodesign.collision.margins import coarse_pairs, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
@@ -18,7 +17,7 @@ from evodesign.nlp.landscape import spread_designs
 from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 
-DESIGNS, EXTREMES = 16, 2
+DESIGNS = 16
 """Of which it is asked what their build brings together, beside the least and the largest one."""
 
 OTHERWISE = "ignored by the file, or exempt in another person"
@@ -66,11 +65,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
         for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
         if frozenset(pair) not in ignored
     ]
-    resized = [space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT]
-    coarse = coarse_pairs(agent.tree, agent.joints, checked, table.margin_m)
-    extremes = [agent.tree, *resized[:EXTREMES]]
-    apart = apart_pairs(extremes, agent.joints, coarse)
-    corners = deciding_corners(extremes, agent.joints, [pair for pair in coarse if pair not in apart])
+    resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
     built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}
@@ -81,15 +76,13 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     feet = feet_pairs(agent.tree, agent.joints, agent.soles, checked)
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
-    narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
     return CollisionRules(
         table.margin_m,
         tuple(own.values()),
         parted,
         built_in=built_in,
-        narrow={**narrow, **dict.fromkeys(coarse, 0.0)},
-        corners=corners,
-        apart=apart,
+        narrow=narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m),
+        coarse=coarse_pairs(agent.tree, agent.joints, checked, table.margin_m) - {*parted},
     )
 
 

@@ -9,7 +9,7 @@ import pytest
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Sphere
-from evodesign.collision.margins import apart_pairs, narrow_margins
+from evodesign.collision.margins import narrow_margins
 from evodesign.collision.rules import CollisionRules
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
@@ -44,14 +44,3 @@ def test_what_is_built_nearer_than_the_margin_keeps_what_it_has() -> None:
     assert rules.margin_of(("ball 2", "ball 0")) == pytest.approx(0.002, abs=1e-6)
     assert rules.margin_of(("ball 0", "ball 3")) == 0.005
     assert rules.margin_of(("ball 3", "ball 4")) == 0.005  # in each other at zero, as arms beside hips are
-
-
-def test_pairs_that_no_posture_of_any_tree_brings_together_are_apart() -> None:
-    """The third ball comes back to the first where links are short."""
-    joints, pairs = ("joint 0", "joint 1"), [("ball 0", "ball 2")]
-    long, short = chain(0.0, 0.3, 0.6), chain(0.0, 0.05, 0.1)
-    assert apart_pairs([long], joints, pairs) == frozenset(pairs)
-    assert apart_pairs([long, short], joints, pairs) == frozenset()
-    rules = CollisionRules(0.005, tuple(pairs), apart=frozenset(pairs))
-    assert rules.is_apart(("ball 2", "ball 0"))
-    assert not rules.is_apart(("ball 0", "ball 1"))

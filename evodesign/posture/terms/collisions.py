@@ -33,9 +33,8 @@ import casadi as ca
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.collision.corners import TOLERANCE
-from evodesign.collision.rules import LOAD, PLANES, BodyPair, Corners
-from evodesign.collision.supports import ConvexShape, corner_shapes_of, shapes_of
+from evodesign.collision.rules import LOAD, PLANES, BodyPair
+from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.placed_shape import PlacedShape, Plane, placed_shape
@@ -115,7 +114,7 @@ def meetings(form: Form) -> tuple[Meeting, ...]:
     if rules is None:
         return ()
     kept = form.part(form.agent.tree)[0].link_by_name
-    parted = (pair for pair in rules.parted if not rules.is_apart(pair))
+    parted = (pair for pair in rules.parted if pair not in rules.coarse)
     return tuple(dict.fromkeys(_meeting(form.mirror, kept, pair) for pair in parted))
 
 
@@ -145,18 +144,6 @@ def margin_of(form: Form, meeting: Meeting) -> float:
     return 0.0 if rules is None else rules.margin_of((meeting.first, second))
 
 
-def corners_of(form: Form, meeting: Meeting) -> tuple[Corners, Corners]:
-    """The corners that rows know of the two of a meeting; none where their shapes are fitted."""
-    rules, images = form.agent.collisions, form.mirror.links if form.mirror else {}
-    if rules is None:
-        return (), ()
-    if not meeting.mirrored:
-        return rules.corners_of((meeting.first, meeting.second))
-    first, _ = rules.corners_of((meeting.first, images[meeting.second]))
-    _, second = rules.corners_of((images[meeting.first], meeting.second))  # its own, to be mirrored
-    return first, second
-
-
 def directed(form: Form) -> tuple[Meeting, ...]:
     """Those that have a direction."""
     return tuple(meeting for meeting in meetings(form) if meeting.kind is MeetingKind.DIRECTION)
@@ -175,8 +162,7 @@ def placed_pairs(body: Body, meeting: Meeting) -> list[tuple[PlacedShape, Placed
     both = [name for name in tree.to_root(meeting.first) if name in others]
     above = next(name for name in both if links.get(name, name) == name)
     first, second = (
-        _shapes_at(body, link, _pose_above(body, above, link), corners)
-        for link, corners in zip((meeting.first, meeting.second), corners_of(body.form, meeting), strict=True)
+        _shapes_at(body, link, _pose_above(body, above, link)) for link in (meeting.first, meeting.second)
     )
     if meeting.mirrored:
         plane = _middle_plane(tree, above)
@@ -205,10 +191,8 @@ def _placed(body: Body, link: str) -> list[PlacedShape]:
     return _shapes_at(body, link, body.poses[link])
 
 
-def _shapes_at(body: Body, link: str, pose: Pose, corners: Corners = ()) -> list[PlacedShape]:
-    own = body.part.link_by_name[link]
-    shapes = corner_shapes_of(own, corners, TOLERANCE) if any(corners) else shapes_of(own)
-    return [placed_shape(shape, pose) for shape in shapes]
+def _shapes_at(body: Body, link: str, pose: Pose) -> list[PlacedShape]:
+    return [placed_shape(shape, pose) for shape in shapes_of(body.part.link_by_name[link])]
 
 
 def _load(body: Body) -> PlacedShape:
