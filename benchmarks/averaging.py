@@ -49,13 +49,14 @@ RESULTS = Path(__file__).parent / "results" / "averaging.json"
 
 
 def guessed(name: str, symmetry: str) -> DesignProblem:
-    """The problem that `init` writes for a robot, without `[collisions]` and solved from fixed starts."""
+    """The problem that `init` writes for a robot, with one person, without `[collisions]` and from fixed starts."""
     file = HUMANOIDS[name]
     robot = read_robot(file, name, name, "")
     tree = with_meshes_beside(read_urdf(robot.urdf, name, InertiaRule.FILE), file, robot)
     tables = tomllib.loads(guessed_problem(tree, str(file)).text)
     tables["robot"]["meshes"] = False
     del tables["collisions"]
+    tables["human"] = tables["human"][:1]
     problem = build_problem(source_of(tables, symmetry=symmetry))
     return replace(problem, options=replace(problem.options, compiled=False))
 

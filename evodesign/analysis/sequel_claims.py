@@ -72,6 +72,8 @@ class RobotFigures:
         mass: of the robot [kg].
         highest: load that it can hold [m]; None when not solved.
         held, cases: how many cases it holds, of how many.
+        bodies_apart: by how much its bodies are farther apart than asked while all joints are at zero [m], as
+            `problem.objectives.bodies_apart` has it; None where bodies may pass through anything.
     """
 
     name: str
@@ -82,6 +84,7 @@ class RobotFigures:
     highest: float | None
     held: int
     cases: int
+    bodies_apart: float | None = None
 
     @property
     def fitness(self) -> float | None:

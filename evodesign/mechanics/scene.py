@@ -178,6 +178,7 @@ class Agent:
         limits_torques: whether these limits hold in every posture.
         collisions: what its bodies keep clear of; None: they may pass through anything.
         gaze: from where it looks at the load; None: it may look anywhere.
+        bent_ranges: of joints that stay bent in postures, within their limits [rad], by name.
     """
 
     name: str
@@ -194,6 +195,7 @@ class Agent:
     coupled_joints: tuple[CoupledJoints, ...] = ()
     collisions: CollisionRules | None = None
     gaze: Gaze | None = None
+    bent_ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def pushed_frame(self) -> str:

@@ -6,7 +6,7 @@ A population's table stands for one person per sex and percentile.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import msgspec
@@ -27,9 +27,11 @@ from evodesign.problem.file import (
     HumanTable,
     JointRanges,
     ProblemFile,
+    RobotTable,
     SolesTable,
     TorqueLimits,
 )
+from evodesign.problem.flexion import bent_ranges
 from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
@@ -56,7 +58,21 @@ def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     tree = _with_frames(_turned(seen, table.facing), table.frames, ROBOT, source)
     agent = _agent(ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
     hard = table.torque_limits is TorqueLimits.HARD
-    return replace(agent, torque_limits=torque_limits(tables, source, agent), limits_torques=hard)
+    limits = torque_limits(tables, source, agent)
+    return replace(agent, torque_limits=limits, limits_torques=hard, bent_ranges=_bent(agent, table, source))
+
+
+def _bent(agent: Agent, table: RobotTable, source: ProblemSource) -> Mapping[str, tuple[float, float]]:
+    """Ranges of knees and elbows that stay bent."""
+    asked = {
+        "knee_flexion_deg": (table.knee_flexion_deg, agent.soles),
+        "elbow_flexion_deg": (table.elbow_flexion_deg, agent.hands),
+    }
+    found: dict[str, tuple[float, float]] = {}
+    for key, (least, ends) in asked.items():
+        if least is not None:
+            found |= bent_ranges(agent, ends, math.radians(least), f"robot.{key}", source)
+    return found
 
 
 def _turned(tree: Tree, facing: Facing) -> Tree:

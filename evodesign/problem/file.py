@@ -98,7 +98,9 @@ class RobotTable(Table, frozen=True):
 
     `inertia` says where masses come from; see `InertiaRule`. `facing` is the direction in the root's axes in
     which the robot looks. `packages` are folders in which `package://` and `model://` are found, beside those
-    of the environment; `meshes = false` leaves out what the URDF shows as meshes.
+    of the environment; `meshes = false` leaves out what the URDF shows as meshes. `knee_flexion_deg` and
+    `elbow_flexion_deg` are the least angles of knees and elbows in postures, zero for straight limbs; left
+    out, joints take their whole ranges.
     """
 
     urdf: Name
@@ -113,6 +115,8 @@ class RobotTable(Table, frozen=True):
     joints: tuple[Name, ...] = ()
     torque_limits: TorqueLimits = TorqueLimits.NONE
     torque_limits_n_m: dict[str, Positive] = msgspec.field(default_factory=dict)
+    knee_flexion_deg: NotNegative | None = None
+    elbow_flexion_deg: NotNegative | None = None
 
 
 class PopulationForm(Table, frozen=True):

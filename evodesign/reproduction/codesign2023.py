@@ -30,7 +30,7 @@ from evodesign.problem.design_result import DesignResult
 from evodesign.problem.designs import read_designs
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.named_files import read_text
-from evodesign.problem.objectives import objective_value
+from evodesign.problem.objectives import bodies_apart, objective_value
 from evodesign.problem.shipped import SHIPPED
 from evodesign.records import Evaluation
 from evodesign.report.sequel import SequelReproduction
@@ -105,7 +105,8 @@ def _figures(name: str, problem: DesignProblem, result: DesignResult) -> RobotFi
     cost, robot, human = (objective_value(each, result) for each in (COST, ROBOT_TORQUE, "human_torque"))
     held = sum(solution.solved for solution in result.cases)
     mass = float(result.tree.mass)
-    return RobotFigures(name, cost, robot, human, mass, result.reach.highest, held, len(problem.cases))
+    cases, apart = len(problem.cases), bodies_apart(result)
+    return RobotFigures(name, cost, robot, human, mass, result.reach.highest, held, cases, apart)
 
 
 def _values(evaluation: Evaluation) -> tuple[float, float]:

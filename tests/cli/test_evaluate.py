@@ -51,7 +51,7 @@ def cold(quick: Path) -> tuple[dict, str]:
 def test_cache_does_not_change_an_answer(quick: Path, cold: tuple[dict, str]) -> None:
     warm, second = evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")})
     assert "ready 1/1: the person's part at 1 m" in cold[1]
-    assert second == ""
+    assert "ready" not in second
     assert cold[0] == warm
 
 

@@ -104,9 +104,14 @@ def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
     for robot in robots.values():  # one height of one pair, so that the cost can be had from the means
         assert robot["cost"] == pytest.approx(robot["robot_torque"] / 160.0 + robot["human_torque"])
     stricter = {name: robot["with_grips_and_collisions"] for name, robot in robots.items()}
-    assert all(robot["held"] == 1 for robot in stricter.values())
+    built = {name: robot["bodies_apart"] >= 0.0 for name, robot in stricter.items()}
+    assert {name: robot["held"] for name, robot in stricter.items()} == {
+        n: int(yes) for n, yes in built.items()
+    }
+    assert built["unscaled"]
+    assert not built["log_6"], "its chest is in the pelvis"
     assert stricter["ga"]["mass"] == robots["ga"]["mass"]
-    assert stricter["ga"]["cost"] != robots["ga"]["cost"]
+    assert stricter["unscaled"]["cost"] != robots["unscaled"]["cost"]
     run = read_run(to / "search")
     assert len(run.evaluations) == search["evaluations"] == 4
     chosen = run.evaluations[search["evaluation"]].assessment

@@ -79,6 +79,8 @@ def test_card_names_the_case_of_largest_torque_and_contact_force(
 def test_figures_of_show_are_written(several: DesignProblem, tmp_path: Path) -> None:
     few = write_several(several, tmp_path / "run", designs=1, cases=3)
     show(few.directory, 0, json=True, plot=tmp_path / "figures")
-    assert len(list((tmp_path / "figures").iterdir())) == 6
+    names = ("torques", "torques_by_joint", "postures", "postures_side", "postures_front")
+    written = {path.name for path in (tmp_path / "figures").iterdir()}
+    assert written == {f"{name}.{kind}" for name in names for kind in ("svg", "png")}
     svg = (tmp_path / "figures" / "torques_by_joint.svg").read_text()
     assert "with all people and loads" in svg

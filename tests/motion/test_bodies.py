@@ -32,12 +32,14 @@ PAIRS = [
     *(["LeftForeArm", "LeftUpperLeg"], ["RightForeArm", "RightUpperLeg"]),
     *(["LeftFoot", "RightFoot"], ["l_foot_front", "r_foot_front"], ["l_hip_3", "r_hip_3"]),
 ]
+FOLDED = [["l_shoulder_1", "l_upper_arm"], ["r_shoulder_1", "r_upper_arm"]]
+"""In each other in the holds that these lifts begin from."""
 
 
 def keeping_clear(problem: DesignProblem, lifted: Lifted, pairs: list[list[str]]) -> Lifted:
     """Lifts of the same, in which nothing overlaps and some pairs have rows, from holds that may overlap."""
     source = problem.source
-    table = f"[collisions]\npart = {pairs}\n\n[objectives]".replace("'", '"')
+    table = f"[collisions]\npart = {pairs}\nignore = {FOLDED}\n\n[objectives]".replace("'", '"')
     text = source.text.replace("[objectives]", table)
     scene = build_problem(msgspec.structs.replace(source, text=text)).scene
     setting = replace(lifted.setting, scene=scene)

@@ -94,7 +94,8 @@ def test_workers_and_a_scheduler_that_come_and_go_change_nothing(tmp_path: Path)
         cluster.wait_for(4)
         with make_pool("dask", 1, cluster.address) as pool:
             slow = Slow(header.parameters, 0.05)
-            together = start(tmp_path / "together", header, slow, pool, Trouble(cluster))
+            with pytest.warns(UserWarning, match="is lost; waiting for it"):
+                together = start(tmp_path / "together", header, slow, pool, Trouble(cluster))
     assert essence(together) == essence(alone)
     workers = [
         {each.worker for each in part} for part in (together.evaluations[:20], together.evaluations[96:])

@@ -10,7 +10,7 @@ from evodesign.cli.tables.reproduction import verdict_lines
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.report.sequel import SequelReproduction
 
-__all__ = ["robots_table", "sequel_lines"]
+__all__ = ["built_lines", "robots_table", "sequel_lines"]
 
 
 def robots_table(done: SequelReproduction) -> FittedTable:
@@ -47,9 +47,21 @@ def robots_table(done: SequelReproduction) -> FittedTable:
     return table
 
 
+def built_lines(done: SequelReproduction) -> list[str]:
+    """A sentence on the robots that cannot be built as bodies that keep clear of each other."""
+    apart = {name: robot.bodies_apart for name, robot in done.stricter.items()}
+    inside = [f"{name} {rounded(-1e3 * by)}" for name, by in apart.items() if by is not None and by < 0.0]
+    if not inside:
+        return []
+    return [
+        f"cannot be built: bodies nearer than asked while all joints are at zero [mm]: {', '.join(inside)}"
+    ]
+
+
 def sequel_lines(done: SequelReproduction, directory: Path, seconds: float) -> list[str]:
     """A sentence for every verdict, then what was computed and where it lies."""
     return [
+        *built_lines(done),
         *verdict_lines(done.claims),
         f"search is design {done.chosen} of {done.run.directory}"
         if done.chosen is not None

@@ -62,12 +62,14 @@ def _range_bounds(form: Form, ends: Sequence[float], *, at_most: bool) -> Iterat
     """One end of every joint's range; of a half, it is that of the pair."""
     for name, end in zip(form.joints, ends, strict=True):
         unit = "m" if form.agent.tree.joint_by_name[name].kind is JointKind.PRISMATIC else "rad"
-        yield Bound("joint range", end, unit, at_most, part=form.words_of(name))
+        known = "flexion" if name in form.agent.bent_ranges else "joint range"
+        yield Bound(known, end, unit, at_most, part=form.words_of(name))
 
 
 def joint_ranges(form: Form) -> list[tuple[float, float]]:
     """Limits of each of the form's joints [rad], of those that turn further those of one turn about zero."""
-    return [_one_turn(form.agent.tree.joint_by_name[name]) for name in form.joints]
+    bent, known = form.agent.bent_ranges, form.agent.tree.joint_by_name
+    return [bent.get(name) or _one_turn(known[name]) for name in form.joints]
 
 
 TURN = 2.0 * math.pi
@@ -92,8 +94,13 @@ def _standing(agent: Agent, scene: Scene) -> list[float]:
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """Joints beyond their limits, a base that tilts too far, and a posture that a disturbance moved."""
     posture, tree = body.posture, body.agent.tree
-    joints = [(tree.joint_by_name[name], position) for name, position in posture.joints.items()]
-    beyond = max(0.0, *(max(joint.lower - at, at - joint.upper) for joint, at in joints))
+    limits = {
+        name: (tree.joint_by_name[name].lower, tree.joint_by_name[name].upper) for name in posture.joints
+    }
+    limits |= body.agent.bent_ranges
+    beyond = max(
+        0.0, *(max(limits[name][0] - at, at - limits[name][1]) for name, at in posture.joints.items())
+    )
     yield Residual("joint_limits", beyond, "rad", "joint limits", LimitGroup.JOINT_LIMITS, posture_only=True)
     tilt = max(0.0, float(np.abs(posture.base_angles).max()) - body.scene.stance.base_tilt)
     yield Residual("base_tilt", tilt, "rad", "the tilt of the base", LimitGroup.STANCE, posture_only=True)

@@ -24,6 +24,10 @@ from evodesign.tree.urdf_read import InertiaRule
 __all__ = ["FILL_IN", "Guess", "GuessedProblem", "guessed_problem", "inertia_rule"]
 
 
+KNEE_FLEXION = 15
+"""Least angle of knees [deg]: our choice."""
+
+
 @dataclass(frozen=True, slots=True)
 class Guess:
     """What was guessed for a key, and why; `found` is nothing if it could not be."""
@@ -111,6 +115,7 @@ def _robot(plan: BodyPlan, found: Contacts) -> Iterable[str]:
     yield f"hands = {_inline(hands)}{marked}"
     yield _soles(plan, found)
     yield f"trunk = {json.dumps(_trunk_frames(plan))}  # keeps a distance from the load"
+    yield f"knee_flexion_deg = {KNEE_FLEXION}  # at least: straight legs hold any load for nothing"
     yield "joints = ["
     yield from (f"    {json.dumps(name)}," for name in plan.joints)
     yield "]"
