@@ -2,9 +2,9 @@
 
 Parts that are built two millimetres from each other cannot keep five. Nor can parts of meshes whose fitted
 shapes (`collision.supports`), which programs know, are nearer than that while all joints are at zero and the
-meshes' hulls are apart; a margin is negative there, and the check of the hulls decides. Where fitted shapes
-are too near in many postures in which the hulls are apart, as those of wrists and shoulders are, hulls and
-fitted shapes are too coarse to tell whether the meshes overlap: such pairs are exempt, and `check` says so.
+hulls of the meshes' parts are apart; a margin is negative there, and the check of the hulls decides. Where
+fitted shapes are too near in many postures in which the hulls are apart, as those of wrists and shoulders
+are, programs have no rows: the check alone decides.
 """
 
 from __future__ import annotations

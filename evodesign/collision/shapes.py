@@ -1,8 +1,7 @@
-"""Convex solids of links for coal: spheres, cylinders, boxes, and the convex hulls of meshes.
+"""Convex solids of links for coal: spheres, cylinders, boxes, and the convex hulls of meshes' parts.
 
 A link's solids are what its mass is of; a link whose inertia is the file's has its meshes, or else the shapes
-that show it. A hull fills what is hollow, so that two links whose meshes fit into each other may be told to
-overlap.
+that show it. A hull fills what is hollow, so hollow meshes are cut into parts (`collision.convex_parts`).
 
 Source: coal (formerly hpp-fcl); convex hulls: Qhull, by scipy.
 """
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.collision.convex_parts import convex_parts
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface
 
@@ -56,7 +56,12 @@ def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
     if link.solids:
         return tuple(_of_shape(solid.shape, solid.link_from_solid) for solid in link.solids)
     if link.shown:
-        return tuple(_of_mesh(mesh, mesh.surface) for mesh in link.shown if mesh.surface is not None)
+        return tuple(
+            _of_part(mesh, mesh.surface, part)
+            for mesh in link.shown
+            if mesh.surface is not None
+            for part in range(len(convex_parts(mesh.surface)))
+        )
     return tuple(_of_shape(look.shape, look.link_from_look) for look in link.looks)
 
 
@@ -80,11 +85,11 @@ def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
     return ConvexSolid(geometry, rotation, position, position, radius, np.zeros(3), half)
 
 
-@functools.lru_cache(maxsize=256)
-def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
-    """The hull of a mesh at its place in its link: a design stretches a few, and all others are met again."""
+@functools.lru_cache(maxsize=512)
+def _of_part(mesh: Mesh, surface: Surface, part: int) -> ConvexSolid:
+    """The hull of a part of a mesh in its link: a design stretches a few, all others are met again."""
     turn = np.array(mesh.stretch, float) @ np.array(mesh.link_from_mesh.rotation, float)
-    points = hull_corners(surface) * np.array(mesh.scale, float) @ turn.T
+    points = convex_parts(surface)[part] * np.array(mesh.scale, float) @ turn.T
     points = points + np.array(mesh.link_from_mesh.translation, float)
     low, high = points.min(axis=0), points.max(axis=0)
     centre = (high + low) / 2.0
