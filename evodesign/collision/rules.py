@@ -29,9 +29,8 @@ class CollisionRules:
         parted: those of them that have rows in programs: the ones that come near each other in postures.
         parted_at_reach: those that have rows in their place where the load is as high or low as it can be.
         built_in: pairs of links that some design's build brings together (`collision.pairs`).
-        narrow: margins [m] of pairs that are built nearer to each other (`collision.margins`).
-        coarse: pairs whose fitted shapes are too coarse for rows (`collision.margins`): only the check knows
-            them.
+        narrow: margins [m] of pairs that are built nearer to each other, or whose shapes in programs are
+            coarse (`collision.margins`); minus infinity for pairs without rows.
     """
 
     margin: float
@@ -40,7 +39,6 @@ class CollisionRules:
     parted_at_reach: tuple[BodyPair, ...] = ()
     built_in: tuple[BodyPair, ...] = ()
     narrow: Mapping[BodyPair, float] = field(default_factory=dict)
-    coarse: frozenset[BodyPair] = frozenset()
 
     def margin_of(self, pair: BodyPair) -> float:
         """The least distance that programs ask for of a pair [m]."""

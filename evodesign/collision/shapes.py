@@ -1,7 +1,8 @@
-"""Convex solids of links for coal: spheres, cylinders, boxes, and the convex hulls of meshes' parts.
+"""Convex solids of links for coal: spheres, cylinders, boxes, and the convex hulls of meshes.
 
 A link's solids are what its mass is of; a link whose inertia is the file's has its meshes, or else the shapes
-that show it. A hull fills what is hollow, so hollow meshes are cut into parts (`collision.convex_parts`).
+that show it. A hull fills what is hollow; where hulls are in each other, triangles decide
+(`collision.triangles`).
 
 Source: coal (formerly hpp-fcl); convex hulls: Qhull, by scipy.
 """
@@ -18,7 +19,6 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
-from evodesign.collision.convex_parts import convex_parts
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface
 
@@ -40,6 +40,7 @@ class ConvexSolid:
         centre: of a ball about the solid, in the link [m].
         radius: of the ball [m].
         middle, half_sides: of a box about the solid along the geometry's axes, about its origin [m].
+        mesh: that it is the hull of, if any; the geometry then stands in the link's frame.
     """
 
     geometry: Any
@@ -49,6 +50,7 @@ class ConvexSolid:
     radius: float
     middle: Array
     half_sides: Array
+    mesh: Mesh | None = None
 
 
 def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
@@ -56,12 +58,7 @@ def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
     if link.solids:
         return tuple(_of_shape(solid.shape, solid.link_from_solid) for solid in link.solids)
     if link.shown:
-        return tuple(
-            _of_part(mesh, mesh.surface, part)
-            for mesh in link.shown
-            if mesh.surface is not None
-            for part in range(len(convex_parts(mesh.surface)))
-        )
+        return tuple(_of_mesh(mesh, mesh.surface) for mesh in link.shown if mesh.surface is not None)
     return tuple(_of_shape(look.shape, look.link_from_look) for look in link.looks)
 
 
@@ -85,16 +82,17 @@ def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
     return ConvexSolid(geometry, rotation, position, position, radius, np.zeros(3), half)
 
 
-@functools.lru_cache(maxsize=512)
-def _of_part(mesh: Mesh, surface: Surface, part: int) -> ConvexSolid:
-    """The hull of a part of a mesh in its link: a design stretches a few, all others are met again."""
+@functools.lru_cache(maxsize=256)
+def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
+    """The hull of a mesh at its place in its link: a design stretches a few, and all others are met again."""
     turn = np.array(mesh.stretch, float) @ np.array(mesh.link_from_mesh.rotation, float)
-    points = convex_parts(surface)[part] * np.array(mesh.scale, float) @ turn.T
+    points = hull_corners(surface) * np.array(mesh.scale, float) @ turn.T
     points = points + np.array(mesh.link_from_mesh.translation, float)
     low, high = points.min(axis=0), points.max(axis=0)
     centre = (high + low) / 2.0
     radius = float(np.linalg.norm(points - centre, axis=1).max())
-    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius, centre, (high - low) / 2.0)
+    half = (high - low) / 2.0
+    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius, centre, half, mesh)
 
 
 @functools.lru_cache(maxsize=1024)

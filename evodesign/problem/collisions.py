@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from evodesign.collision.clearance import SolidBodies
-from evodesign.collision.margins import coarse_pairs, narrow_margins
+from evodesign.collision.margins import fitted_margins, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
@@ -76,14 +76,13 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     feet = feet_pairs(agent.tree, agent.joints, agent.soles, checked)
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
-    return CollisionRules(
-        table.margin_m,
-        tuple(own.values()),
-        parted,
-        built_in=built_in,
-        narrow=narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m),
-        coarse=coarse_pairs(agent.tree, agent.joints, checked, table.margin_m) - {*parted},
-    )
+    narrow = {
+        **narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m),
+        **fitted_margins(
+            agent.tree, agent.joints, [pair for pair in own.values() if pair not in parted], table.margin_m
+        ),
+    }
+    return CollisionRules(table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow)
 
 
 def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:
