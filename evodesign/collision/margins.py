@@ -6,7 +6,7 @@ meshes are apart; a margin is negative there, and the check of the triangles dec
 too near in many postures in which the meshes are apart, as those of wrists and shoulders are, the margin m is
 the one that errs least in random postures, of fitted distances d,
 
-    share(d < m, apart) + ERRS share(d >= m, in each other)
+    share(d < m, apart) + LET_THROUGH share(d >= m, in each other)
 
 which may be minus infinity: then rows would refuse more than they are good for, and the check alone decides.
 """
@@ -33,8 +33,9 @@ __all__ = ["fitted_margins", "narrow_margins"]
 COARSE = 0.1
 """Share of postures in which fitted shapes are too near though the bodies are apart."""
 
-ERRS = 3.0
-"""Postures that a margin refuses in vain for one that it lets through in vain, which the check refuses."""
+LET_THROUGH = 3.0
+"""How many postures that are refused although the bodies are apart count as one that is let through although
+they overlap: the check refuses that one, and nothing steers away from it."""
 
 
 def narrow_margins(tree: Tree, pairs: Collection[BodyPair], margin: float) -> Mapping[BodyPair, float]:
@@ -100,7 +101,7 @@ def _least_wrong(distances: Array, overlap: NDArray[np.bool_]) -> float:
     order = np.argsort(distances)
     below = np.concatenate([[0], np.cumsum(~overlap[order])])
     beyond = overlap.sum() - np.concatenate([[0], np.cumsum(overlap[order])])
-    least = int(np.argmin(below + ERRS * beyond))
+    least = int(np.argmin(below + LET_THROUGH * beyond))
     ends = [-np.inf, *distances[order]]
     return float(ends[least])
 

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Sphere
-from evodesign.collision.margins import ERRS, fitted_margins, narrow_margins
+from evodesign.collision.margins import LET_THROUGH, fitted_margins, narrow_margins
 from evodesign.collision.rules import CollisionRules
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.surface import surface_of
@@ -108,7 +108,7 @@ def test_the_margin_of_coarse_shapes_errs_least_in_postures() -> None:
     def errs(least: float) -> float:
         return float(
             np.mean((fitted < least) & (overlap == 0.0))
-            + ERRS * np.mean((fitted >= least) & (overlap == 1.0))
+            + LET_THROUGH * np.mean((fitted >= least) & (overlap == 1.0))
         )
 
     assert 0.05 < overlap.mean() < 0.5
