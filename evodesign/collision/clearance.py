@@ -35,6 +35,9 @@ __all__ = ["BodyDistance", "Indices", "PlacedSolids", "Places", "SolidBodies", "
 
 UP = np.array([0.0, 0.0, 1.0])
 
+ACCURACY = 0.002
+"""Of meshes, which have few triangles [m]: overlaps that are not deeper are none."""
+
 Indices = NDArray[np.intp]
 """Places of solids."""
 
@@ -204,7 +207,10 @@ class PlacedSolids:
         return best
 
     def overlapping(self, places: Places, within: float = 0.0) -> list[BodyDistance]:
-        """Those of some pairs that are nearer to each other than a distance [m], once each."""
+        """Those of some pairs that are nearer to each other than a distance [m], once each.
+
+        Where overlaps are asked for, those of meshes by less than their accuracy are left out.
+        """
         near = places[self._balls_apart(places) < within]
         near = near[self._boxes_apart(near) < within]
         found: dict[tuple[str, str], BodyDistance] = {}
@@ -255,6 +261,10 @@ class PlacedSolids:
         if distance >= 0.0 or not (self.bodies.solids[i].mesh or self.bodies.solids[j].mesh):
             return distance
         one, other = self._body(i), self._body(j)
+        if within <= 0.0 and (
+            distance > -ACCURACY or not are_in_each_other(one, other.moved(ACCURACY * way))
+        ):
+            return 0.0
         if are_in_each_other(one, other):
             return -depth_along(one, other, way, -distance)
         return distance_apart(one, other) if within > 0.0 else 0.0

@@ -77,7 +77,8 @@ def fitted_margins(
     postures = zip(*(placed_in_postures(tree, joints, bodies) for bodies in (shown, known)), strict=True)
     samples = 0
     for as_shown, as_known in postures:
-        overlaps = {frozenset((gap.first, gap.second)) for gap in as_shown.overlapping(places[0])}
+        near = as_shown.overlapping(places[0], margin)
+        overlaps = {frozenset((gap.first, gap.second)) for gap in near if gap.distance < 0.0}
         for gap in as_known.overlapping(places[1], margin):
             both = frozenset((gap.first, gap.second))
             found[both].append((gap.distance, both in overlaps))
@@ -85,9 +86,9 @@ def fitted_margins(
     margins: dict[BodyPair, float] = {}
     for pair in own:
         image = frozenset(images.get(link, link) for link in pair)
-        near = np.array([*found[frozenset(pair)], *found.get(image, [])], float).reshape(-1, 2)
-        if np.sum(near[:, 1] == 0.0) >= COARSE * 2 * samples:
-            margins[pair] = _least_wrong(near[:, 0], near[:, 1] == 1.0)
+        drawn = np.array([*found[frozenset(pair)], *found.get(image, [])], float).reshape(-1, 2)
+        if np.sum(drawn[:, 1] == 0.0) >= COARSE * 2 * samples:
+            margins[pair] = _least_wrong(drawn[:, 0], drawn[:, 1] == 1.0)
     return margins
 
 

@@ -11,13 +11,14 @@ from scipy.spatial.transform import Rotation
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
-from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.collision.clearance import BodyDistance, PlacedSolids, SolidBodies
 from evodesign.collision.triangles import triangles_in_link
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface, surface_of
 from tests.collision.chains import two_links
 
 SIDES = (0.1, 0.06, 0.04)
+PAIR = np.array([[0, 1]])
 
 
 def surface(*meshes: trimesh.Trimesh) -> Surface:
@@ -39,15 +40,23 @@ FORK = surface(
 """Two cheeks on a plate, with 8 cm between them."""
 
 
-def distance(one: Surface, other: Surface, place: Placement) -> float:
-    """Of two meshes [m], the other one somewhere in the one's frame."""
+def placed(one: Surface, other: Surface, place: Placement) -> PlacedSolids:
+    """Two meshes, the other one somewhere in the one's frame."""
     links = [
         Link(name, own_inertia=Inertia(1.0), meshes=(Mesh(name, surface=each),))
         for name, each in (("one", one), ("other", other))
     ]
-    bodies = SolidBodies.of_tree(two_links(*links))
-    placed = bodies.placed({"one": Placement(), "other": place})
-    return placed.nearest(places_of(bodies.names, [("one", "other")])).distance
+    return SolidBodies.of_tree(two_links(*links)).placed({"one": Placement(), "other": place})
+
+
+def distance(one: Surface, other: Surface, place: Placement) -> float:
+    """Of two meshes [m]."""
+    return placed(one, other, place).nearest(PAIR).distance
+
+
+def overlapping(one: Surface, other: Surface, place: Placement) -> list[BodyDistance]:
+    """What the check finds."""
+    return placed(one, other, place).overlapping(PAIR)
 
 
 def test_a_pin_in_a_fork_is_apart_from_its_cheeks_though_not_from_its_hull() -> None:
@@ -63,6 +72,15 @@ def test_a_pin_in_a_cheek_is_as_deep_as_it_has_to_be_moved() -> None:
     pin = surface(box((0.02, 0.02, 0.02)))
     found = -distance(FORK, pin, Placement(translation=(0.0, 0.034, 0.06)))
     assert 0.004 - 1e-5 < found < 0.054
+
+
+def test_an_overlap_of_meshes_within_their_accuracy_is_none() -> None:
+    one = surface(box((0.1, 0.1, 0.1)))
+    for depth, count in ((0.0015, 0), (0.0025, 1)):
+        assert len(overlapping(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0)))) == count
+        assert distance(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0))) == pytest.approx(
+            -depth, abs=3e-4
+        )
 
 
 def test_a_mesh_within_another_one_is_found_though_no_triangles_cross() -> None:
