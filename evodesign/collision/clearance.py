@@ -1,7 +1,8 @@
 """How far bodies are apart: the signed distance of the nearest two of many convex solids.
 
 A distance is negative where two solids overlap: minus how deep they are in each other. Pairs are measured by
-coal in the order of their bounding balls' distances, for as long as a nearer one may follow.
+coal in the order of their bounding balls' distances, for as long as a nearer one may follow. A mesh is
+its convex hull, and where hulls are in each other its triangles (`collision.triangles`).
 
 Source: coal (formerly hpp-fcl): Gilbert, Johnson and Keerthi (1988), and expanding polytopes.
 """
@@ -20,12 +21,22 @@ from numpy.typing import NDArray
 from evodesign.body.placement import Placement
 from evodesign.collision.rules import FLOOR
 from evodesign.collision.shapes import Array, ConvexSolid, solids_of
+from evodesign.collision.triangles import (
+    PlacedBody,
+    are_in_each_other,
+    depth_along,
+    distance_apart,
+    triangles_in_link,
+)
 from evodesign.tree.model import Tree
 
 __all__ = ["BodyDistance", "Indices", "PlacedSolids", "Places", "SolidBodies", "places_of"]
 
 
 UP = np.array([0.0, 0.0, 1.0])
+
+ACCURACY = 0.002
+"""Of meshes, which have few triangles [m]: overlaps that are not deeper are none."""
 
 Indices = NDArray[np.intp]
 """Places of solids."""
@@ -79,6 +90,11 @@ class SolidBodies:
         """Those of a tree of numbers, by link; bare frames have none."""
         found = [(link.name, solid) for link in tree.links for solid in solids_of(link)]
         return cls(tuple(name for name, _ in found), tuple(solid for _, solid in found))
+
+    @property
+    def hulls(self) -> SolidBodies:
+        """The same without the triangles of meshes."""
+        return SolidBodies(self.names, tuple(replace(solid, mesh=None) for solid in self.solids))
 
     def named(self, name: Callable[[str], str]) -> SolidBodies:
         """The same by other names."""
@@ -191,11 +207,14 @@ class PlacedSolids:
         return best
 
     def overlapping(self, places: Places, within: float = 0.0) -> list[BodyDistance]:
-        """Those of some pairs that are nearer to each other than a distance [m], once each."""
+        """Those of some pairs that are nearer to each other than a distance [m], once each.
+
+        Where overlaps are asked for, those of meshes by less than their accuracy are left out.
+        """
         near = places[self._balls_apart(places) < within]
         near = near[self._boxes_apart(near) < within]
         found: dict[tuple[str, str], BodyDistance] = {}
-        for gap in map(self._gap, near):
+        for gap in (self._gap(each, within) for each in near):
             known = found.get((gap.first, gap.second))
             if gap.distance < (within if known is None else known.distance):
                 found[gap.first, gap.second] = gap
@@ -232,15 +251,36 @@ class PlacedSolids:
         along_other -= np.einsum("pij,pi->pj", turned, half)
         return np.asarray(np.maximum(along_one, along_other).max(axis=1, initial=-np.inf))
 
-    def _gap(self, places: Places) -> BodyDistance:
+    def _gap(self, places: Places, within: float = np.inf) -> BodyDistance:
         i, j = places.tolist()
-        return BodyDistance(self.names[i], self.names[j], self._distance(i, j))
+        return BodyDistance(self.names[i], self.names[j], self._distance(i, j, within))
 
-    def _distance(self, i: int, j: int) -> float:
-        return self.parted(i, j)[0]
+    def _distance(self, i: int, j: int, within: float) -> float:
+        """How far two solids are apart [m]; of meshes that are not in each other, no nearer than that."""
+        distance, way, *_ = self.parted(i, j)
+        if distance >= 0.0 or not (self.bodies.solids[i].mesh or self.bodies.solids[j].mesh):
+            return distance
+        one, other = self._body(i), self._body(j)
+        if within <= 0.0 and (
+            distance > -ACCURACY or not are_in_each_other(one, other.moved(ACCURACY * way))
+        ):
+            return 0.0
+        if are_in_each_other(one, other):
+            return -depth_along(one, other, way, -distance)
+        return distance_apart(one, other) if within > 0.0 else 0.0
+
+    def _body(self, place: int) -> PlacedBody:
+        """A solid by its triangles, if it has any."""
+        solid = self.bodies.solids[place]
+        triangles = triangles_in_link(solid.mesh) if solid.mesh else None
+        geometry = triangles.geometry if triangles else solid.geometry
+        return PlacedBody(geometry, self.rotations[place], self.positions[place], triangles)
 
     def parted(self, i: int, j: int) -> tuple[float, Array, int, int]:
-        """How far two solids are apart [m], the unit vector that parts them most, and their places."""
+        """How far two convex solids are apart [m], the unit vector that parts them most, and their places.
+
+        A mesh is its hull.
+        """
         request, result = coal.DistanceRequest(), coal.DistanceResult()
         one, other = (self._geometry(place) for place in (i, j))
         return float(coal.distance(*one, *other, request, result)), np.array(result.normal), i, j

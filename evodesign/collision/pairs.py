@@ -41,6 +41,8 @@ __all__ = [
     "exempt_pairs",
     "feet_pairs",
     "holding_links",
+    "images_of",
+    "placed_in_postures",
     "shares_of_postures",
 ]
 
@@ -119,7 +121,7 @@ def built_in_pairs(
     """Pairs of links that the build of some design brings together.
 
     They overlap in it while all joints are at zero, and in a tenth of its postures at least, and are apart in
-    the unscaled robot at zero.
+    the unscaled robot at zero. Meshes are their hulls.
 
     Args:
         tree: of the agent, unscaled.
@@ -133,10 +135,12 @@ def built_in_pairs(
         for pair in _link_pairs(tree)
         if frozenset(pair) in known or (not _is_joined(tree, pair) and _is_still(tree, joints, pair))
     ]
-    apart, images = {*own} - _touching(tree, own), _images(tree)
-    found: set[BodyPair] = set()
+    hulls, images = SolidBodies.of_tree(tree).hulls, images_of(tree)
+    apart, found = {*own} - _touching(tree, own, hulls), set[BodyPair]()
     for each in resized:
-        shares = shares_of_postures(each, joints, sorted(_touching(each, apart - found)), images=images)
+        hulls = SolidBodies.of_tree(each).hulls
+        near = sorted(_touching(each, apart - found, hulls))
+        shares = shares_of_postures(each, joints, near, bodies=hulls, images=images)
         found |= {pair for pair, share in shares.items() if share >= SELDOM}
     found |= {(images.get(one, one), images.get(other, other)) for one, other in found}
     return tuple(pair for pair in own if pair in found or pair[::-1] in found)
@@ -225,7 +229,7 @@ def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:
     return not _between(tree, pair).intersection(joints)
 
 
-def _images(tree: Tree) -> Mapping[str, str]:
+def images_of(tree: Tree) -> Mapping[str, str]:
     """The mirror image of each link, if the tree is symmetric."""
     try:
         return mirror_of(tree).links
@@ -233,9 +237,9 @@ def _images(tree: Tree) -> Mapping[str, str]:
         return {}
 
 
-def _touching(tree: Tree, pairs: Collection[BodyPair]) -> set[BodyPair]:
-    """Those of some pairs that are in touch while all joints are at zero."""
-    bodies = SolidBodies.of_tree(tree)
+def _touching(tree: Tree, pairs: Collection[BodyPair], bodies: SolidBodies | None = None) -> set[BodyPair]:
+    """Those of some pairs that are in touch while all joints are at zero; by other solids than the tree's."""
+    bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
     placed = bodies.placed(link_frames(tree, Placement(), {}))
     return {(gap.first, gap.second) for gap in placed.overlapping(places_of(bodies.names, pairs), TOUCH)}
 
@@ -262,10 +266,10 @@ def shares_of_postures(
     if not pairs:
         return {}
     bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
-    images = _images(tree) if images is None else images
+    images = images_of(tree) if images is None else images
     counts: Counter[frozenset[str]] = Counter()
     places, samples = places_of(bodies.names, pairs), 0
-    for placed in _placed_in_postures(tree, joints, bodies):
+    for placed in placed_in_postures(tree, joints, bodies):
         counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places, within))
         samples += 1
     found: dict[BodyPair, float] = {}
@@ -277,7 +281,7 @@ def shares_of_postures(
     return found
 
 
-def _placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
+def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
     """Solids in random postures, always the same ones.
 
     Args:

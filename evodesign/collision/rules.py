@@ -29,7 +29,8 @@ class CollisionRules:
         parted: those of them that have rows in programs: the ones that come near each other in postures.
         parted_at_reach: those that have rows in their place where the load is as high or low as it can be.
         built_in: pairs of links that some design's build brings together (`collision.pairs`).
-        narrow: margins [m] of pairs that are built nearer to each other (`collision.margins`).
+        narrow: margins [m] of pairs that are built nearer to each other, or whose shapes in programs are
+            coarse (`collision.margins`); minus infinity for pairs without rows.
     """
 
     margin: float

@@ -1,8 +1,8 @@
 """Convex solids of links for coal: spheres, cylinders, boxes, and the convex hulls of meshes.
 
 A link's solids are what its mass is of; a link whose inertia is the file's has its meshes, or else the shapes
-that show it. A hull fills what is hollow, so that two links whose meshes fit into each other may be told to
-overlap.
+that show it. A hull fills what is hollow; where hulls are in each other, triangles decide
+(`collision.triangles`).
 
 Source: coal (formerly hpp-fcl); convex hulls: Qhull, by scipy.
 """
@@ -40,6 +40,7 @@ class ConvexSolid:
         centre: of a ball about the solid, in the link [m].
         radius: of the ball [m].
         middle, half_sides: of a box about the solid along the geometry's axes, about its origin [m].
+        mesh: that it is the hull of, if any; the geometry then stands in the link's frame.
     """
 
     geometry: Any
@@ -49,6 +50,7 @@ class ConvexSolid:
     radius: float
     middle: Array
     half_sides: Array
+    mesh: Mesh | None = None
 
 
 def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
@@ -89,7 +91,8 @@ def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
     low, high = points.min(axis=0), points.max(axis=0)
     centre = (high + low) / 2.0
     radius = float(np.linalg.norm(points - centre, axis=1).max())
-    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius, centre, (high - low) / 2.0)
+    half = (high - low) / 2.0
+    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius, centre, half, mesh)
 
 
 @functools.lru_cache(maxsize=1024)

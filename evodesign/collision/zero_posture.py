@@ -4,7 +4,7 @@ The distance of two convex bodies is the largest of what any unit vector n parts
 
     d(n) = n . (c_2 - c_1) - s_1(n) - s_2(-n)
 
-so its derivative along a design is that of d(n) with n held (envelope theorem).
+so its derivative along a design is that of d(n) with n held (envelope theorem). A mesh is its hull.
 
 Source: Boyd and Vandenberghe, Convex Optimization, section 8.2; coal finds n.
 """
@@ -38,10 +38,10 @@ def built_in_slack(tree: Tree, rules: CollisionRules | None) -> tuple[float, Bod
     """
     if rules is None or not rules.built_in:
         return None
-    bodies = SolidBodies.of_tree(tree)
+    bodies = SolidBodies.of_tree(tree).hulls
     placed = bodies.placed(_at_zero(tree))
     gaps = [placed.nearest(places_of(bodies.names, [pair])) for pair in rules.built_in]
-    slacks = [gap.distance - rules.margin_of((gap.first, gap.second)) for gap in gaps]
+    slacks = [gap.distance - max(rules.margin_of((gap.first, gap.second)), 0.0) for gap in gaps]
     least = min(range(len(gaps)), key=slacks.__getitem__)
     return slacks[least], gaps[least]
 

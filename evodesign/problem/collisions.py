@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from evodesign.collision.clearance import SolidBodies
-from evodesign.collision.margins import coarse_pairs, narrow_margins
+from evodesign.collision.margins import fitted_margins, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
@@ -18,11 +18,9 @@ from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 
 DESIGNS = 16
-"""Of which it is asked what their build brings together."""
+"""Of which it is asked what their build brings together, beside the least and the largest one."""
 
-OTHERWISE = (
-    "ignored by the file, exempt in another person, or meshes whose fitted shapes are too coarse to tell"
-)
+OTHERWISE = "ignored by the file, or exempt in another person"
 
 __all__ = ["may_overlap", "with_collisions"]
 
@@ -67,8 +65,6 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
         for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
         if frozenset(pair) not in ignored
     ]
-    coarse = coarse_pairs(agent.tree, agent.joints, checked, table.margin_m)
-    checked = [pair for pair in checked if pair not in coarse]
     resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
     built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
@@ -80,7 +76,12 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     feet = feet_pairs(agent.tree, agent.joints, agent.soles, checked)
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
-    narrow = narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m)
+    narrow = {
+        **narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m),
+        **fitted_margins(
+            agent.tree, agent.joints, [pair for pair in own.values() if pair not in parted], table.margin_m
+        ),
+    }
     return CollisionRules(table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow)
 
 

@@ -114,7 +114,8 @@ def meetings(form: Form) -> tuple[Meeting, ...]:
     if rules is None:
         return ()
     kept = form.part(form.agent.tree)[0].link_by_name
-    return tuple(dict.fromkeys(_meeting(form.mirror, kept, pair) for pair in rules.parted))
+    parted = (pair for pair in rules.parted if rules.margin_of(pair) > -np.inf)
+    return tuple(dict.fromkeys(_meeting(form.mirror, kept, pair) for pair in parted))
 
 
 def _meeting(mirror: Mirror | None, kept: Collection[str], pair: BodyPair) -> Meeting:

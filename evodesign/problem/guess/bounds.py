@@ -28,7 +28,7 @@ NEAR = (2, 3)
 """Joints between two bodies that their build keeps clear of each other."""
 
 DEEPEST = 0.003
-"""Overlap of the convex hulls of two bodies [m] that is a matter of their accuracy."""
+"""Overlap of two bodies [m] that is a matter of their accuracy."""
 
 
 @dataclass(frozen=True, slots=True)
