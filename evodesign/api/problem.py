@@ -179,7 +179,7 @@ class Problem:
         Example:
             >>> longer = problem.evaluate({"length.shank": 1.1})
             >>> longer.feasible, longer.objectives["robot_torque"]
-            (True, 2.25...)
+            (True, 15.07...)
             >>> problem.evaluate({"length.shank": 1.9}).notes
             ('length.shank = 1.9 is beyond its bounds, 0.6 to 1.8',)
         """

@@ -219,10 +219,15 @@ def test_the_person_stands_as_measured_people_do(problem: DesignProblem, scene: 
 
 
 def test_least_torque_remains_what_it_was(problem: DesignProblem) -> None:
-    """No measured posture, and a spine as `joint_ranges` says; also where the table says nothing."""
-    for text in (OLD, PERSON):
-        human = build_problem(asked(problem, text)).scene.human
-        assert (human.measured, human.rhythms, human.coupled_joints) == (None, (), ())
+    """No measured posture, and a spine as `joint_ranges` says."""
+    human = build_problem(asked(problem, OLD)).scene.human
+    assert (human.measured, human.rhythms, human.coupled_joints) == (None, (), ())
+
+
+def test_a_generated_person_of_whom_nothing_is_said_stands_as_measured(problem: DesignProblem) -> None:
+    said, unsaid = (build_problem(asked(problem, text)).scene.human for text in (NEW, PERSON))
+    assert unsaid.measured is not None
+    assert unsaid == said
 
 
 def test_a_person_from_a_urdf_has_a_measured_posture_if_it_has_the_body(problem: DesignProblem) -> None:
