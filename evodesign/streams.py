@@ -38,6 +38,7 @@ ASCII: Final[Mapping[str, str]] = {
     "↑": "^",
     "●": "*",
     "…": "~",
+    "±": "~",
 }
 """What stands for the signs of tables and progress where an encoding lacks them; each as wide as its sign."""
 
