@@ -72,6 +72,8 @@ def fitted_margins(
     exact = {name for name, link in links.items() if link.solids or not link.shown}
     own = [pair for pair in pairs if links.keys() >= set(pair) and not exact.issuperset(pair)]
     shown, known, images = SolidBodies.of_tree(tree), _fitted(tree), images_of(tree)
+    if not own or not shown.names:
+        return {}
     places = places_of(shown.names, own), places_of(known.names, own)
     found: dict[frozenset[str], list[tuple[float, bool]]] = {frozenset(pair): [] for pair in own}
     postures = zip(*(placed_in_postures(tree, joints, bodies) for bodies in (shown, known)), strict=True)
