@@ -22,7 +22,9 @@ HUMAN = "worst_human_torque"
 def said(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     capsys.readouterr()
     app([*map(str, arguments)], standalone_mode=False)
-    return capsys.readouterr().out
+    out, told = capsys.readouterr()
+    assert out, told
+    return out
 
 
 def torques(run: Path, design: int) -> list[float]:

@@ -41,7 +41,7 @@ load_mass_share = 0.2
 push_n = [-20.0, 0.0, 0.0]
 at = "robot"
 """
-DESIGN_SEED = 5
+DESIGN_SEED = 4  # of 5 a neighbour has another optimum, 0.01 N m from the first one
 
 
 def source_with(problem: DesignProblem, tables: str, task: str = "") -> ProblemSource:
