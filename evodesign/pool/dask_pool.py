@@ -62,6 +62,9 @@ PATIENCE = 3600.0
 FORGOTTEN = ("cancelled", "lost", "error")
 """States of a future that will not have a value any more."""
 
+TALK_OF_LOSS = ("distributed.client", "distributed.batched")
+"""Loggers that print a traceback when a connection is lost."""
+
 NO_WORKER = "dask-lost"
 """Worker name of an argument of which no worker could report."""
 
@@ -87,7 +90,8 @@ class DaskPool(Pool):
         stop: Callable[[], bool],
         patience: float = PATIENCE,
     ) -> None:
-        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+        for name in TALK_OF_LOSS:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         self._scheduler = scheduler
         self._note = note
         self._stop = stop
