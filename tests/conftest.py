@@ -12,6 +12,7 @@ import msgspec
 import pytest
 from hypothesis import HealthCheck, settings
 
+from evodesign.interrupts import INTERRUPTS
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
@@ -143,6 +144,16 @@ def known(problem: DesignProblem) -> Precomputed:
             assert content is not None
             cache.store(key, content)
         return precomputed(problem, cache, pool, PrecomputeProgress())
+
+
+@pytest.fixture(autouse=True)
+def own_signals() -> Iterator[None]:
+    """Handlers that a command in a test's process installs end with the test, and so does an interrupt."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+    INTERRUPTS.unwinding = False
 
 
 @pytest.fixture(scope="session")
