@@ -32,7 +32,7 @@ from evodesign.problem.file import (
 from evodesign.problem.flexion import bent_ranges
 from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.person_posture import HEAD, with_posture
-from evodesign.problem.stance import stance_of
+from evodesign.problem.stance_limits import stance_of
 from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree

@@ -43,7 +43,7 @@ from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturban
 from evodesign.problem.objectives import SHARED_REACH
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
-from evodesign.problem.stance import stance_of
+from evodesign.problem.stance_limits import stance_of
 from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.torque_limits import refuse_unlimited
