@@ -253,11 +253,6 @@ class Scene:
         return ", ".join(name for name in self.pair if name)
 
     @property
-    def is_dear(self) -> bool:
-        """Whether bodies are kept apart under several disturbances: solves take long then, and many fail."""
-        return self.robot.collisions is not None and self.disturbances.several
-
-    @property
     def undisturbed(self) -> Scene:
         """The same without disturbances."""
         return replace(self, disturbances=Disturbances())

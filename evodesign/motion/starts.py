@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,10 @@ from evodesign.records import Hold, Lift, Status
 
 __all__ = ["lift_portfolio"]
 
-TRAINING = Training(designs=4, starts=8, crossed=2, candidates=4, portfolio=4, rounds=2)
+TRAINING = Training(designs=4, begun=4, portfolio=4)
+
+RANDOM_STARTS = 8
+"""From which optima are sought, beside the motion between the holds."""
 
 LOOKED_AT = 40
 """Designs among which those are sought that hold the load at both ends."""
@@ -57,6 +61,7 @@ class _Found:
 
     cost: float
     status: Status
+    iterations: int
     values: Start
 
 
@@ -71,8 +76,6 @@ class _LiftLandscape:
         first: the design whose postures random starts are near.
     """
 
-    starts: tuple[Start, ...] = ({},)
-
     def __init__(
         self, program: LiftProgram, lift: Lift, mass: float, holds: PostureProblem, first: Design
     ) -> None:
@@ -80,23 +83,41 @@ class _LiftLandscape:
         self._first = first
         self._held: dict[Design, list[Mapping[str, AgentPosture]]] = {}
 
-    def solve(self, design: Design, start: Start) -> _Found:
+    def rough(self, design: Design, start: Start) -> _Found:
         """The best optimum that a start leads to."""
-        best = _Found(np.inf, Status.INFEASIBLE, {})
+        best = _Found(np.inf, Status.INFEASIBLE, 0, {})
         for begun in lift_starts(self._program, self._lift, self._ends(design), design, [start]).values():
             ending, _ = self._program.solve(self._lift, begun, design, self._mass)
             status = status_of(ending.word)
             if status is Status.SOLVED and ending.cost < best.cost:
                 person = self._program.motion_of(HUMAN, replace(begun, symbols=ending.symbols))
-                best = _Found(ending.cost, status, {**start, **person})
+                best = _Found(ending.cost, status, ending.iterations, {**start, **person})
         return best
+
+    def finished(self, design: Design, end: _Found) -> _Found:
+        """It is as good as it gets."""
+        return end
+
+    def needed(self, end: _Found) -> Start:
+        """How its person moves."""
+        return end.values
+
+    def size(self, start: Start) -> float:
+        """All starts are of one program."""
+        return 1.0
 
     def good(self, costs: Array, best: Array) -> NDArray[np.bool_]:
         """Within 1 % of the best one."""
         relative, absolute = NEAR
         return np.asarray(costs <= best + relative * np.abs(best) + absolute)
 
-    def random_start(self, rng: np.random.Generator) -> Start:
+    @cached_property
+    def universal(self) -> tuple[Start, ...]:
+        """The motion between the holds, and some that are moved at random, always the same ones."""
+        rng = np.random.default_rng(0)
+        return ({}, *(self._random_start(rng) for _ in range(RANDOM_STARTS)))
+
+    def _random_start(self, rng: np.random.Generator) -> Start:
         """The person of a hold at either end, moved, and followed along the lift; some robots are moved."""
         last = int(rng.integers(2))
         postures = self._ends(self._first)[last]

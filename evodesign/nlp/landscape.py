@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -38,8 +38,8 @@ class StartResult(Protocol):
         ...
 
     @property
-    def values(self) -> Start:
-        """Where another solve can begin."""
+    def iterations(self) -> int:
+        """What it took."""
         ...
 
 
@@ -47,20 +47,28 @@ class Searched(Protocol):
     """A cost to be minimised, whatever the design, from one start or another."""
 
     @property
-    def starts(self) -> tuple[Start, ...]:
-        """Fixed ones, for any design."""
+    def universal(self) -> tuple[Start, ...]:
+        """From which optima are sought, for any design."""
         ...
 
-    def solve(self, design: Design, start: Start) -> StartResult:
+    def rough(self, design: Design, start: Start) -> StartResult:
         """The optimum that is found from a start."""
+        ...
+
+    def finished(self, design: Design, end: StartResult) -> StartResult:
+        """The same as good as it gets; one that does not count has failed."""
+        ...
+
+    def needed(self, end: StartResult) -> Start:
+        """Where solves begin that are to end near a result."""
+        ...
+
+    def size(self, start: Start) -> float:
+        """Work of an iteration from a start, against others."""
         ...
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
         """Which costs are close enough to the best ones."""
-        ...
-
-    def random_start(self, rng: np.random.Generator) -> Start:
-        """Another start, drawn."""
         ...
 
 
@@ -77,8 +85,7 @@ class Landscape:
         parted: whether rows that are switched off at first elsewhere are on from the beginning.
         begun: where a solve begins for a start and the parameters; left out, at the start as it is.
         accepted: whether a solution of a design counts; left out, each does.
-        party: names of the variables of one of two that hardly depend on each other: those of one optimum are
-            tried with the others of another one.
+        universal: starts all over the program's variables, from which optima are sought.
     """
 
     solver: Solver
@@ -89,7 +96,7 @@ class Landscape:
     parted: bool = False
     begun: Callable[[Start, Mapping[str, Any]], Start] | None = None
     accepted: Callable[[Design, RawSolution], bool] | None = None
-    party: Collection[str] = ()
+    universal: tuple[Start, ...] = ()
 
     @property
     def briefly(self) -> Landscape:
@@ -120,12 +127,16 @@ class Landscape:
         """Which costs are close enough to the best ones."""
         return costs <= best + self.relative * np.abs(best) + self.absolute
 
-    def size(self, start: Start) -> int:
+    def needed(self, end: RawSolution) -> Start:
+        """Its values without the rows on that do not hold it."""
+        return self.solver.needed(end)
+
+    def size(self, start: Start) -> float:
         """Variables and rows of the program that is solved from a start."""
         switches, program = self.solver.program.switches, self.solver.program
         if switches is not None and (self.parted or has_any(switches.names, start)):
             program = switches.program
-        return int(program.symbols.numel() + program.rows.numel())
+        return float(program.symbols.numel() + program.rows.numel())
 
     def random_start(self, rng: np.random.Generator) -> Start:
         """One of the fixed starts, with all that is drawn anywhere between its bounds."""

@@ -38,7 +38,6 @@ class SolverOptions:
         compiled: whether the program's functions run as machine code; results are the same, sooner.
         near: whether solves begin at a solution, to be found again more exactly: the barrier starts small,
             and bounds are taken as they are.
-        worth: share of its cost that a solution must gain by parting bodies in other ways to be solved again.
         seldom: whether solves are so few that the compiler had better be quick than its code.
         method: who solves; IPOPT, whatever is asked for, where nothing is compiled.
     """
@@ -48,7 +47,6 @@ class SolverOptions:
     seconds: float = 20.0
     compiled: bool = False
     near: bool = False
-    worth: float = 1e-4
     seldom: bool = False
     method: MethodName = MethodName.IPOPT
 

@@ -86,6 +86,9 @@ FREE = 1e-4
 BRIEF = 60
 """Iterations after which one of several solves is given up: 9 of 10 that succeed take less than 50."""
 
+WORTH = 1e-3
+"""Share of its cost that a solution must gain by parting bodies in other ways to be solved again."""
+
 UNSETTLED = "rows remain that are to be switched on"
 
 _STATUS = {
@@ -164,10 +167,10 @@ class Solver:
         )
 
     def solved_each(
-        self, parameters: Mapping[str, Any], starts: Sequence[Mapping[str, Array]], *, brief: bool
+        self, parameters: Mapping[str, Any], starts: Sequence[Mapping[str, Array]]
     ) -> list[RawSolution]:
-        """Where starts lead to; if brief, solves that take long are given up unless all of them do."""
-        if not brief or len(starts) == 1:
+        """Where starts lead to; solves that take long are given up unless all of them do."""
+        if len(starts) == 1:
             return [self.solve(parameters, start) for start in starts]
         ends = [self.brief.solve(parameters, start) for start in starts]
         if any(raw.status is Status.SOLVED for raw in ends):
@@ -243,7 +246,7 @@ class Solver:
         for _ in range(ROUNDS):
             if switches is None or found.status is not Status.SOLVED or gain == np.inf:
                 break
-            least, rows = max(gain, self.options.worth * abs(found.cost)), found.multipliers.constraints
+            least, rows = max(gain, WORTH * abs(found.cost)), found.multipliers.constraints
             better = switches.better(found.values, parameters, rows, least)
             if not better:
                 break

@@ -30,7 +30,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Task, TaskRecord
 
-__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "WORTH", "PostureProblem", "Symmetry"]
+__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
 
 DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
 """Names of the formulations in results."""
@@ -61,10 +61,6 @@ def _whole(
 
 
 FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
-
-
-WORTH = 1e-3
-"""Share of its cost that a dear posture must gain by parting bodies in other ways to be solved again."""
 
 
 class Symmetry(StrEnum):
@@ -205,9 +201,8 @@ class PostureProblem:
 
         Args:
             task: of the problem.
-            checker_of: the check of a design, by which postures count where no bodies overlap, and the
-                person of one is tried beside the robot of another; left out, or where the person is not in
-                the program, all count as they are.
+            checker_of: the check of a design, by which postures count where no bodies overlap; left out, or
+                where the person is not in the program, all count as they are.
         """
         name, _ = next(self._in_turn(task))
         formulation = self._formulation(name, task, self._methods(name)[0])
@@ -217,7 +212,6 @@ class PostureProblem:
         return replace(
             found,
             accepted=lambda design, raw: formulation.keeps_clear(raw, task, checker_of(design)),
-            party=formulation.person,
         )
 
     def _trials(
@@ -303,8 +297,6 @@ class PostureProblem:
         native = method is MethodName.NATIVE
         compiled = options.compiled and method is options.method and (native or not refuge)
         changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
-        if self._setting.scene.is_dear:
-            changed = replace(changed, worth=WORTH)
         return replace(self._setting, options=changed)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -12,7 +14,15 @@ from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 
-__all__ = ["PEOPLE", "STARTS_BESIDE", "different_people", "fixed_starts", "named_starts", "person_starts"]
+__all__ = [
+    "PEOPLE",
+    "STARTS_BESIDE",
+    "different_people",
+    "fixed_starts",
+    "named_starts",
+    "person_starts",
+    "universal_starts",
+]
 
 
 STARTS_BESIDE = 2
@@ -40,6 +50,27 @@ def fixed_starts(program: Program) -> tuple[Start, ...]:
         }
         for shares in SHARES
     )
+
+
+UNIVERSAL = (0.1, 0.5, 1.0)
+"""Shares of the way from zero to mid-range at which joints begin where optima are sought."""
+
+
+def universal_starts(program: Program, people: Sequence[Start] = ()) -> tuple[Start, ...]:
+    """Starts all over a program: each agent's joints at shares of the way to mid-range.
+
+    Args:
+        program: whose variables they are of.
+        people: the person's side of starts, where it is known better; each is put beside each robot.
+    """
+    own: Start = {variable.name: variable.start for variable in program.variables}
+    sides = [
+        people
+        if people and agent == HUMAN
+        else [{joints.name: _inside(joints, share * _middle(joints))} for share in UNIVERSAL]
+        for agent, joints in _joints(program)
+    ]
+    return tuple({**own, **dict(ChainMap(*map(dict, parts)))} for parts in product(*sides))
 
 
 def named_starts(

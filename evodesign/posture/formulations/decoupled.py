@@ -43,7 +43,7 @@ from evodesign.posture.formulations.human_value import (
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts
+from evodesign.posture.starts import STARTS_BESIDE, fixed_starts, named_starts, universal_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import INTERNAL_FORCE, PUSH, any_load, force_along_x
 from evodesign.posture.terms.registry import TERMS
@@ -116,7 +116,8 @@ class DecoupledPostures:
 
     def landscape(self, task: Task) -> Landscape:
         """The robot's cost for a task, with V(X)."""
-        return Landscape(self._robot, self._beside(task), self._fixed, *NEAR)
+        universal = universal_starts(self._robot.program)
+        return Landscape(self._robot, self._beside(task), self._fixed, *NEAR, universal=universal)
 
     def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
         """What the first start leads the robot to, with the person beside it."""

@@ -40,7 +40,7 @@ from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import different_people, fixed_starts, named_starts
+from evodesign.posture.starts import different_people, fixed_starts, named_starts, universal_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.measured_posture import any_person, person_parameters
@@ -103,10 +103,6 @@ class JointPostures:
         setting = replace(self._setting, scene=scene.undisturbed)
         return JointPostures(self.name, self._forms, setting, self._solvers, self._kind)
 
-    @property
-    def _is_dear(self) -> bool:
-        return self._setting.scene.is_dear
-
     @cached_property
     def _worst(self) -> WorstCase:
         return WorstCase(self._solver.program)
@@ -149,7 +145,16 @@ class JointPostures:
 
     def landscape(self, task: Task) -> Landscape:
         """The program's cost for a task."""
-        return Landscape(self._solver, self._beside(task), self._fixed(task), *NEAR, begun=self._begun)
+        program = self._solver.program
+        people = measured_starts(program, self._forms[1], self._setting.scene, task.heights)
+        return Landscape(
+            self._solver,
+            self._beside(task),
+            self._fixed(task),
+            *NEAR,
+            begun=self._begun,
+            universal=universal_starts(program, people),
+        )
 
     @cached_property
     def person(self) -> frozenset[str]:
@@ -313,7 +318,7 @@ class JointPostures:
             lambda raw: self._solver.settled(parameters, raw, gain),
             lambda raw, least: self._solver.bettered(parameters, raw, max(gain, least)),
             lambda start, raw: self._candidate(start, raw, task, checker),
-            (lambda raw: self._solver.continued(parameters, raw)) if self._is_dear else None,
+            lambda raw: self._solver.continued(parameters, raw),
         )
         return cheapest(self.name, ends, finishing)
 
@@ -345,7 +350,7 @@ class JointPostures:
             if any(raw.status is Status.SOLVED for _, raw in ends):
                 return ends
         given = [(name, self._begun(start, parameters)) for name, start in starts]
-        raws = solver.solved_each(parameters, [start for _, start in given], brief=self._is_dear)
+        raws = solver.solved_each(parameters, [start for _, start in given])
         return [(name, raw) for (name, _), raw in zip(given, raws, strict=True)]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:

@@ -33,7 +33,7 @@ from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
 from evodesign.posture.solution_derivative import ReachDerivative
-from evodesign.posture.starts import person_starts
+from evodesign.posture.starts import person_starts, universal_starts
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
@@ -166,7 +166,16 @@ class ReachProblem:
 
     def landscape(self, sense: float) -> Landscape:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
-        return Landscape(self._solver, self._beside(sense), FIXED, 0.0, NEAR_HEIGHT, parted=sense == LOWEST)
+        universal = tuple({**start, **height} for height in FIXED for start in universal_starts(self.program))
+        return Landscape(
+            self._solver,
+            self._beside(sense),
+            FIXED,
+            0.0,
+            NEAR_HEIGHT,
+            parted=sense == LOWEST,
+            universal=universal,
+        )
 
     def solve(self, design: Sequence[float]) -> Reach:
         """The interval of a design, given as one number per design parameter."""
@@ -191,16 +200,16 @@ class ReachProblem:
         """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on there."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        solver, brief = self._solver, self._setting.scene.is_dear
+        solver = self._solver
         if sense == LOWEST and self.program.switches is not None:
             for begun in (starts, FIXED) if self._starts[sense] else (FIXED,):
                 parted = [solver.parted_start(parameters, start) for start in begun]
-                found = _best_settled(solver, parameters, parted, sense, brief)
+                found = _best_settled(solver, parameters, parted, sense)
                 if any(raw.status is Status.SOLVED for raw in found):
                     return found
-        found = _best_settled(solver, parameters, starts, sense, brief)
+        found = _best_settled(solver, parameters, starts, sense)
         if solver.native and not any(raw.status is Status.SOLVED for raw in found):
-            return _best_settled(solver.by_ipopt, parameters, starts, sense, brief)
+            return _best_settled(solver.by_ipopt, parameters, starts, sense)
         return found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
@@ -272,10 +281,10 @@ def _with_own_rows(setting: Setting) -> Setting:
 
 
 def _best_settled(
-    solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float, brief: bool
+    solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float
 ) -> list[RawSolution]:
     """The result of every start, of which the most extreme one violates nothing that was switched off."""
-    found = solver.solved_each(parameters, starts, brief=brief)
+    found = solver.solved_each(parameters, starts)
     settled: set[int] = set()
     while True:
         solved = [place for place, raw in enumerate(found) if raw.status is Status.SOLVED]

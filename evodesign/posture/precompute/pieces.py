@@ -17,14 +17,13 @@ from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_library import Gathering, gathered
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training, chosen, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
-from evodesign.posture.postures import WORTH, PostureProblem
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
     PROGRAMS,
@@ -40,37 +39,8 @@ from evodesign.records import Case, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
-REACH_TRAINING = Training(designs=32, starts=16, crossed=12)
-HALF_TRAINING = Training(designs=48, starts=16, crossed=12)
-WHOLE_TRAINING = Training(designs=32, starts=3, crossed=12, portfolio=12)
-WHOLE_REACH_TRAINING = Training(designs=48, starts=12, crossed=12, portfolio=8, rounds=2)
-
-PARTED_SHARE = 0.5
-"""Of the usual designs so many are trained with where bodies are kept apart: solves take twice as long."""
-
-PARTED_PORTFOLIO, PARTED_ROUNDS = 12, 4
-"""Starts that a portfolio may hold there before some are chosen, and rounds of fresh designs: a bend around a
-load has many optima."""
-
-GATHERING = Gathering()
-"""Of optima where bodies are kept apart under several disturbances: solves take long there, many fail."""
-
-MOST_OPTIMA, MOST_ENDS, SERVED = 6, 4, 0.98
-"""Starts that may be chosen of these for a case, and for the highest or lowest load; and the share of the
-designs that those of a case must serve, as the last few would need a start each."""
-
-STRICTER = 0.4
-"""Share of the usual distance from the best optimum that whole starts are chosen with.
-
-Whole postures have many optima that lie close to each other; from random starts the best one is rarely found,
-but the optima of other designs lead there. So do those of the highest load where bodies are kept apart.
-"""
-
-CHOOSING, MOST_CHOSEN = 64, 8
-"""Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
-
-MOST_LOWEST = 2
-"""Starts of the lowest load where bodies are kept apart, whose program is twice as large."""
+TRAINING = Training()
+CHOSEN, MOST_CHOSEN = 24, 8
 
 ITERATIONS = 80
 """Limit of a training solve; those that succeed mostly take 15 to 40."""
@@ -97,7 +67,6 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
-    dear = setting.symmetric and setting.middle.is_dear
     if piece.subject in UNDISTURBED:
         setting = all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)
@@ -109,7 +78,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         _compile(setting, piece.subject, scene)
         found = None
     else:
-        found = _portfolio(setting, piece, known, dear=dear)
+        found = _portfolio(setting, piece, known)
     return encoded_piece(found)
 
 
@@ -178,24 +147,17 @@ def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None
         _ = problem.landscape(task).solver.parted
 
 
-def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed, *, dear: bool) -> StartPortfolio:
+def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
-    own = Setting(scene, space, setting.weights, replace(options, worth=WORTH) if dear else options)
+    own = Setting(scene, space, setting.weights, options)
     beside = replace(known, highest=NO_STARTS, lowest=NO_STARTS)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=beside)
     if task is None:
         landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
-        training = REACH_TRAINING if setting.symmetric else WHOLE_REACH_TRAINING
     else:
         checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
         landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
-        training = HALF_TRAINING if setting.symmetric else WHOLE_TRAINING
-    parted = scene.robot.collisions is not None
-    if not setting.symmetric or (parted and piece.subject is Subject.HIGHEST):
-        near = STRICTER * landscape.relative, STRICTER * landscape.absolute
-        landscape = replace(landscape, relative=near[0], absolute=near[1])
-
     built = can_be_built(scene.robot, space)
 
     def wanted(design: tuple[float, ...]) -> bool:
@@ -204,26 +166,12 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed, *, 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})
 
-    if parted and setting.symmetric:
-        training = replace(training, portfolio=PARTED_PORTFOLIO, rounds=PARTED_ROUNDS)
-    if parted:
-        training = replace(training, designs=int(PARTED_SHARE * training.designs))
-    looked_at = LOOKED_AT * max(training.designs, CHOOSING)
+    looked_at = LOOKED_AT * TRAINING.designs
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
-    choosing = task is not None and piece.subject is Subject.CHOSEN
-    offers = _offers(setting, piece.pair, task, known) if task is not None and choosing else []
-    if dear:
-        familiar = known.starts(piece.pair, task) if task is not None and choosing else ()
-        optima = gathered(landscape, designs, GATHERING, familiar, offers)
-        most, served = (MOST_OPTIMA, SERVED) if task else (MOST_ENDS, 1.0)
-        starts, solved = [start for _, start in optima], [design for design, _ in optima]
-        return chosen(landscape, starts, solved, most, served, roughly=True)
-    if choosing:
-        return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
-    found = start_portfolio(landscape, designs, training)
-    if landscape.parted and parted:
-        return chosen(landscape, found.starts, [*islice(designs, CHOOSING)], MOST_LOWEST)
-    return found
+    if task is not None and piece.subject is Subject.CHOSEN:
+        offers = _offers(setting, piece.pair, task, known)
+        return chosen(landscape, offers, [*islice(designs, CHOSEN)], MOST_CHOSEN)
+    return start_portfolio(landscape, designs, TRAINING)
 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:
