@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from evodesign.identity import Exceptions, code_digest, digest
-from evodesign.nlp.codegen import NotCompiled, find_compiler
+from evodesign.nlp.compiler import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import method_library

@@ -14,15 +14,8 @@ import numpy as np
 import pytest
 
 from evodesign.nlp import codegen
-from evodesign.nlp.codegen import (
-    CompiledFunctions,
-    Compiler,
-    Library,
-    NotCompiled,
-    compiled_functions,
-    find_compiler,
-    library,
-)
+from evodesign.nlp.codegen import CompiledFunctions, Library, compiled_functions, library
+from evodesign.nlp.compiler import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, open_cache
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import RawSolution, Solver, SolverOptions

@@ -9,7 +9,8 @@ import casadi as ca
 import numpy as np
 
 from evodesign.identity import code_digest
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, Library, NotCompiled, built, compiler_and_cache
+from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, built, compiler_and_cache
+from evodesign.nlp.compiler import Compiler, NotCompiled
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, method_library

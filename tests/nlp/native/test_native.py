@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
+from evodesign.nlp.compiler import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.elimination import Entries, determined, elimination
 from evodesign.nlp.native.library import native_method

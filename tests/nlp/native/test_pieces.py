@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, find_compiler
+from evodesign.nlp.codegen import FUNCTION_FLAGS
+from evodesign.nlp.compiler import Compiler, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.library import SELDOM_FLAGS
 from evodesign.nlp.native.pieces import in_pieces
