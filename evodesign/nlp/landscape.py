@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,17 @@ from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, Solver, has_any
 from evodesign.records import Status
 
-__all__ = ["NEAR", "Costs", "Design", "Landscape", "Searched", "StartResult", "cost_of", "spread_designs"]
+__all__ = [
+    "NEAR",
+    "Costs",
+    "Design",
+    "End",
+    "Landscape",
+    "Searched",
+    "StartResult",
+    "cost_of",
+    "spread_designs",
+]
 
 NEAR = (0.01, 1e-4)
 """How far above the best optimum of a posture another one is still good: 1 %; near zero 0.1 N m."""
@@ -43,7 +53,10 @@ class StartResult(Protocol):
         ...
 
 
-class Searched(Protocol):
+End = TypeVar("End", bound=StartResult)
+
+
+class Searched(Protocol[End]):
     """A cost to be minimised, whatever the design, from one start or another."""
 
     @property
@@ -51,15 +64,15 @@ class Searched(Protocol):
         """From which optima are sought, for any design."""
         ...
 
-    def rough(self, design: Design, start: Start) -> StartResult:
+    def rough(self, design: Design, start: Start) -> End:
         """The optimum that is found from a start."""
         ...
 
-    def finished(self, design: Design, end: StartResult) -> StartResult:
+    def finished(self, design: Design, end: End) -> End:
         """The same as good as it gets; one that does not count has failed."""
         ...
 
-    def needed(self, end: StartResult) -> Start:
+    def needed(self, end: End) -> Start:
         """Where solves begin that are to end near a result."""
         ...
 

@@ -1,10 +1,10 @@
 """A portfolio of starts: a few from which nearly every design converges to its best known optimum.
 
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
-designs are solved from the landscape's universal starts. Their best optima are offered to all designs; where
-one leads a design to something better than is known of it, that is offered as well. Of all offers those are
-chosen that serve the designs together with little work: a start serves a design if the solver converges from
-it to within 1 % of the best known optimum. The same landscape always gets the same portfolio.
+designs are solved from the landscape's universal starts. Then the best optimum of a design that no start
+serves is offered to all designs, until each is served: a start serves a design if the solver converges from
+it to within 1 % of the best optimum that any start led to. Of the offers those are chosen that serve all
+together with little work. The same landscape always gets the same portfolio.
 
 Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 """
@@ -14,11 +14,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from typing import Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.nlp.landscape import Costs, Design, Searched, StartResult, cost_of
+from evodesign.nlp.landscape import Costs, Design, End, Searched, cost_of
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 
@@ -32,20 +33,20 @@ class Training:
     Args:
         designs: to learn from.
         begun: how many of them are solved from the universal starts.
-        rounds: in which optima that are better than those known are offered.
+        offers: optima that are offered at most.
         portfolio: the most starts that a portfolio holds.
         served: share of the designs that any offer serves, for the portfolio to serve.
     """
 
     designs: int = 20
     begun: int = 12
-    rounds: int = 2
+    offers: int = 16
     portfolio: int = 6
     served: float = 1.0
 
 
 def start_portfolio(
-    landscape: Searched, designs: Iterable[Design], training: Training, similar: Sequence[Start] = ()
+    landscape: Searched[End], designs: Iterable[Design], training: Training, similar: Sequence[Start] = ()
 ) -> StartPortfolio:
     """The portfolio of a landscape.
 
@@ -57,16 +58,24 @@ def start_portfolio(
     """
     learned = [*islice(designs, training.designs)]
     work = _Ends(landscape, learned)
-    offers = [*similar]
     for place in range(min(training.begun, len(learned))):
-        offers += work.begun(place)
-    for _ in range(training.rounds):
-        offers = work.offered(offers)
+        work.begun(place)
+    for start in similar:
+        work.offered(start)
+    for _ in range(training.offers):
+        wanted = work.wanted()
+        if wanted is None:
+            break
+        work.offered(wanted)
     return work.portfolio(training.portfolio, training.served)
 
 
 def chosen(
-    landscape: Searched, offers: Sequence[Start], designs: Sequence[Design], most: int, served: float = 1.0
+    landscape: Searched[End],
+    offers: Sequence[Start],
+    designs: Sequence[Design],
+    most: int,
+    served: float = 1.0,
 ) -> StartPortfolio:
     """Those of some starts that serve designs as well as all of them do, with little work.
 
@@ -78,54 +87,80 @@ def chosen(
         served: share of the designs that all of them serve, for the portfolio to serve.
     """
     work = _Ends(landscape, designs)
-    work.offered(offers)
+    for start in offers:
+        work.offered(start)
     return work.portfolio(most, served)
 
 
-class _Ends:
+class _Ends(Generic[End]):
     """Where offers lead designs."""
 
-    def __init__(self, landscape: Searched, designs: Sequence[Design]) -> None:
+    def __init__(self, landscape: Searched[End], designs: Sequence[Design]) -> None:
         self._landscape, self._designs = landscape, designs
-        self._best = np.full(len(designs), np.inf)
+        self._best: list[End | None] = [None] * len(designs)
+        self._refused: set[int] = set()
         self._offers: list[Start] = []
-        self._ends: list[list[StartResult]] = []
+        self._ends: list[list[End]] = []
 
-    def begun(self, place: int) -> list[Start]:
-        """The best optimum that the universal starts lead a design to, if any."""
+    def begun(self, place: int) -> None:
+        """Solve a design from the universal starts."""
         design = self._designs[place]
-        ends = [self._landscape.rough(design, start) for start in self._landscape.universal]
-        return [self._landscape.needed(end) for end in self._better(place, ends)]
+        self._learn(place, [self._landscape.rough(design, start) for start in self._landscape.universal])
 
-    def offered(self, offers: Sequence[Start]) -> list[Start]:
-        """Offer starts to all designs; what they lead to where that is better than all that was known."""
-        self._offers += offers
-        ends = [[self._landscape.rough(design, start) for design in self._designs] for start in offers]
-        self._ends += ends
-        columns = zip(*ends, strict=True)
-        better = [end for place, column in enumerate(columns) for end in self._better(place, column)]
-        return [self._landscape.needed(end) for end in better]
+    def offered(self, start: Start) -> None:
+        """Offer a start to all designs."""
+        ends = [self._landscape.rough(design, start) for design in self._designs]
+        self._offers.append(start)
+        self._ends.append(ends)
+        for place, end in enumerate(ends):
+            self._learn(place, [end])
 
-    def _better(self, place: int, ends: Sequence[StartResult]) -> list[StartResult]:
-        """The best of some ends of a design that is better than what is known of it and counts, if any."""
+    def wanted(self) -> Start | None:
+        """The best optimum of the first design that no offer serves, once each; None where there is none."""
+        for place in np.flatnonzero(~self._good.any(axis=1)).tolist():
+            best = self._best[place]
+            if best is not None and place not in self._refused:
+                self._refused.add(place)
+                return self._landscape.needed(best)
+        return None
+
+    def _learn(self, place: int, ends: Sequence[End]) -> None:
+        """Remember the best of some ends of a design that is better than what is known of it and counts."""
         for end in sorted(ends, key=cost_of):
-            if not cost_of(end) < self._best[place]:
+            if not cost_of(end) < self._cost(place):
                 break
             found = self._landscape.finished(self._designs[place], end)
-            if cost_of(found) < self._best[place]:
-                self._best[place] = cost_of(found)
-                return [found]
-        return []
+            if cost_of(found) < self._cost(place):
+                self._best[place] = found
+                self._refused.discard(place)
+                break
+
+    def _cost(self, place: int) -> float:
+        best = self._best[place]
+        return np.inf if best is None else cost_of(best)
+
+    @property
+    def _costs(self) -> Costs:
+        """Of each design (row) from each offer (column)."""
+        shape = len(self._offers), len(self._designs)
+        return np.array([[cost_of(end) for end in row] for row in self._ends]).reshape(shape).T
+
+    @property
+    def _good(self) -> NDArray[np.bool_]:
+        """Whether an offer (column) serves a design (row)."""
+        costs, best = self._costs, np.array([self._cost(place) for place in range(len(self._designs))])
+        held = np.isfinite(best)
+        good = np.zeros(costs.shape, bool)
+        good[held] = np.isfinite(costs[held]) & self._landscape.good(costs[held], best[held, None])
+        return good
 
     def portfolio(self, most: int, served: float) -> StartPortfolio:
         """The offers that are chosen; how well they do is told of a choice made with half of the designs."""
-        held = np.isfinite(self._best)
-        shape = len(self._offers), len(self._designs)
-        costs = np.array([[cost_of(end) for end in row] for row in self._ends]).reshape(shape).T[held]
-        iterations = np.array([[float(end.iterations) for end in row] for row in self._ends]).reshape(shape)
-        best, work = self._best[held], iterations.sum(axis=1)
+        best = np.array([self._cost(place) for place in range(len(self._designs))])
+        held = np.isfinite(best)
+        good, costs, best = self._good[held], self._costs[held], best[held]
+        work = np.array([sum(end.iterations for end in row) for row in self._ends], dtype=float)
         work *= [self._landscape.size(start) for start in self._offers]
-        good = np.isfinite(costs) & self._landscape.good(costs, best[:, None])
         half = len(good) // 2
         few = _cover(good[:half], work, most, served)
         kept = good[half:][:, few].any(axis=1)

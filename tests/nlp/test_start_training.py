@@ -22,7 +22,8 @@ from evodesign.records import Status
 
 FIXED = ({"robot.joints": [0.0]}, {"robot.joints": [0.5]})
 WELLS = (-2.0, -0.5, 1.0, 2.5)
-TRAINING = Training(designs=12, starts=12, candidates=4, portfolio=6, rounds=2)
+UNIVERSAL = tuple({"robot.joints": [place]} for place in np.arange(-2.8, 3.0, 0.4))
+TRAINING = Training(designs=12, begun=12, portfolio=6)
 
 
 def best(design: float) -> float:
@@ -42,7 +43,7 @@ def landscape(limit: float = 3.0, least: float = -3.0) -> Landscape:
     bound = ConstraintBlock("bound", x, least, 9.0)
     program = Program("wells", (joints,), (bound,), cost, {"design": design})
     solver = Solver(program, SolverOptions())
-    return Landscape(solver, {}, FIXED, 0.01, 1e-6)
+    return Landscape(solver, {}, FIXED, 0.01, 1e-6, universal=UNIVERSAL)
 
 
 def designs(count: int = 200) -> Iterator[tuple[float, ...]]:
@@ -74,10 +75,10 @@ def test_a_small_portfolio_tells_what_it_misses() -> None:
     assert found.coverage.share == found.coverage.good / found.coverage.designs
 
 
-class LeavingSolver:
-    """Random starts lead to 2.0, where the cost is least; all others, 2.0 itself among them, lead to 1.0."""
+class SolverOfOne:
+    """All starts lead to the same optimum, in as many iterations as they say."""
 
-    program = SimpleNamespace(variables=landscape().solver.program.variables)
+    program = landscape().solver.program
 
     def settled(self, parameters: dict, raw: SimpleNamespace, gain: float = 0.0) -> SimpleNamespace:
         """No rows are switched off."""
@@ -86,19 +87,9 @@ class LeavingSolver:
     bettered = settled
 
     def solve(self, parameters: dict, start: dict) -> SimpleNamespace:
-        (begun,) = start["robot.joints"]
-        found = 1.0 if begun in {0.0, 0.5, 1.0, 2.0} else 2.0
-        return SimpleNamespace(
-            status=Status.SOLVED, cost=3.0 - found, values={"robot.joints": np.array([found])}
-        )
-
-
-def test_an_optimum_that_the_solver_leaves_is_found_again_from_where_it_was_found() -> None:
-    leaving = replace(landscape(), solver=LeavingSolver())
-    found = start_portfolio(leaving, designs(), TRAINING)
-    (start,) = found.starts
-    assert start["robot.joints"][0] not in {1.0, 2.0}
-    assert found.coverage.share == 1.0
+        """The same optimum from everywhere."""
+        (work,) = start["robot.joints"]
+        return SimpleNamespace(status=Status.SOLVED, cost=1.0, iterations=work, values=start)
 
 
 def test_the_same_landscape_gets_the_same_seeds() -> None:
@@ -109,9 +100,7 @@ def test_the_same_landscape_gets_the_same_seeds() -> None:
 
 
 def test_a_landscape_without_optima_has_no_seeds() -> None:
-    found = start_portfolio(
-        landscape(limit=1.0, least=2.5), designs(), replace(TRAINING, designs=2, starts=2)
-    )
+    found = start_portfolio(landscape(limit=1.0, least=2.5), designs(), replace(TRAINING, designs=2))
     assert found.starts == ()
     assert found.coverage.designs == 0
 
@@ -188,51 +177,10 @@ def test_nothing_is_chosen_where_nothing_is_offered_or_no_design_is_held() -> No
     assert nowhere.coverage.designs == 0
 
 
-class CountedSolver(LeavingSolver):
-    """As many iterations as a start says."""
-
-    def solve(self, parameters: dict, start: dict) -> SimpleNamespace:
-        """The same optimum from everywhere."""
-        (work,) = start["robot.joints"]
-        return SimpleNamespace(status=Status.SOLVED, cost=1.0, iterations=work, values=start)
-
-
 def test_of_starts_that_serve_as_many_the_one_with_the_least_work_is_chosen() -> None:
-    counted = CountedSolver()
-    counted.program = landscape().solver.program
     offers = [{"robot.joints": [work]} for work in (30, 20, 40)]
-    found = chosen(replace(landscape(), solver=counted), offers, list(designs(6)), most=3)
+    found = chosen(replace(landscape(), solver=SolverOfOne()), offers, list(designs(6)), most=3)
     assert [start["robot.joints"] for start in found.starts] == [[20]]
-
-
-def test_starts_whose_solves_evaluations_give_up_are_not_chosen() -> None:
-    """A start leads to the deepest well in as many iterations as evaluations wait for, or elsewhere."""
-
-    class Given(CountedSolver):
-        """Fails after so many iterations as the options have."""
-
-        options = SolverOptions()
-
-        def solve(self, parameters: dict, start: dict) -> SimpleNamespace:
-            """From 20 to a poorer optimum, from 90 to the best one."""
-            (work,) = start["robot.joints"]
-            solved = work <= self.options.iterations
-            status = Status.SOLVED if solved else Status.ITERATION_LIMIT
-            return SimpleNamespace(status=status, cost=2.0 - work / 90.0, iterations=work, values=start)
-
-        @property
-        def brief(self) -> Given:
-            """Given up after 60."""
-            other = Given()
-            other.program, other.options = self.program, SolverOptions(iterations=60)
-            return other
-
-    given = Given()
-    given.program = landscape().solver.program
-    offers = [{"robot.joints": [work]} for work in (20, 90)]
-    for roughly, one in ((False, 90), (True, 20)):
-        found = chosen(replace(landscape(), solver=given), offers, list(designs(6)), most=1, roughly=roughly)
-        assert [start["robot.joints"] for start in found.starts] == [[one]]
 
 
 def test_a_solution_that_is_not_accepted_counts_as_none() -> None:
@@ -245,26 +193,16 @@ def test_a_solution_that_is_not_accepted_counts_as_none() -> None:
     assert {well_of(start) for start in found.starts} == {1.0, 2.5}
 
 
-def two_parties() -> Landscape:
-    """Two unknowns, each with a good well near one fixed start only, and a poor one near the other."""
-    design = ca.SX.sym("design")
-    names = ("robot.joints", "human.joints")
-    both = [replace(Variable.column(name, [-2.0], [2.0], [0.0], 1.0), drawn=True) for name in names]
-    one, other = (variable.value[0] for variable in both)
-
-    def wells(x: ca.SX, deep: float) -> ca.SX:
-        return -sum(depth * ca.exp(-40.0 * (x - well) ** 2) for well, depth in ((deep, 1.0), (-deep, 0.5)))
-
-    cost = wells(one, 1.0) + wells(other, -1.0) + 0.01 * design * (one + other)
-    program = Program("two", tuple(both), (), cost, {"design": design})
-    starts = tuple({name: [place] for name in names} for place in (1.0, -1.0))
-    return Landscape(Solver(program, SolverOptions()), {}, starts, 0.01, 1e-6)
+def test_optima_are_offered_until_every_design_is_served() -> None:
+    """One universal start leads to one well; others are found from starts of similar landscapes alone."""
+    one = replace(landscape(), universal=({"robot.joints": [-2.0]},))
+    assert {well_of(start) for start in start_portfolio(one, designs(), TRAINING).starts} == {-2.0}
+    similar = [{"robot.joints": [well + 0.02]} for well in (-0.5, 1.0, 2.5)]
+    found = start_portfolio(one, designs(), TRAINING, similar)
+    assert {well_of(start) for start in found.starts} == set(WELLS)
 
 
-@pytest.mark.parametrize("party", [(), ("human.joints",)])
-def test_one_party_of_an_optimum_is_tried_beside_the_other_of_another(party: tuple[str, ...]) -> None:
-    """From both fixed starts one of two is in a poor well; together they have a good one each."""
-    training = Training(designs=8, starts=0, crossed=4, candidates=4, portfolio=2, rounds=1)
-    found = start_portfolio(replace(two_parties(), party=party), designs(), training)
-    costs = [two_parties().solve((0.0,), start).cost for start in found.starts]
-    assert (min(costs) < -1.9) is bool(party)
+def test_designs_that_are_not_begun_are_served_as_well() -> None:
+    found = start_portfolio(landscape(), designs(), replace(TRAINING, designs=24, begun=6))
+    assert {well_of(start) for start in found.starts} == set(WELLS)
+    assert found.coverage.designs == 12

@@ -16,7 +16,6 @@ from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, CollisionRules
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.collision.supports import ConvexShape, shapes_of
-from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.posture.allocation import EffortWeights
@@ -29,7 +28,6 @@ from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, r
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute import meetings
 from evodesign.posture.precompute.meetings import _Finder, found_meetings, with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.separating_axes import ways_of
@@ -168,10 +166,7 @@ def setting_of(problem: DesignProblem) -> Setting:
 @pytest.fixture(scope="module")
 def met(apart: DesignProblem) -> dict:
     """Looked for in a third of the usual designs, for time."""
-    with pytest.MonkeyPatch.context() as patch:
-        for number in ("DESIGNS", "AT_REACH"):
-            patch.setattr(meetings, number, getattr(meetings, number) // 3)
-        found = found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)
+    found = found_meetings(setting_of(apart), apart.tasks[:1], symmetric=True)
     return {(name, ""): tuple(pairs) for name, pairs in found.items()}
 
 
@@ -194,23 +189,19 @@ def test_what_meets_at_corners_of_the_space_is_found_too(
 ) -> None:
     """Searches end there, where shoulders come down to the hips above a short trunk."""
 
-    def found(corners: int) -> set[tuple[str, str]]:
-        few = {"DESIGNS": 1, "AT_CORNERS": corners, "AT_REACH": 1, "FEWEST": 0}
-        for name, number in few.items():
-            monkeypatch.setattr(f"evodesign.posture.precompute.meetings.{name}", number)
-        return set(found_meetings(dear, apart.tasks[:1], symmetric=True)["robot"])
-
-    pushes = [Disturbance(name, push=(push, 0.0, 0.0)) for name, push in (("to", 9.0), ("fro", -9.0))]
-    setting = setting_of(apart)
-    dear = replace(setting, scene=replace(setting.scene, disturbances=Disturbances(tuple(pushes))))
-    inside, everywhere = found(0), found(6)
-    assert inside < everywhere
-    finder = _Finder(dear, True, 0, 1)
-    assert len(finder.corners) == 6
+    setting, place = setting_of(apart), "evodesign.posture.precompute.meetings"
+    monkeypatch.setattr(f"{place}.DESIGNS", 6)
+    monkeypatch.setattr(f"{place}.FEWEST", 0)
+    finder = _Finder(setting, True, 0, 1)
+    inside, corners = finder._designs[:6], finder._designs[6:]
+    assert len(corners) == 6
     lowest, highest = (apart.space.values((end,) * len(apart.space.parameters)) for end in (0.0, 1.0))
     ends = zip(apart.space.given(lowest, {}), apart.space.given(highest, {}), strict=True)
-    for values, own in zip(zip(*finder.corners, strict=True), ends, strict=True):
+    for values, own in zip(zip(*corners, strict=True), ends, strict=True):
         assert set(values) <= set(own)
+    everywhere = finder.held(apart.tasks[:1])
+    finder._designs = inside
+    assert finder.held(apart.tasks[:1]) < everywhere
 
 
 def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:

@@ -7,7 +7,7 @@ in which another pair overlaps is refused by the check.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 
@@ -15,6 +15,7 @@ from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.nlp.landscape import spread_designs
+from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies
 from evodesign.posture.design_checkers import can_be_built
@@ -41,7 +42,7 @@ REACH = "reach"
 
 DESIGNS, FEWEST = 8, 4
 """Whose postures are looked at: designs all over the space, with all people and loads together, and at least
-with each."""
+with each; and as many at its corners, where searches end."""
 
 LOOKED_AT = 8
 """How many times as many designs are looked at, at most, as many cannot be built."""
@@ -97,7 +98,7 @@ class _Finder:
             robot=replace(scene.robot, collisions=None),
             human=replace(scene.human, collisions=None),
         )
-        options = replace(setting.options, seldom=True)
+        options = replace(setting.options, compiled=False, method=MethodName.IPOPT)  # compiling takes longer
         self.scene, self._free = scene, free
         self.forms = symmetric_forms(free) if symmetric else (whole(free.robot), whole(free.human))
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
@@ -105,12 +106,15 @@ class _Finder:
         space = setting.space
         built = can_be_built(scene.robot, space)
 
-        def given(genome: tuple[float, ...]) -> tuple[float, ...]:
-            return space.given(space.values(genome), {})
+        def own(of: Callable[[float], float]) -> list[_Values]:
+            def given(point: tuple[float, ...]) -> _Values:
+                return space.given(space.values(tuple(map(of, point))), {})
 
-        count = max(DESIGNS, FEWEST * parts)
-        every = spread_designs(len(space.parameters), given, built, LOOKED_AT * count)
-        self._designs = [*islice(every, count)][part::parts]
+            count = max(DESIGNS, FEWEST * parts)
+            every = spread_designs(len(space.parameters), given, built, LOOKED_AT * count)
+            return [*islice(every, count)][part::parts]
+
+        self._designs = [*own(float), *own(lambda place: float(round(place)))]
 
     def held(self, tasks: Sequence[Task]) -> set[_Met]:
         """What is near in postures of the tasks."""
