@@ -1,11 +1,12 @@
 """What does a lift from near the floor ask of the back, beside a lift that was measured?
 
-The man of the measured stoop lifts (1.73 m, 81.68 kg, `evodesign validate`) takes a box of 15 kg from the floor:
-his wrists rise from 0.36 to 0.88 m in 1.5 s. Ours lifts one of 30 kg with a robot, in point grasps, so that each
-carries 15 kg: the palms from 0.30 to 0.80 m in as many seconds. Random designs of icub-lift with long limbs, of
-which as many are taken as were asked for whose reach has both heights. Told are over the designs the largest
-moment of L5/S1 over the time of a lift, the largest that statics give in the same postures, where the palms are
-then, and angles there. Written to benchmarks/results/lift_backs.json and printed.
+The man of the measured stoop lifts (1.73 m, 81.68 kg, `evodesign validate`) takes a box of 15 kg from the
+floor: his wrists rise from 0.36 to 0.88 m in 1.5 s. Ours lifts one of 30 kg with a robot, in point grasps, so
+that each carries 15 kg: the palms from 0.30 to 0.80 m in as many seconds. Random designs of icub-lift with
+long limbs, of which as many are taken as were asked for whose reach has both heights. Told are over the
+designs the largest moment of L5/S1 over the time of a lift, the largest that statics give in the same
+postures, where the palms are then, and angles there. Written to benchmarks/results/lift_backs.json and
+printed.
 
     python -m benchmarks.lift_backs [--designs 20] [--jobs 2]
 """

@@ -1,12 +1,12 @@
 """Do people who stand as measured people do hold loads at every height, and how do they stand?
 
 A woman of 1.52 m and 55 kg and a man of 1.88 m and 90 kg hold a load of 10 or 15 kg together with robots of
-long limbs (lengths drawn uniformly: limbs 1.2 to 1.8, trunk 1.0 to 1.3 times the iCub's), every 0.1 m from 0.3
-to 1.4 m, in point and in rigid grasps, with bodies that are kept apart and with free ones. Nothing else is
-asked of the robot. Told are the holds within the robot's reach: how many were found and passed the check, and
-of those that were not, what 25 random starts of IPOPT on the same program say. Of the people, in degrees: how
-far the trunk (from the hip joints to the shoulders) leans back at most, how far one lumbar joint bends against
-another one, and how far from where the head points the load is. A row of
+long limbs (lengths drawn uniformly: limbs 1.2 to 1.8, trunk 1.0 to 1.3 times the iCub's), every 0.1 m from
+0.3 to 1.4 m, in point and in rigid grasps, with bodies that are kept apart and with free ones. Nothing else
+is asked of the robot. Told are the holds within the robot's reach: how many were found and passed the check,
+and of those that were not, what 25 random starts of IPOPT on the same program say. Of the people, in degrees:
+how far the trunk (from the hip joints to the shoulders) leans back at most, how far one lumbar joint bends
+against another one, and how far from where the head points the load is. A row of
 benchmarks/results/measured_people.json is replaced for each combination that is run.
 
     python -m benchmarks.measured_people [--grasps point rigid] [--masses 10 15] [--bodies apart free]
