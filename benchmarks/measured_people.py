@@ -38,7 +38,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.posture.results import AgentPosture, Array, CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
 from evodesign.problem.factory import evaluator_of
@@ -103,16 +103,17 @@ def long_limbed(problem: DesignProblem) -> Iterator[Design]:
 
 def standing(tree: Tree, posture: AgentPosture, height: float) -> Held:
     """How a person stands whose load's centre is at a height [m]."""
-    root = Placement.from_xyz_rpy(posture.base_position, posture.base_angles)
+    root = Placement.from_xyz_rpy(posture.base_position.tolist(), posture.base_angles.tolist())
     placed = link_frames(tree, root, posture.joints)
 
-    def middle(part: str) -> np.ndarray:
-        return np.mean([placed[f"{side}{part}"].translation for side in ("Left", "Right")], axis=0)
+    def middle(part: str) -> Array:
+        left, right = (np.array(placed[f"{side}{part}"].translation, float) for side in ("Left", "Right"))
+        return np.asarray((left + right) / 2.0)
 
     spine = middle("UpperArm") - middle("UpperLeg")
     head, bends = placed[HEAD], [math.degrees(posture.joints[joint]) for joint in LUMBAR]
     away = np.array([0.0, 0.0, height]) - np.array(head.apply(tree.link_by_name[HEAD].inertia.center))
-    ahead = np.array(head.rotation)[:, 0]
+    ahead: Array = np.array(head.rotation, float)[:, 0]
     return Held(
         math.degrees(math.atan2(spine[0], spine[2])),
         max(0.0, min(max(bends), -min(bends))),
