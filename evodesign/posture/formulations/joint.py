@@ -157,12 +157,16 @@ class JointPostures:
         )
 
     @cached_property
+    def _of_person(self) -> tuple[str, ...]:
+        """Names of the person's variables."""
+        return tuple(layout_of(self._solver.program, HUMAN).values())
+
+    @cached_property
     def person(self) -> frozenset[str]:
         """Names of all that starts say of the person."""
-        program = self._solver.program
-        own = layout_of(program, HUMAN).values()
-        switches = program.switches.names if program.switches is not None else ()
-        return frozenset([*own, *(name for name in switches if name.split(".")[-2] == HUMAN)])
+        switches = self._solver.program.switches
+        names = switches.names if switches is not None else ()
+        return frozenset([*self._of_person, *(name for name in names if name.split(".")[-2] == HUMAN)])
 
     def keeps_clear(self, raw: RawSolution, task: Task, checker: Checker) -> bool:
         """Whether the check finds no bodies that overlap in a solution."""
@@ -171,7 +175,15 @@ class JointPostures:
     def solve(
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
-        """What the portfolio leads to, or the fixed starts if none of it fits."""
+        """What the portfolio leads to, or the fixed starts if none of it fits.
+
+        Beside a robot alone a measured person stands at the mean: in a T-pose the direction of the upper arm
+        has no derivative.
+        """
+        if self._forms[1].agent.measured is not None:
+            mean = self._fixed(task)[0]
+            own = {name: mean[name] for name in self._of_person}
+            portfolio = [{**own, **start} for start in portfolio]
         starts = named_starts(self._solver, portfolio, self._fixed(task))
         return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
