@@ -24,7 +24,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 export OMP_NUM_THREADS = 1
 
-.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot prepared api docs clean
+.PHONY: help install search test test-quick test-all test-bare check bench faults fuzz robot api docs clean
 
 help:  ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## */  make \1\t/p' $(MAKEFILE_LIST) | expand --tabs=20
@@ -105,9 +105,6 @@ fuzz: $(VENV)/installed-dev  ## segments, problems, robots and designs spoilt by
 
 robot: $(VENV)/installed  ## write problems/robots/icub_shapes.urdf from its table
 	$(BIN)/python problems/robots/write_icub.py
-
-prepared: $(VENV)/installed  ## work out what comes along with the default problem
-	$(BIN)/python problems/write_prepared.py
 
 api: $(VENV)/installed  ## write docs/api.md from the docstrings
 	$(BIN)/python -m docs.write_api

@@ -111,11 +111,6 @@ class Landscape:
     accepted: Callable[[Design, RawSolution], bool] | None = None
     universal: tuple[Start, ...] = ()
 
-    @property
-    def briefly(self) -> Landscape:
-        """The same where solves that take long are given up."""
-        return replace(self, solver=self.solver.brief)
-
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
         return self.finished(design, self.rough(design, start))

@@ -23,7 +23,7 @@ from evodesign.nlp.landscape import Costs, Design, End, Searched, cost_of
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 
-__all__ = ["Training", "chosen", "start_portfolio"]
+__all__ = ["USUAL", "Training", "chosen", "start_portfolio"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +45,11 @@ class Training:
     served: float = 1.0
 
 
+USUAL = Training()
+
+
 def start_portfolio(
-    landscape: Searched[End], designs: Iterable[Design], training: Training, similar: Sequence[Start] = ()
+    landscape: Searched[End], designs: Iterable[Design], training: Training = USUAL
 ) -> StartPortfolio:
     """The portfolio of a landscape.
 
@@ -54,14 +57,11 @@ def start_portfolio(
         landscape: whose optima are sought.
         designs: to learn from; the portfolio makes do with those that there are.
         training: how much work to do.
-        similar: starts of similar landscapes, offered as well.
     """
     learned = [*islice(designs, training.designs)]
     work = _Ends(landscape, learned)
     for place in range(min(training.begun, len(learned))):
         work.begun(place)
-    for start in similar:
-        work.offered(start)
     for _ in range(training.offers):
         wanted = work.wanted()
         if wanted is None:

@@ -20,7 +20,6 @@ from evodesign.posture.precompute.plan import (
 )
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.prepared import prepared_pieces
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
 from evodesign.records import Lift, ProblemSource
@@ -81,7 +80,6 @@ def precomputed(
     pool: Pool,
     watcher: PrecomputeProgress,
     after: Sequence[PendingPiece] = (),
-    given: Mapping[Piece, bytes] | None = None,
     lifts: Sequence[Lift] = (),
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
@@ -90,11 +88,10 @@ def precomputed(
 
     Args:
         problem: to be made ready.
-        cache: of pieces worked out before; None to work out everything that is not given.
+        cache: of pieces worked out before; None to work out everything.
         pool: where pieces are worked out.
         watcher: is shown what is worked out.
         after: what the caller will work out next, to be told along with the pieces.
-        given: contents of pieces that need not be worked out; None for those that come with evodesign.
         lifts: of which starts are asked for, beside the problem's own.
     Raises:
         RunError: a piece could not be worked out; it says which and why.
@@ -102,12 +99,11 @@ def precomputed(
     """
     setting, staged = precompute_setting(problem), staged_pieces(problem, lifts)
     mean = all_mean_people(setting)
-    given = prepared_pieces(problem.source) if given is None else given
-    known = _all_of(problem, mean, Precomputed(), staged, cache, pool, watcher, after, given)
+    known = _all_of(problem, mean, Precomputed(), staged, cache, pool, watcher, after)
     if mean == setting:
         return known
     own = [piece for stage in staged for piece in stage if piece.subject is Subject.PERSON]
-    return _all_of(problem, setting, replace(known, values={}), [own], cache, pool, watcher, (), {})
+    return _all_of(problem, setting, replace(known, values={}), [own], cache, pool, watcher, ())
 
 
 def _all_of(
@@ -119,7 +115,6 @@ def _all_of(
     pool: Pool,
     watcher: PrecomputeProgress,
     after: Sequence[PendingPiece],
-    given: Mapping[Piece, bytes],
 ) -> Precomputed:
     """What is known with all of some pieces; stages in turn, other arguments as in `precomputed`.
 
@@ -132,8 +127,6 @@ def _all_of(
     }
 
     def content_of(piece: Piece) -> bytes | None:
-        if piece in given:
-            return given[piece]
         return cache.read(key_of(setting, piece)) if cache else None
 
     absent = [piece for piece in pieces if content_of(piece) is None]

@@ -17,9 +17,7 @@ from benchmarks.inner_problem import (
 )
 from benchmarks.inner_quality import Ends, Judge, Row, judge_of, reach_summary, summary
 from evodesign.posture.postures import Symmetry
-from evodesign.posture.precompute.pieces import with_piece
-from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
-from evodesign.problem.prepared import prepared_pieces
+from evodesign.posture.precompute.precomputed import Precomputed
 
 DESIGNS = 20
 
@@ -45,12 +43,8 @@ def test_reachable_heights_are_solved_and_about_as_good_as_the_best_of_many_star
 
 def test_random_starts_are_solved_with_the_bodies_apart_that_the_problem_keeps_apart() -> None:
     problem = problem_named("problems/icub_lifting.toml")
-    known: Precomputed | None = NOTHING_PRECOMPUTED
-    for piece, content in prepared_pieces(problem.source).items():  # nothing is compiled here
-        assert known is not None
-        known = with_piece(known, piece, content)
-    assert known is not None
-    judge = Judge(problem, known, 1)
+    near = {("robot", ""): (("chest", "l_upper_arm"),), ("human", ""): (("T8", "LeftUpperArm"),)}
+    judge = Judge(problem, Precomputed(meetings=near), 1)
     assert len(judge.scenes) == 2
     for scene in judge.scenes:
         assert all(agent.collisions and agent.collisions.parted for agent in (scene.robot, scene.human))

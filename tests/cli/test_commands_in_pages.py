@@ -42,7 +42,6 @@ NOT_RUN = {
     "make test-quick": "runs tests that `make test-all` runs too",
     "make faults": "takes hours; its campaign is run with few kills in tests/faults/test_faults.py",
     "make fuzz": "takes as long as one likes; its fuzzer is run in tests/fuzz/test_fuzzer.py",
-    "make prepared": "takes minutes; tests/problem/test_prepared.py sees that its files are of the problems",
     "make api": "writes the page that tests/docs/test_api.py compares",
     "make help": "prints the Makefile's own comments",
     "python -m benchmarks": "measures for minutes or hours; its figures are in docs/benchmarks.md",

@@ -19,7 +19,6 @@ from evodesign.posture.precompute.plan import Subject, all_mean_people
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import cached_precomputed, evaluator_of, problem_digest
 from evodesign.problem.precompute import precompute_setting, staged_pieces
-from evodesign.problem.prepared import prepared_digest
 from evodesign.problem.sampled_designs import sampled_beside, sampled_factory
 from evodesign.problem.samples import refuse_unsampled, sampled_source
 from evodesign.problem.source import source_of
@@ -122,10 +121,9 @@ def test_samples_share_programs_and_starts_but_the_persons_own_part() -> None:
     assert program_key("joint", mean.scene.human) == program_key("joint", drawn.scene.human)
 
 
-def test_a_spread_changes_no_evaluation_and_no_prepared_piece() -> None:
+def test_a_spread_changes_no_evaluation() -> None:
     plain, spread, sample = source(), source(spread=10), source(posture_sample=3)
     assert problem_digest(plain) == problem_digest(spread) != problem_digest(sample)
-    assert prepared_digest(plain) == prepared_digest(spread) == prepared_digest(sample)
 
 
 def test_the_persons_own_part_is_that_of_the_sample(pool: Pool) -> None:

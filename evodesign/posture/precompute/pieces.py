@@ -17,8 +17,9 @@ from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.program import Start
+from evodesign.nlp.solver import BRIEF
 from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.nlp.start_training import Training, chosen, start_portfolio
+from evodesign.nlp.start_training import chosen, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
@@ -39,11 +40,8 @@ from evodesign.records import Case, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
-TRAINING = Training()
-CHOSEN, MOST_CHOSEN = 24, 8
-
-ITERATIONS = 80
-"""Limit of a training solve; those that succeed mostly take 15 to 40."""
+CHOOSING, MOST_CHOSEN = 24, 8
+"""Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
 LOOKED_AT = 12
 """Designs looked at for each one that training asks for, where only some hold the load at a height."""
@@ -149,7 +147,7 @@ def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None
 
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
-    options = replace(setting.options, iterations=min(ITERATIONS, setting.options.iterations))
+    options = replace(setting.options, iterations=min(BRIEF, setting.options.iterations))
     own = Setting(scene, space, setting.weights, options)
     beside = replace(known, highest=NO_STARTS, lowest=NO_STARTS)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=beside)
@@ -166,12 +164,12 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})
 
-    looked_at = LOOKED_AT * TRAINING.designs
+    looked_at = LOOKED_AT * CHOOSING
     designs = spread_designs(len(space.parameters), given, wanted, looked_at)
     if task is not None and piece.subject is Subject.CHOSEN:
         offers = _offers(setting, piece.pair, task, known)
-        return chosen(landscape, offers, [*islice(designs, CHOSEN)], MOST_CHOSEN)
-    return start_portfolio(landscape, designs, TRAINING)
+        return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
+    return start_portfolio(landscape, designs)
 
 
 def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:

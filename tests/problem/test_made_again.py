@@ -1,0 +1,69 @@
+"""What a change of a problem has made ready again: docs/model.md has the table of these keys."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from evodesign.posture.precompute.keys import key_of
+from evodesign.problem.build import build_problem
+from evodesign.problem.precompute import precompute_setting, staged_pieces
+from evodesign.problem.source import read_source
+from evodesign.records import ProblemSource
+
+
+@pytest.fixture(scope="module")
+def source(repository: Path) -> ProblemSource:
+    return read_source(repository / "problems" / "icub_lifting.toml")
+
+
+def keys_of(source: ProblemSource, *changes: tuple[str, str]) -> set[str]:
+    """Under which what is made ready of a problem lies in the cache."""
+    text = source.text
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    problem = build_problem(msgspec.structs.replace(source, text=text))
+    setting = precompute_setting(problem)
+    return {key_of(setting, piece) for stage in staged_pieces(problem) for piece in stage}
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("seed = 1", "seed = 2"),
+        ("evaluations = 240", "evaluations = 960"),
+        ('name = "icub-lifting"', 'name = "mine"'),
+        ('maximise = ["shared_reach_height"]', 'maximise = ["reach_height"]'),
+        ("mass_kg = { lower = 25.0, upper = 65.0 }", "mass_kg = { upper = 60.0 }"),
+    ],
+)
+def test_nothing_is_made_again(source: ProblemSource, old: str, new: str) -> None:
+    assert keys_of(source, (old, new)) <= keys_of(source)
+
+
+EVERYTHING = [
+    ("mass_kg = 15.0", "mass_kg = 14.0"),
+    ("heights_m = [0.8, 1.0, 1.2]", "heights_m = [0.8, 1.0, 1.1]"),
+    ("percentiles = [5]", "percentiles = [50]"),
+    ("push_n = [-20.0, 0.0, 0.0]", "push_n = [-10.0, 0.0, 0.0]"),
+    ("lower = 0.6\nupper = 1.8", "lower = 0.7\nupper = 1.8"),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), EVERYTHING)
+def test_everything_is_made_again_where_bodies_are_kept_apart(
+    source: ProblemSource, old: str, new: str
+) -> None:
+    """What comes near whom follows from all of it, and everything else from that."""
+    assert not keys_of(source, (old, new)) & keys_of(source)
+
+
+def test_heights_that_stay_are_kept_where_bodies_may_pass_through_each_other(source: ProblemSource) -> None:
+    free = ("[collisions]", "# no [collisions]")
+    before = keys_of(source, free)
+    again = keys_of(source, free, ("heights_m = [0.8, 1.0, 1.2]", "heights_m = [0.8, 1.0, 1.1]"))
+    choices_and_new_starts = 2 * 3 + 2
+    assert len(again - before) <= choices_and_new_starts < len(again)
