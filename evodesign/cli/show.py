@@ -64,7 +64,7 @@ def show(
         from evodesign.cli.tables.card import card
 
         console().print(card(opened, _ergonomics(opened), _bill(opened)))
-        show_notes(overlaps(_distances(opened).items()))
+        show_notes([*overlaps(_distances(opened).items()), *_assumed(opened)])
     damage.end(logged, accepted=damaged)
 
 
@@ -77,6 +77,16 @@ def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
     except InputError as error:
         show_notes([f"what the postures ask of the person is left out ({error})"])
         return ()
+
+
+def _assumed(opened: OpenedDesign) -> tuple[str, ...]:
+    """Heights at which postures of people rest on an assumption; none if the problem cannot be built here."""
+    from evodesign.problem.notes import assumed_heights
+
+    try:
+        return tuple(assumed_heights(opened.rebuilt.problem))
+    except InputError:
+        return ()  # said beside the other parts
 
 
 def _bill(opened: OpenedDesign) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +13,10 @@ from evodesign.errors import InputError
 from evodesign.files import make_folder
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from evodesign.human.anthropometry import Person
+    from evodesign.validation.compare import ComparedCase
     from evodesign.validation.measured import MeasuredCase
 
 __all__ = ["validate"]
@@ -23,7 +27,7 @@ def validate(
         Path | None,
         typer.Argument(
             metavar="FILE",
-            help="A CSV file of your own: places of joints and forces, as docs/trust.md describes.",
+            help="A file of your own: a c3d, or a CSV of joint places and forces as docs/trust.md describes.",
             show_default="the lifts that come with evodesign",
         ),
     ] = None,
@@ -36,6 +40,14 @@ def validate(
     sex: Annotated[
         str | None,
         typer.Option(metavar="SEX", help="Of the person in FILE: male or female.", show_default="none"),
+    ] = None,
+    points: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="TOML",
+            help="Which points of a c3d FILE are which joints, and its axes: docs/trust.md.",
+            show_default="common names",
+        ),
     ] = None,
     fit: Annotated[
         bool, typer.Option("--fit", help="Also print the person of FILE as a table for a problem file.")
@@ -54,7 +66,7 @@ def validate(
     from evodesign.cli.progress import counted
     from evodesign.validation.compare import compare
 
-    cases = _cases(file, stature, mass, sex)
+    cases = _cases(file, stature, mass, sex, points)
     if fit and (file is None or json):
         raise InputError("--fit", "", "a FILE, without --json", "no FILE" if file is None else "--json")
     if plot is not None:
@@ -78,17 +90,24 @@ def validate(
     for table in validation_tables(compared, holds):
         console().print(table)
     if fit:
-        from evodesign.validation.fit import fit as fitted
-        from evodesign.validation.fit import fit_lines
-
-        person = cases[0].person
-        print_lines(*fit_lines(person, fitted(person, compared)))
+        print_lines(*_fitted(compared))
     if file is None:
         print_lines("Each man of the box lift is predicted without his own data: docs/trust.md.")
 
 
+def _fitted(compared: Sequence[ComparedCase]) -> list[str]:
+    """The person of a recording as a table, with how far figures agree before and after."""
+    from evodesign.validation.compare import compare
+    from evodesign.validation.fit import fit, fit_lines, fitted_person
+
+    person = compared[0].case.person
+    found = fit(person, compared)
+    cases = [replace(each.case, person=fitted_person(person, found)) for each in compared]
+    return fit_lines(person, found, compared, compare(cases))
+
+
 def _cases(
-    file: Path | None, stature: float | None, mass: float | None, sex: str | None
+    file: Path | None, stature: float | None, mass: float | None, sex: str | None, points: Path | None
 ) -> tuple[MeasuredCase, ...]:
     """The shipped cases, or those of a file.
 
@@ -101,10 +120,19 @@ def _cases(
         for option, given in (("--stature", stature), ("--mass", mass), ("--sex", sex)):
             if given is not None:
                 raise InputError(option, "", "a FILE, whose person it describes", "none")
+        if points is not None:
+            raise InputError("--points", "", "a c3d FILE, whose points it names", "none")
         return shipped_cases()
+    from evodesign.validation.c3d import is_c3d, read_c3d
+    from evodesign.validation.c3d_points import PointsFile, read_points
     from evodesign.validation.recording import read_recording
 
     person = _person(stature, mass, sex)
+    if is_c3d(file):
+        named = PointsFile() if points is None else read_points(points)
+        return tuple(cases_of(file.stem, person, read_c3d(file, person, named, str(points))))
+    if points is not None:
+        raise InputError("--points", "", "a c3d FILE, whose points it names", f"'{file}'")
     return tuple(cases_of(file.stem, person, read_recording(file, person)))
 
 

@@ -15,7 +15,7 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
 from evodesign.tree.model import Joint
 
-__all__ = ["notes"]
+__all__ = ["assumed_heights", "notes"]
 
 ALIKE = math.radians(15.0)
 """Joint limits closer than this count as the same; they fit better if they are closer by this much."""
@@ -46,11 +46,11 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     wrong = (sentence for sentence in found if sentence)
     agents = (problem.scene.robot, *(scene.human for scene in problem.scenes))
     still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
-    left, assumed = left_out(problem.source), _assumed(problem)
+    left, assumed = left_out(problem.source), assumed_heights(problem)
     return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *assumed, *left)))
 
 
-def _assumed(problem: DesignProblem) -> Iterator[str]:
+def assumed_heights(problem: DesignProblem) -> Iterator[str]:
     """A sentence for each person and hold whose measured posture rests on an assumption."""
     low, high = unmeasured_heights()
     for scene in problem.scenes:

@@ -15,13 +15,14 @@ from dataclasses import dataclass, replace
 from statistics import fmean, median
 
 from evodesign.human.anthropometry import Person
-from evodesign.human.measured_posture import FEATURES, measured_posture
+from evodesign.human.measured_posture import FEATURES, HumanPosture, measured_posture
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.validation.agreement import WAYS, Agreement, agreements
 from evodesign.validation.compare import ComparedCase, palms_of
 from evodesign.validation.measured import HOLDING, Frame
 from evodesign.validation.posed import OF_LEGS, PosedPerson
 
-__all__ = ["Fit", "fit", "fit_lines"]
+__all__ = ["Fit", "fit", "fit_lines", "fitted_person"]
 
 LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
 BESIDE_MEAN = ("trunk_low", "trunk_up", "knee", "shank", "arm", "elbow")
@@ -89,9 +90,24 @@ def _offsets(person: PosedPerson, held: Iterable[Frame]) -> Mapping[str, float]:
     return {name: fmean(values) for name, values in found.items()}
 
 
-def fit_lines(person: Person, found: Fit) -> list[str]:
-    """The person's table of a problem file, with what has no key as remarks."""
-    stature, mass = found.stature or person.stature, found.mass or person.mass
+def fitted_person(person: Person, found: Fit) -> Person:
+    """The person with the stature and the mass that were measured."""
+    return replace(person, stature=found.stature or person.stature, mass=found.mass or person.mass)
+
+
+def fit_lines(
+    person: Person, found: Fit, before: Sequence[ComparedCase], after: Sequence[ComparedCase]
+) -> list[str]:
+    """The person's table of a problem file, with what has no key as remarks.
+
+    Args:
+        person: as it was described.
+        found: its figures.
+        before: cases of the recording beside the person as it was described.
+        after: the same beside the fitted one.
+    """
+    fitted = fitted_person(person, found)
+    stature, mass = fitted.stature, fitted.mass
     lines = [
         "[human]",
         f"stature_m = {stature:.3f}" + ("" if found.stature else "  # as given: no knees and ankles"),
@@ -104,4 +120,16 @@ def fit_lines(person: Person, found: Fit) -> list[str]:
     if found.offsets:
         words = ", ".join(f"{name} {value:+.0f}" for name, value in found.offsets.items())
         lines.append(f"# beside the mean of measured people [degrees]: {words}")
+    for old, new in zip(agreements(before), agreements(after), strict=True):
+        for way, given, now in zip(WAYS, old.by_way, new.by_way, strict=True):
+            if given is not None and now is not None and way is not HumanPosture.LEAST_TORQUE:
+                what = f"{old.quantity}, {'predicted' if way else 'statics'}"
+                lines.append(
+                    f"# {what}: {_words(given, old.unit)} as described, {_words(now, old.unit)} fitted"
+                )
     return lines
+
+
+def _words(found: Agreement, unit: str) -> str:
+    slope = "" if found.slope is None else f"slope {found.slope:.2f}, "
+    return f"{slope}{found.off:.0f} {unit} rms"

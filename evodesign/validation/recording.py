@@ -11,9 +11,9 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.human.anthropometry import Person
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.validation.measured import Frame, Plate
-from evodesign.validation.posed import LINK_OF
+from evodesign.validation.posed import LINK_OF, Places
 
-__all__ = ["NEEDED", "read_frames", "read_recording"]
+__all__ = ["NEEDED", "OF_LEGS", "frame_of", "read_frames", "read_recording", "refuse_far_places"]
 
 NEEDED = ("hip", "shoulder", "elbow", "wrist")
 """Joints whose places a recording must have."""
@@ -74,10 +74,7 @@ def read_frames(text: str, source: str, person: Person) -> dict[str, list[Frame]
         row = dict(zip(header, (cell.strip() for cell in cells), strict=True))
         who = row.pop(RECORDING, "") or "recording"
         frame = _frame(_numbers(row, source, number), person)
-        apart = math.dist(frame.places["hip"], frame.places["shoulder"])
-        if not apart < person.stature:
-            wanted = f"hip and shoulder less than {person.stature:g} m apart, in metres"
-            raise InputError(source, f"line {number}", wanted, f"{apart:g} m")
+        refuse_far_places(frame.places, person, source, f"line {number}")
         found.setdefault(who, []).append(frame)
     return found
 
@@ -118,7 +115,30 @@ def _numbers(row: Mapping[str, str], source: str, line: int) -> dict[str, float]
 
 def _frame(row: Mapping[str, float], person: Person) -> Frame:
     plate = Plate(*(row[name] for name in PLATE)) if PLATE[0] in row else None
-    held = 0.0 if plate is None else plate.up - person.mass * GRAVITY
     places = {name: (row[f"{name}_x_m"], row[f"{name}_z_m"]) for name in LINK_OF if f"{name}_x_m" in row}
-    moments = {"l5s1": row[L5S1]} if L5S1 in row else {}
-    return Frame(max(0.0, row.get(HANDS, held)), HANDS in row, places["wrist"][1], moments, plate, places, {})
+    return frame_of(places, plate, row.get(HANDS), {"l5s1": row[L5S1]} if L5S1 in row else {}, person)
+
+
+def frame_of(
+    places: Places,
+    plate: Plate | None,
+    hand_force: float | None,
+    moments: Mapping[str, float],
+    person: Person,
+) -> Frame:
+    """A frame of places; a plate tells the weight in the hands [N] where none is given."""
+    held = 0.0 if plate is None else plate.up - person.mass * GRAVITY
+    force = max(0.0, held if hand_force is None else hand_force)
+    return Frame(force, hand_force is not None, places["wrist"][1], moments, plate, places, {})
+
+
+def refuse_far_places(places: Places, person: Person, source: str, key: str) -> None:
+    """Refuse places of another unit.
+
+    Raises:
+        InputError: hip and shoulder are farther apart than the person is tall.
+    """
+    apart = math.dist(places["hip"], places["shoulder"])
+    if not apart < person.stature:
+        wanted = f"hip and shoulder less than {person.stature:g} m apart, in metres"
+        raise InputError(source, key, wanted, f"{apart:g} m")

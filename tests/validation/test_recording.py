@@ -187,8 +187,11 @@ def test_a_person_is_fitted_to_a_recording(tmp_path: Path) -> None:
     assert table["stature_m"] == pytest.approx(1.63, abs=0.002)
     assert table["mass_kg"] == pytest.approx(61.2, abs=0.05)
     assert (table["sex"], table["posture"]) == ("female", "measured")
-    remark = done.stdout.splitlines()[-1]
+    (remark,) = (line for line in done.stdout.splitlines() if "trunk_low" in line)
     assert 3 <= int(re.findall(r"trunk_low ([+-]\d+)", remark)[0]) <= 11
+    (angles,) = (line for line in done.stdout.splitlines() if line.startswith("# five angles, predicted"))
+    described, fitted = map(int, re.findall(r"(\d+) degrees rms", angles))
+    assert fitted <= described + 1
     refused = evodesign("validate", "--fit")
     assert (refused.returncode, refused.stderr) == (
         2,

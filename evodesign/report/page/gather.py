@@ -21,6 +21,7 @@ from evodesign.problem.clearance import Clearances
 from evodesign.problem.designs import unscaled_genome
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.left_out import left_out
+from evodesign.problem.notes import assumed_heights
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Detail, Evaluation, Hold, Lift, Task, evenly
@@ -112,6 +113,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
             *run.notes,
             *notes,
             *_unscaled_note(run, problem, marked),
+            *(() if problem is None else assumed_heights(problem)),
             *_thinned_note(run, shown),
             *(() if problem is None else more_notes),
             *(each.sentence for each in frequent_limits(run)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -133,6 +134,17 @@ def test_what_is_left_out_is_said(
     assert any(note.startswith("6 of 12 evaluations") for note in small.notes)
     assert any("postures of" in note for note in small.notes)
     assert small.facts == content.facts, "the run's own figures count everything"
+
+
+def test_heights_at_which_nobody_was_measured_are_said(real_run: RunLog) -> None:
+    header, person = real_run.header, 'posture = "least_torque"'
+    assert person in header.problem.text
+    measured = msgspec.structs.replace(
+        header.problem, text=header.problem.text.replace(person, 'posture = "measured"')
+    )
+    run = replace(real_run, header=msgspec.structs.replace(header, problem=measured))
+    (note,) = (each for each in page_content(run).notes if "nobody was measured" in each)
+    assert note.startswith("human: how measured people stand with the load at 0.8 m is an assumption")
 
 
 def test_marked_designs_stay_then_the_front_then_the_feasible() -> None:
