@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Mapping, Sequence
 from itertools import product
 
@@ -70,7 +69,9 @@ def universal_starts(program: Program, people: Sequence[Start] = ()) -> tuple[St
         else [{joints.name: _inside(joints, share * _middle(joints))} for share in UNIVERSAL]
         for agent, joints in _joints(program)
     ]
-    return tuple({**own, **dict(ChainMap(*map(dict, parts)))} for parts in product(*sides))
+    return tuple(
+        {name: values for part in (own, *parts) for name, values in part.items()} for parts in product(*sides)
+    )
 
 
 def named_starts(

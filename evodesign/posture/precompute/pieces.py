@@ -40,7 +40,7 @@ from evodesign.records import Case, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
-CHOOSING, MOST_CHOSEN = 24, 8
+CHOOSING, MOST_CHOSEN = 48, 8
 """Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
 LOOKED_AT = 12
