@@ -38,8 +38,8 @@ class Training:
         served: share of the designs that any offer serves, for the portfolio to serve.
     """
 
-    designs: int = 32
-    begun: int = 16
+    designs: int = 24
+    begun: int = 12
     offers: int = 16
     portfolio: int = 6
     served: float = 1.0

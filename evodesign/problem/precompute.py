@@ -28,6 +28,7 @@ __all__ = ["COMPILING", "precompute_setting", "precomputed", "staged_pieces"]
 
 WORK: Mapping[Subject, float] = {
     Subject.MEETINGS: 0.3,
+    Subject.DESIGNS: 1.0,
     Subject.HIGHEST: 1.0,
     Subject.LOWEST: 1.0,
     Subject.REACH_PROGRAM: 1.0,

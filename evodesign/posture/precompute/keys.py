@@ -77,6 +77,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.MEETINGS: NO_PART_OF_MEETINGS,
     Subject.PERSON: NO_PART_OF_A_PERSONS,
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
+    Subject.DESIGNS: NO_PART_OF_PIECES,
     Subject.HIGHEST: NO_PART_OF_PIECES,
     Subject.LOWEST: NO_PART_OF_PIECES,
     **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),

@@ -17,7 +17,7 @@ from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import BRIEF
+from evodesign.nlp.solver import BRIEF, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import chosen, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
@@ -34,17 +34,18 @@ from evodesign.posture.precompute.plan import (
     Subject,
     all_undisturbed,
 )
-from evodesign.posture.precompute.precomputed import NO_STARTS, PersonReach, Precomputed
+from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
-CHOOSING, MOST_CHOSEN = 48, 8
+CHOOSING, MOST_CHOSEN = 40, 8
 """Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
-LOOKED_AT = 12
-"""Designs looked at for each one that training asks for, where only some hold the load at a height."""
+LEARNED_FROM, LOOKED_AT = 96, 8
+"""Designs whose reach is asked for, to learn from those that hold a load; and how many times as many are
+looked at, at most, as many cannot be built."""
 
 
 def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
@@ -55,7 +56,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         piece: which one.
         known: what earlier stages gave.
     """
-    found: HumanValue | PersonReach | StartPortfolio | None
+    found: HumanValue | PersonReach | StartPortfolio | list[HeldLoads] | None
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
         own = Setting(scene, setting.space, setting.weights, setting.options)
@@ -72,6 +73,8 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         found = _person(setting, scene, piece.task)
     elif piece.subject is Subject.PERSON_REACH:
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
+    elif piece.subject is Subject.DESIGNS:
+        found = _designs(setting, scene)
     elif piece.subject in PROGRAMS:
         _compile(setting, piece.subject, scene)
         found = None
@@ -80,7 +83,7 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
     return encoded_piece(found)
 
 
-def encoded_piece(content: HumanValue | PersonReach | StartPortfolio | None) -> bytes:
+def encoded_piece(content: HumanValue | PersonReach | StartPortfolio | list[HeldLoads] | None) -> bytes:
     """A piece's content, as it is kept."""
     return msgspec.json.encode(content, enc_hook=np.ndarray.tolist)
 
@@ -99,6 +102,8 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
             reach = msgspec.json.decode(content, type=PersonReach | None)
             reaches = {**known.person_reaches, **({piece.pair: reach} if reach else {})}
             return replace(known, person_reaches=reaches)
+        if piece.subject is Subject.DESIGNS:
+            return replace(known, designs=msgspec.json.decode(content, type=tuple[HeldLoads, ...]))
         if piece.subject in PROGRAMS:
             msgspec.json.decode(content, type=None)
             return known
@@ -145,30 +150,41 @@ def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None
         _ = problem.landscape(task).solver.parted
 
 
+def _designs(setting: PrecomputeSetting, scene: Scene) -> list[HeldLoads]:
+    """Quasi-random designs that can be built and hold the load somewhere."""
+    space, built = setting.space, can_be_built(scene.robot, setting.space)
+    own = Setting(scene, space, setting.weights, _briefly(setting))
+    reach = ReachProblem(own, symmetric=setting.symmetric)
+    every = spread_designs(
+        len(space.parameters),
+        lambda genome: space.given(space.values(genome), {}),
+        built,
+        LOOKED_AT * LEARNED_FROM,
+    )
+    found = [(design, reach.solve(design)) for design in islice(every, LEARNED_FROM)]
+    return [
+        (design, held.lowest, held.highest)
+        for design, held in found
+        if held.lowest is not None and held.highest is not None
+    ]
+
+
+def _briefly(setting: PrecomputeSetting) -> SolverOptions:
+    """With the limit of a solve beside others."""
+    return replace(setting.options, iterations=min(BRIEF, setting.options.iterations))
+
+
 def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
-    options = replace(setting.options, iterations=min(BRIEF, setting.options.iterations))
-    own = Setting(scene, space, setting.weights, options)
-    beside = replace(known, highest=NO_STARTS, lowest=NO_STARTS)
-    reach = ReachProblem(own, symmetric=setting.symmetric, known=beside)
+    own, designs = Setting(scene, space, setting.weights, _briefly(setting)), known.designs_for(task)
     if task is None:
-        landscape = reach.landscape(HIGHEST if piece.subject is Subject.HIGHEST else LOWEST)
-    else:
-        checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
-        landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
-    built = can_be_built(scene.robot, space)
-
-    def wanted(design: tuple[float, ...]) -> bool:
-        return built(design) and (task is None or reach.solve(design).beyond(task.heights) == 0.0)
-
-    def given(genome: tuple[float, ...]) -> tuple[float, ...]:
-        return space.given(space.values(genome), {})
-
-    looked_at = LOOKED_AT * CHOOSING
-    designs = spread_designs(len(space.parameters), given, wanted, looked_at)
-    if task is not None and piece.subject is Subject.CHOSEN:
+        sense = HIGHEST if piece.subject is Subject.HIGHEST else LOWEST
+        return start_portfolio(ReachProblem(own, symmetric=setting.symmetric).landscape(sense), designs)
+    checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
+    landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
+    if piece.subject is Subject.CHOSEN:
         offers = _offers(setting, piece.pair, task, known)
-        return chosen(landscape, offers, [*islice(designs, CHOOSING)], MOST_CHOSEN)
+        return chosen(landscape, offers, designs[:CHOOSING], MOST_CHOSEN)
     return start_portfolio(landscape, designs)
 
 

@@ -34,6 +34,7 @@ class Subject(StrEnum):
     MEETINGS = "bodies that come near each other"
     PERSON = "the person's part"
     PERSON_REACH = "the person's reach"
+    DESIGNS = "designs to learn from"
     HIGHEST = "starts of the highest load"
     LOWEST = "starts of the lowest load"
     REACH_PROGRAM = "the program of reach"
@@ -147,7 +148,8 @@ def stages(
     longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
     starts = [Piece(Subject.POSTURE, pair, task) for task in longest for pair in own]
     extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
-    found = [meetings, [*_programs(setting), *extremes, *starts, *people]]
+    designs = Piece(Subject.DESIGNS, middle)
+    found = [meetings, [*_programs(setting), *people, designs], [*extremes, *starts]]
     if setting.symmetric and (parting or setting.middle.disturbances):
         found.append(
             [Piece(Subject.CHOSEN, scene.pair, task) for task in longest for scene in setting.scenes]

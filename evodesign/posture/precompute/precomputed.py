@@ -13,16 +13,20 @@ import msgspec
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import Scene
+from evodesign.nlp.landscape import Design
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.formulations.human_value import HumanValue
 from evodesign.records import Case, Lift, Task
 
-__all__ = ["NOTHING_PRECOMPUTED", "NO_STARTS", "PersonReach", "Precomputed"]
+__all__ = ["NOTHING_PRECOMPUTED", "NO_STARTS", "HeldLoads", "PersonReach", "Precomputed"]
 
 NO_STARTS = StartPortfolio((), Coverage(0, 0, 0.0))
 """A portfolio of none: solves begin at the fixed starts."""
 
+
+HeldLoads = tuple[Design, float, float]
+"""What programs are given of a design, and the lowest and the highest load that it holds [m]."""
 
 IN_FILES = {"lowest": "lowest_m", "highest": "highest_m"}
 """Names of fields with their units, as a person's reach is kept."""
@@ -48,6 +52,7 @@ class Precomputed:
 
     Args:
         values: the people's value functions, for the cases that have one.
+        designs: from which starts are learned, with the lowest and highest load that each holds [m].
         highest, lowest: starts of the reach problem.
         postures: starts of the posture problem, by the case that they were found in.
         chosen: those of them all that serve a case, where they were chosen.
@@ -57,6 +62,7 @@ class Precomputed:
     """
 
     values: Mapping[Case, HumanValue] = field(default_factory=dict)
+    designs: tuple[HeldLoads, ...] = ()
     highest: StartPortfolio = NO_STARTS
     lowest: StartPortfolio = NO_STARTS
     postures: Mapping[Case, StartPortfolio] = field(default_factory=dict)
@@ -78,6 +84,11 @@ class Precomputed:
         return tuple(
             start for other, found in self.postures.items() if other.task == task for start in found.starts
         )
+
+    def designs_for(self, task: Task | None) -> list[Design]:
+        """The designs to learn from that hold a load at all heights of a task; all of them without one."""
+        heights = task.heights if task else ()
+        return [d for d, lowest, highest in self.designs if all(lowest <= h <= highest for h in heights)]
 
     def is_chosen(self, pair: tuple[str, str], task: Task) -> bool:
         """Whether the posture problem's starts were chosen for this person, load and task."""
