@@ -194,7 +194,7 @@ def elsewhere(known: Precomputed, tasks: Sequence[Hold]) -> Precomputed:
                 found[Case(person=pair[0], payload=pair[1], task=task)] = by_case[nearest]
         return found
 
-    return replace(known, postures=moved(known.postures), chosen=moved(known.chosen))
+    return replace(known, postures=moved(known.postures))
 
 
 def evaluate(

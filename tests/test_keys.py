@@ -26,7 +26,7 @@ from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import NO_PART_OF, key_of, no_part_of
-from evodesign.posture.precompute.plan import UNDISTURBED, Piece, PrecomputeSetting, Subject
+from evodesign.posture.precompute.plan import Piece, PrecomputeSetting, Subject
 from evodesign.problem.build import build_problem
 from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile
@@ -184,8 +184,8 @@ def test_a_field_that_a_key_ignores_is_found() -> None:
 APART = (Subject.MEETINGS, Subject.POSTURE, Subject.LIFT)
 """One subject of each kind of key where bodies are kept apart."""
 
-FREE = tuple({(id(NO_PART_OF[each]), each in UNDISTURBED): each for each in Subject}.values())
-"""One of each kind elsewhere: of those whose keys leave out the same fields, of the same programs."""
+FREE = tuple({id(NO_PART_OF[each]): each for each in Subject}.values())
+"""One of each kind elsewhere: of those whose keys leave out the same fields."""
 
 
 @pytest.mark.parametrize(
@@ -200,8 +200,6 @@ def test_every_field_of_a_setting_counts_in_the_key_of_its_pieces(problem: str, 
     setting = setting_of(problem)
     scene = setting.middle
     without = no_part_of(setting, Piece(subject, scene.pair))
-    if subject in UNDISTURBED and scene.human.collisions is None:  # worked out where nothing disturbs
-        without = {**without, Scene: {"disturbances": "none"}}
     one = replace(setting, scenes=(scene,))
 
     whole = (one, scene, Piece(subject, scene.pair, Hold(height_m=1.0)))
@@ -229,7 +227,7 @@ def test_a_piece_is_that_of_its_scene_and_of_symmetric_postures_or_not() -> None
     turned, unlike = replace(setting, scenes=setting.scenes[::-1]), replace(setting, symmetry=Symmetry.OFF)
     for subject in Subject:
         key = key_of(setting, Piece(subject, first, task))
-        of_everyone = subject in (Subject.CHOSEN, Subject.MEETINGS, Subject.LIFT)
+        of_everyone = subject in (Subject.MEETINGS, Subject.LIFT)
         assert (key == key_of(turned, Piece(subject, first, task))) is not of_everyone
         assert key != key_of(setting, Piece(subject, last, task))
         assert key != key_of(unlike, Piece(subject, first, task))

@@ -23,7 +23,7 @@ from evodesign.nlp.landscape import Costs, Design, End, Searched, cost_of
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 
-__all__ = ["USUAL", "Training", "chosen", "start_portfolio"]
+__all__ = ["USUAL", "Training", "start_portfolio"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +35,12 @@ class Training:
         begun: how many of them are solved from the universal starts.
         offers: optima that are offered at most.
         portfolio: the most starts that a portfolio holds.
-        served: share of the designs that any offer serves, for the portfolio to serve.
     """
 
     designs: int = 24
     begun: int = 12
     offers: int = 16
     portfolio: int = 6
-    served: float = 1.0
 
 
 USUAL = Training()
@@ -67,29 +65,7 @@ def start_portfolio(
         if wanted is None:
             break
         work.offered(wanted)
-    return work.portfolio(training.portfolio, training.served)
-
-
-def chosen(
-    landscape: Searched[End],
-    offers: Sequence[Start],
-    designs: Sequence[Design],
-    most: int,
-    served: float = 1.0,
-) -> StartPortfolio:
-    """Those of some starts that serve designs as well as all of them do, with little work.
-
-    Args:
-        landscape: in which they are to serve.
-        offers: starts of this landscape and of similar ones.
-        designs: to choose and examine with.
-        most: starts that the portfolio may hold.
-        served: share of the designs that all of them serve, for the portfolio to serve.
-    """
-    work = _Ends(landscape, designs)
-    for start in offers:
-        work.offered(start)
-    return work.portfolio(most, served)
+    return work.portfolio(training.portfolio)
 
 
 class _Ends(Generic[End]):
@@ -154,7 +130,7 @@ class _Ends(Generic[End]):
         good[held] = np.isfinite(costs[held]) & self._landscape.good(costs[held], best[held, None])
         return good
 
-    def portfolio(self, most: int, served: float) -> StartPortfolio:
+    def portfolio(self, most: int) -> StartPortfolio:
         """The offers that are chosen; how well they do is told of a choice made with half of the designs."""
         best = np.array([self._cost(place) for place in range(len(self._designs))])
         held = np.isfinite(best)
@@ -162,26 +138,25 @@ class _Ends(Generic[End]):
         work = np.array([sum(end.iterations for end in row) for row in self._ends], dtype=float)
         work *= [self._landscape.size(start) for start in self._offers]
         half = len(good) // 2
-        few = _cover(good[:half], work, most, served)
+        few = _cover(good[:half], work, most)
         kept = good[half:][:, few].any(axis=1)
         short = costs[half:][:, few].min(axis=1, initial=np.inf) - best[half:]
         worst = float(np.max(short[np.isfinite(short)], initial=0.0))
-        every = _cover(good, work, most, served)
+        every = _cover(good, work, most)
         coverage = Coverage(len(kept), int(kept.sum()), worst)
         return StartPortfolio(tuple(self._offers[place] for place in every), coverage)
 
 
-def _cover(good: NDArray[np.bool_], work: Costs, most: int, served: float) -> list[int]:
+def _cover(good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
     """Starts that together serve the designs that any serves, with little work: those that serve most first.
 
     Args:
         good: whether a start (column) serves a design (row).
         work: of each start.
         most: starts at most.
-        served: share of these designs that are to be served.
     """
     found: list[int] = []
-    wanted = served * good.any(axis=1).sum()
+    wanted = good.any(axis=1).sum()
     while len(found) < most and good[:, found].any(axis=1).sum() < wanted:
         new = good[~good[:, found].any(axis=1)].sum(axis=0)
         place = int(np.argmax(new / np.maximum(work, 1.0)))

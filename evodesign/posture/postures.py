@@ -225,13 +225,13 @@ class PostureProblem:
     ) -> Iterator[Trial]:
         """What each formulation leads to, in turn: from its portfolio, and then from what else is known.
 
-        A neighbour's solution counts among those of other tasks where starts were chosen for this very case.
+        A neighbour's solution counts among those of other tasks where starts were learned in this very case.
         Where all starts ended at postures that violate the constraints no more than any near them, no other
         method is asked: IPOPT solves no such height either (docs/benchmarks.md). Nor where bodies overlap
         that no row keeps apart.
         """
         known, pair = self._known, self._setting.scene.pair
-        if neighbour is not None and not neighbour.unchecked and known.is_chosen(pair, task):
+        if neighbour is not None and not neighbour.unchecked and known.is_learned(pair, task):
             others, neighbour = (neighbour, *others), None
         for name, portfolio in self._in_turn(task):
             for method in self._methods(name):

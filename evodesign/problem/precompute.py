@@ -35,7 +35,6 @@ WORK: Mapping[Subject, float] = {
     Subject.UNDISTURBED_PROGRAM: 1.3,
     Subject.PROGRAM: 2.0,
     Subject.POSTURE: 1.7,
-    Subject.CHOSEN: 0.5,
     Subject.PERSON: 0.3,
     Subject.PERSON_REACH: 0.3,
     Subject.LIFT: 2.5,

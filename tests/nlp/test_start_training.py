@@ -14,7 +14,7 @@ from evodesign.nlp.landscape import Landscape, spread_designs
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import Solver, SolverOptions
 from evodesign.nlp.start_portfolio import Coverage
-from evodesign.nlp.start_training import Training, chosen, start_portfolio
+from evodesign.nlp.start_training import Training, _cover, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
@@ -155,32 +155,23 @@ def well_of(start: Start) -> float:
     return min(WELLS, key=lambda well: abs(well - start["robot.joints"][0]))
 
 
-def test_as_few_starts_are_chosen_as_serve_every_design() -> None:
-    offers = [{"robot.joints": [well + shift]} for shift in (0.0, 0.01) for well in (*WELLS, -2.8)]
-    found = chosen(landscape(), offers, list(designs(60)), most=8)
-    assert sorted(map(well_of, found.starts)) == sorted(WELLS)
-    assert found.coverage == Coverage(30, 30, 0.0)
-    few = chosen(landscape(), offers, list(designs(60)), most=2)
-    served = {well_of(start) for start in few.starts}
-    assert len(few.starts) == len(served) == 2
-    assert few.coverage.good < few.coverage.designs
-    assert few.coverage.worst > 0.1
+def test_as_few_starts_are_kept_as_serve_every_design() -> None:
+    found = start_portfolio(landscape(), [(1.0,)] * 4, TRAINING)
     one = min(WELLS, key=lambda well: -np.cos(2.0 * np.pi * (well - 1.0) / 6.0))
-    assert [well_of(start) for start in chosen(landscape(), offers, [(1.0,)] * 4, most=8).starts] == [one]
+    assert [well_of(start) for start in found.starts] == [one]
+    assert found.coverage == Coverage(2, 2, 0.0)
 
 
-def test_nothing_is_chosen_where_nothing_is_offered_or_no_design_is_held() -> None:
-    assert chosen(landscape(), [], list(designs(4)), most=3).starts == ()
-    assert chosen(landscape(), list(FIXED), [], most=3).starts == ()
-    nowhere = chosen(landscape(limit=1.0, least=2.5), list(FIXED), list(designs(4)), most=3)
-    assert nowhere.starts == ()
-    assert nowhere.coverage.designs == 0
+def test_there_are_no_starts_without_designs() -> None:
+    assert start_portfolio(landscape(), [], TRAINING).starts == ()
 
 
-def test_of_starts_that_serve_as_many_the_one_with_the_least_work_is_chosen() -> None:
-    offers = [{"robot.joints": [work]} for work in (30, 20, 40)]
-    found = chosen(replace(landscape(), solver=SolverOfOne()), offers, list(designs(6)), most=3)
-    assert [start["robot.joints"] for start in found.starts] == [[20]]
+def test_of_starts_that_serve_as_many_those_with_the_least_work_are_kept() -> None:
+    """Of three by the work that they are: the first serves all, the others half of them each for less."""
+    good = np.array([[True, True, False], [True, True, False], [True, False, True], [True, False, True]])
+    assert _cover(good, np.array([9.0, 2.0, 2.0]), 6) == [1, 2]
+    assert _cover(good, np.array([3.0, 2.0, 2.0]), 6) == [0]
+    assert _cover(good, np.array([9.0, 2.0, 2.0]), 1) == [1]
 
 
 def test_a_solution_that_is_not_accepted_counts_as_none() -> None:

@@ -217,8 +217,7 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
     for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False):
         for piece in stage:
             same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
-            disturbed = piece.subject in (Subject.PROGRAM, Subject.REACH_PROGRAM, Subject.CHOSEN)
-            assert same is not disturbed, "start portfolios of undisturbed scenes do, but for the choice"
+            assert same is (piece.subject is Subject.UNDISTURBED_PROGRAM)
 
 
 @pytest.mark.needs_compiler

@@ -29,10 +29,9 @@ def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[st
         return
     yield "highest load", known.highest, "m"
     yield "lowest load", known.lowest, "m"
-    of_all = {f"posture at {case.task}": found for case, found in known.postures.items()}
-    own = {_named(f"posture at {case.task}", case): found for case, found in known.chosen.items()}
+    own = {_named(f"posture at {case.task}", case): found for case, found in known.postures.items()}
     lifts = {_named(f"lift from {case.task}", case): found for case, found in known.lifts.items()}
-    for name, found in {**(own or of_all), **lifts}.items():
+    for name, found in {**own, **lifts}.items():
         yield name, found, "100 N^2 m^2"
 
 

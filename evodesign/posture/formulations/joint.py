@@ -5,10 +5,6 @@
 
 for any design (a parameter of one program built once).
 
-A program with disturbances has several times as many unknowns as the one without, and nearly the same
-optima. So where there are many starts, all are solved without disturbances first, and the best few of their
-optima with them.
-
 Source: Sartore et al. 2022, Eq. 14 with pi fixed.
 """
 
@@ -27,11 +23,11 @@ from evodesign.nlp.landscape import NEAR, Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver, SolverCache, after
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.active_limits import LimitSlopes, priced
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
-from evodesign.posture.candidate import DISTINCT, Candidate, Finishing, Trial, cheapest, checked
+from evodesign.posture.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.check import Checker
 from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
@@ -50,18 +46,6 @@ from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Hold, Task, TaskRecord
 
 __all__ = ["JointPostures", "posture_program"]
-
-HOPELESS = 1.1
-"""An optimum is given up that without rows costs so many times what another one costs with bodies parted.
-
-Of 216 holds of 36 designs none had its best posture there.
-"""
-
-MOST_OPTIMA = 3
-"""Undisturbed optima from which disturbed postures are sought (docs/benchmarks.md)."""
-
-FEW = 8
-"""Starts that are solved with disturbances at once."""
 
 
 class JointPostures:
@@ -343,57 +327,14 @@ class JointPostures:
     def _ends(
         self, parameters: Mapping[str, Any], starts: Sequence[tuple[str, Start]]
     ) -> list[tuple[str, RawSolution]]:
-        """Where starts lead to, by way of the best undisturbed optima where there are disturbances.
-
-        What cannot be held without disturbances cannot be held with them. Where bodies are kept apart under
-        several disturbances, solves that take long are given up where others do not.
-        """
-        solver, simple = self._solver, self._undisturbed if len(starts) > FEW else None
-        if simple is not None:
-            begun = simple._solver
-            first = [(name, begun.solve(parameters, start)) for name, start in starts]
-            settled = _settled(begun, parameters, _distinct(first))
-            if not any(raw.status is Status.SOLVED for _, raw in settled):
-                return settled or first
-            ends = [
-                (name, after(raw, solver.solve(parameters, self._begun(begun.needed(raw), parameters))))
-                for name, raw in _distinct(settled)
-            ]
-            if any(raw.status is Status.SOLVED for _, raw in ends):
-                return ends
+        """Where starts lead to."""
         given = [(name, self._begun(start, parameters)) for name, start in starts]
-        raws = solver.solved_each(parameters, [start for _, start in given])
+        raws = self._solver.solved_each(parameters, [start for _, start in given])
         return [(name, raw) for (name, _), raw in zip(given, raws, strict=True)]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:
         """A start in which disturbed load cases begin as the undisturbed one, and s with them."""
         return self._worst.put(filled(start, self._solver.program), parameters)
-
-
-def _settled(
-    solver: Solver, parameters: Mapping[str, Any], optima: Sequence[tuple[str, RawSolution]]
-) -> list[tuple[str, RawSolution]]:
-    """The best few with bodies parted, up to optima that even overlapping cost more than another one."""
-    found: list[tuple[str, RawSolution]] = []
-    costs: list[float] = []
-    for name, raw in optima:
-        if len(costs) == MOST_OPTIMA or raw.cost > HOPELESS * min(costs, default=np.inf):
-            break
-        end = solver.settled(parameters, raw, gain=np.inf)  # kept in better ways where it has won
-        found.append((name, end))
-        if end.status is Status.SOLVED:
-            costs.append(end.cost)
-    return found
-
-
-def _distinct(ends: Sequence[tuple[str, RawSolution]]) -> list[tuple[str, RawSolution]]:
-    """Solves that succeeded, the cheapest first, each optimum once."""
-    found: list[tuple[str, RawSolution]] = []
-    for name, raw in sorted(ends, key=lambda end: end[1].cost):
-        least = found[-1][1].cost * (1.0 + DISTINCT) if found else -np.inf
-        if raw.status is Status.SOLVED and raw.cost > least:
-            found.append((name, raw))
-    return found
 
 
 def posture_program(

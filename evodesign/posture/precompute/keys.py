@@ -9,11 +9,9 @@ from evodesign.mechanics.scene import Agent, Payload, Scene, scene_of
 from evodesign.nlp.solver import SolverOptions
 from evodesign.posture.precompute.plan import (
     PROGRAMS,
-    UNDISTURBED,
     Piece,
     PrecomputeSetting,
     Subject,
-    all_undisturbed,
 )
 
 __all__ = ["key_of", "no_part_of"]
@@ -45,14 +43,6 @@ NO_PART_OF_A_PERSONS: Exceptions = {
     Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
 }
 
-NO_PART_OF_CHOSEN: Exceptions = {
-    **NO_PART_OF_PIECES,
-    PrecomputeSetting: {
-        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name == "symmetry"
-    },
-}
-"""A choice is made of the starts of all scenes at all tasks."""
-
 NO_PART_OF_MEETINGS: Exceptions = {
     **NO_PART_OF_PIECES,
     PrecomputeSetting: {
@@ -82,7 +72,6 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.LOWEST: NO_PART_OF_PIECES,
     **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
     Subject.POSTURE: NO_PART_OF_PIECES,
-    Subject.CHOSEN: NO_PART_OF_CHOSEN,
     Subject.LIFT: NO_PART_OF_PARTED,
 }
 """Fields on which a piece does not depend, by its subject, with the reason."""
@@ -96,8 +85,6 @@ def no_part_of(setting: PrecomputeSetting, piece: Piece) -> Exceptions:
 def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
     """The digest under which a piece is kept: of all that it may follow from, and of the code."""
     without = no_part_of(setting, piece)
-    if piece.subject in UNDISTURBED and not _parted(setting, piece):
-        setting = all_undisturbed(setting)
     data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
     code = code_digest(CODE_OF_LIFTS if piece.subject is Subject.LIFT else CODE)
     return digest((data, code), without=without)

@@ -16,10 +16,9 @@ import numpy as np
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
-from evodesign.nlp.program import Start
 from evodesign.nlp.solver import BRIEF, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.nlp.start_training import chosen, start_portfolio
+from evodesign.nlp.start_training import start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
@@ -28,20 +27,15 @@ from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
     PROGRAMS,
-    UNDISTURBED,
     Piece,
     PrecomputeSetting,
     Subject,
-    all_undisturbed,
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
-
-CHOOSING, MOST_CHOSEN = 40, 8
-"""Designs for which starts of all heights and people are tried, and how many may be chosen for a case."""
 
 LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, to learn from those that hold a load; and how many times as many are
@@ -66,8 +60,6 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
-    if piece.subject in UNDISTURBED:
-        setting = all_undisturbed(setting)
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.PERSON and piece.task is not None:
         found = _person(setting, scene, piece.task)
@@ -115,8 +107,6 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
         own = {Case(person=person, payload=payload, task=piece.task): found}
         if piece.subject is Subject.LIFT:
             return replace(known, lifts={**known.lifts, **own})
-        if piece.subject is Subject.CHOSEN:
-            return replace(known, chosen={**known.chosen, **own})
         return replace(known, postures={**known.postures, **own})
     highest = piece.subject is Subject.HIGHEST
     return replace(known, highest=found) if highest else replace(known, lowest=found)
@@ -182,16 +172,4 @@ def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> 
         return start_portfolio(ReachProblem(own, symmetric=setting.symmetric).landscape(sense), designs)
     checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
     landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
-    if piece.subject is Subject.CHOSEN:
-        offers = _offers(setting, piece.pair, task, known)
-        return chosen(landscape, offers, designs[:CHOOSING], MOST_CHOSEN)
     return start_portfolio(landscape, designs)
-
-
-def _offers(setting: PrecomputeSetting, pair: tuple[str, str], task: Task, known: Precomputed) -> list[Start]:
-    """Starts of a person at every task, or those made in the middle, and those of others at this task."""
-    found = {case: known.postures[case].starts for case in sorted(known.postures, key=lambda each: each.name)}
-    whose = pair if any(case.pair == pair for case in found) else setting.middle.pair
-    return [
-        start for case, starts in found.items() for start in starts if case.task == task or case.pair == whose
-    ]

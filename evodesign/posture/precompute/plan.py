@@ -17,12 +17,10 @@ from evodesign.records import Hold, Lift, Task
 __all__ = [
     "OF_STARTS",
     "PROGRAMS",
-    "UNDISTURBED",
     "Piece",
     "PrecomputeSetting",
     "Subject",
     "all_mean_people",
-    "all_undisturbed",
     "lift_pieces",
     "stages",
 ]
@@ -41,12 +39,8 @@ class Subject(StrEnum):
     UNDISTURBED_PROGRAM = "the program of undisturbed postures"
     PROGRAM = "the program of postures"
     POSTURE = "starts of postures"
-    CHOSEN = "choice of starts"
     LIFT = "starts of lifts"
 
-
-TRAINED = 2
-"""Scenes that portfolios are made in where bodies are kept apart; the others choose of their starts."""
 
 OF_PEOPLE = (
     Subject.PERSON,
@@ -54,7 +48,6 @@ OF_PEOPLE = (
     Subject.UNDISTURBED_PROGRAM,
     Subject.PROGRAM,
     Subject.POSTURE,
-    Subject.CHOSEN,
     Subject.LIFT,
 )
 """Of one person with one load; other pieces serve everyone."""
@@ -62,11 +55,8 @@ OF_PEOPLE = (
 PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
 """Machine code, which is found again in the cache of functions."""
 
-OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.CHOSEN)
+OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE)
 """Portfolios of starts."""
-
-UNDISTURBED = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE, Subject.UNDISTURBED_PROGRAM)
-"""Follow from what is held undisturbed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,18 +132,14 @@ def stages(
     if not portfolios:
         return [meetings, people]
     middle = setting.middle.pair
-    others = [scene.pair for scene in setting.scenes if scene.pair != middle]
-    own = [middle, *(others[: TRAINED - 1] if parting and setting.symmetric else [])]
+    apart = setting.symmetric and (parting or setting.middle.disturbances)
+    own = [scene.pair for scene in setting.scenes] if apart else [middle]
     around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
     longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
     starts = [Piece(Subject.POSTURE, pair, task) for task in longest for pair in own]
     extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
     designs = Piece(Subject.DESIGNS, middle)
     found = [meetings, [*_programs(setting), *people, designs], [*extremes, *starts]]
-    if setting.symmetric and (parting or setting.middle.disturbances):
-        found.append(
-            [Piece(Subject.CHOSEN, scene.pair, task) for task in longest for scene in setting.scenes]
-        )
     return [*found, lift_pieces(setting, lifts)] if lifts else found
 
 
@@ -164,9 +150,12 @@ def lift_pieces(setting: PrecomputeSetting, lifts: Sequence[Lift]) -> list[Piece
 
 
 def _programs(setting: PrecomputeSetting) -> list[Piece]:
-    """What is compiled beforehand, side by side, or one worker would wait for another; longest work last."""
+    """What is compiled beforehand, side by side, or one worker would wait for another; longest work last.
+
+    Actuators are sized about by undisturbed postures.
+    """
     joint = [each for each in setting.scenes if not (setting.symmetric and _push_alone(each, setting.space))]
-    disturbed = [scene for scene in joint if scene.disturbances]
+    disturbed = [scene for scene in joint if scene.disturbances and setting.space.margins]
     return [
         *([Piece(Subject.REACH_PROGRAM, setting.middle.pair)] if joint else []),
         *(Piece(Subject.UNDISTURBED_PROGRAM, scene.pair) for scene in disturbed),
@@ -179,12 +168,6 @@ def _push_alone(scene: Scene, space: DesignSpace) -> bool:
     shared = scene.robot_share is not None or space.allocation_names
     alone = scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0
     return alone and not shared and not scene.disturbances
-
-
-def all_undisturbed(setting: PrecomputeSetting) -> PrecomputeSetting:
-    """Without disturbances: starts are found so, and chosen with them."""
-    scenes = tuple(scene.undisturbed for scene in setting.scenes)
-    return replace(setting, scenes=scenes, middle=setting.middle.undisturbed)
 
 
 def all_mean_people(setting: PrecomputeSetting) -> PrecomputeSetting:

@@ -55,7 +55,6 @@ class Precomputed:
         designs: from which starts are learned, with the lowest and highest load that each holds [m].
         highest, lowest: starts of the reach problem.
         postures: starts of the posture problem, by the case that they were found in.
-        chosen: those of them all that serve a case, where they were chosen.
         person_reaches: the people's own reach, by the names of person and load, where it was asked for.
         meetings: pairs of bodies that come near each other, by agent name and label.
         lifts: starts of lifts, by case.
@@ -66,7 +65,6 @@ class Precomputed:
     highest: StartPortfolio = NO_STARTS
     lowest: StartPortfolio = NO_STARTS
     postures: Mapping[Case, StartPortfolio] = field(default_factory=dict)
-    chosen: Mapping[Case, StartPortfolio] = field(default_factory=dict)
     person_reaches: Mapping[tuple[str, str], PersonReach] = field(default_factory=dict)
     meetings: Mapping[tuple[str, str], tuple[BodyPair, ...]] = field(default_factory=dict)
     lifts: Mapping[Case, StartPortfolio] = field(default_factory=dict)
@@ -78,9 +76,8 @@ class Precomputed:
     def starts(self, pair: tuple[str, str], task: Task) -> tuple[Start, ...]:
         """The posture problem's starts for a person, a load and a task; none where none are known."""
         case = Case(person=pair[0], payload=pair[1], task=task)
-        for own in (self.chosen, self.postures):
-            if case in own:
-                return own[case].starts
+        if case in self.postures:
+            return self.postures[case].starts
         return tuple(
             start for other, found in self.postures.items() if other.task == task for start in found.starts
         )
@@ -90,9 +87,9 @@ class Precomputed:
         heights = task.heights if task else ()
         return [d for d, lowest, highest in self.designs if all(lowest <= h <= highest for h in heights)]
 
-    def is_chosen(self, pair: tuple[str, str], task: Task) -> bool:
-        """Whether the posture problem's starts were chosen for this person, load and task."""
-        return Case(person=pair[0], payload=pair[1], task=task) in self.chosen
+    def is_learned(self, pair: tuple[str, str], task: Task) -> bool:
+        """Whether the posture problem's starts were learned with this very person, load and task."""
+        return Case(person=pair[0], payload=pair[1], task=task) in self.postures
 
     def lift_starts(self, pair: tuple[str, str], lift: Lift) -> tuple[Start, ...]:
         """Where a lift of a person and a load begins; none where nothing is known."""
