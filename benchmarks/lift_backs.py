@@ -8,7 +8,7 @@ designs the largest moment of L5/S1 over the time of a lift, the largest that st
 postures, where the palms are then, and angles there. Written to benchmarks/results/lift_backs.json and
 printed.
 
-    python -m benchmarks.lift_backs [--designs 20] [--jobs 2]
+    python -m benchmarks.lift_backs [--designs 20]
 """
 
 from __future__ import annotations
@@ -17,18 +17,20 @@ import argparse
 import json
 import tomllib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import msgspec
 import numpy as np
 import tomli_w
 
-from benchmarks.inner_problem import HERE, processors
+from benchmarks.inner_problem import HERE
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN
+from evodesign.nlp.method import MethodName
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
-from evodesign.problem.factory import evaluator_of
+from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.motion_objectives import l5s1_moment
 from evodesign.problem.source import read_source
 from evodesign.records import Status
@@ -47,7 +49,7 @@ ANGLES = ("trunk_low", "trunk_up", "knee")
 
 
 def problem() -> DesignProblem:
-    """The icub-lift problem with the measured man and lift."""
+    """The icub-lift problem with the measured man and lift, solved by IPOPT from fixed starts."""
     source = read_source("icub-lift")
     tables: dict[str, Any] = tomllib.loads(source.text)
     tables |= {
@@ -60,13 +62,16 @@ def problem() -> DesignProblem:
         "task": {"lift": [{"from_m": FROM, "to_m": TO, "seconds": SECONDS}]},
     }
     tables["payload"]["mass_kg"] = 2.0 * LOAD
-    return build_problem(msgspec.structs.replace(source, text=tomli_w.dumps(tables)))
+    built = build_problem(msgspec.structs.replace(source, text=tomli_w.dumps(tables)))
+    return replace(
+        built, options=replace(built.options, method=MethodName.IPOPT, compiled=False, seconds=600.0)
+    )
 
 
-def lifted(designs: int, jobs: int) -> Iterator[DesignResult]:
+def lifted(designs: int) -> Iterator[DesignResult]:
     """Results of so many random designs that reach both heights."""
     asked = problem()
-    evaluator, rng = evaluator_of(asked, jobs), np.random.default_rng(8)
+    evaluator, rng = Evaluator(asked), np.random.default_rng(8)
     while designs:
         genome = rng.uniform(*LONG, len(asked.space.parameters))
         result = evaluator.solve(asked.space.values(tuple(genome.tolist())))
@@ -108,10 +113,9 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--designs", type=int, default=20)
-    parser.add_argument("--jobs", type=int, default=processors())
     options = parser.parse_args()
     posed, rows = PosedPerson(STOOPER), []
-    for result in lifted(options.designs, options.jobs):
+    for result in lifted(options.designs):
         rows.append(figures(result, posed))
         print(rows[-1], flush=True)
     solved = [row for row in rows if row["status"] == Status.SOLVED]
