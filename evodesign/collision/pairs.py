@@ -116,18 +116,24 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
 
 
 def built_in_pairs(
-    tree: Tree, joints: Collection[str], checked: Collection[BodyPair], resized: Iterable[Tree]
+    tree: Tree,
+    joints: Collection[str],
+    checked: Collection[BodyPair],
+    resized: Iterable[Tree],
+    margin: float = 0.0,
 ) -> tuple[BodyPair, ...]:
     """Pairs of links that the build of some design brings together.
 
-    They overlap in it while all joints are at zero, and in a tenth of its postures at least, and are apart in
-    the unscaled robot at zero. Meshes are their hulls.
+    They are nearer to each other in it than a margin while all joints are at zero, and overlap in a tenth of
+    its postures at least, and are farther apart in the unscaled robot at zero. Those that are nearer there,
+    but not in touch, count where they are in touch in the design. Meshes are their hulls.
 
     Args:
         tree: of the agent, unscaled.
         joints: that move.
         checked: pairs that must not overlap; those between which no joint moves count as well.
         resized: trees of some designs.
+        margin: least distance that is asked for [m].
     """
     known = {frozenset(pair) for pair in checked}
     own = [
@@ -137,9 +143,10 @@ def built_in_pairs(
     ]
     hulls, images = SolidBodies.of_tree(tree).hulls, images_of(tree)
     apart, found = {*own} - _touching(tree, own, hulls), set[BodyPair]()
+    clear = apart - _touching(tree, own, hulls, margin)
     for each in resized:
         hulls = SolidBodies.of_tree(each).hulls
-        near = sorted(_touching(each, apart - found, hulls))
+        near = sorted(_touching(each, apart - found, hulls) | _touching(each, clear - found, hulls, margin))
         shares = shares_of_postures(each, joints, near, bodies=hulls, images=images)
         found |= {pair for pair, share in shares.items() if share >= SELDOM}
     found |= {(images.get(one, one), images.get(other, other)) for one, other in found}
@@ -237,11 +244,16 @@ def images_of(tree: Tree) -> Mapping[str, str]:
         return {}
 
 
-def _touching(tree: Tree, pairs: Collection[BodyPair], bodies: SolidBodies | None = None) -> set[BodyPair]:
-    """Those of some pairs that are in touch while all joints are at zero; by other solids than the tree's."""
+def _touching(
+    tree: Tree, pairs: Collection[BodyPair], bodies: SolidBodies | None = None, within: float = TOUCH
+) -> set[BodyPair]:
+    """Those of some pairs that are in touch, or nearer than a distance [m], while all joints are at zero.
+
+    Solids may be others than the tree's.
+    """
     bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
     placed = bodies.placed(link_frames(tree, Placement(), {}))
-    return {(gap.first, gap.second) for gap in placed.overlapping(places_of(bodies.names, pairs), TOUCH)}
+    return {(gap.first, gap.second) for gap in placed.overlapping(places_of(bodies.names, pairs), within)}
 
 
 def shares_of_postures(

@@ -30,7 +30,7 @@ __all__ = ["ROUNDS", "TOLERANCE", "Sizing", "sized", "sizes_met"]
 TOLERANCE = 1e-4
 """Largest change of a size, as a share of it, that ends the rounds."""
 
-ROUNDS = 10
+ROUNDS = 20
 """How often the demand is asked for."""
 
 PREDICTIONS, SETTLED = 200, 1e-5

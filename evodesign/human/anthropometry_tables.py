@@ -108,10 +108,11 @@ class Lumbosacral(Record, frozen=True):
 
 
 class Looks(Record, frozen=True):
-    """Figures that are only seen."""
+    """Figures of shapes."""
 
     source: str
     hand_breadth: float
+    chest_breadth: float
     density_kg_per_m3: float
 
 

@@ -1,9 +1,11 @@
 """What a generated person looks like: one shape for each link of the middle and the left side.
 
-Shapes are only seen. Their lengths follow from the landmarks; what the tables do not give (a limb's radius,
-the trunk's depth, the hand's thickness) follows from the link's mass over one density:
+Shapes are seen, and kept apart where a problem asks for it. Their lengths follow from the landmarks; what the
+tables do not give (a limb's radius, the trunk's depth, the hand's thickness) follows from the link's mass
+over one density:
 
-    trunk          boxes       of one depth, m / (density * breadth * height), all figures the whole trunk's
+    trunk          boxes       as broad as the hips, the chest as between the arms, and of one depth,
+                               m / (density * hip breadth * height), all figures the whole trunk's
     hand           box         thickness = m / (density * length * breadth)
     limb, neck     cylinder    radius = sqrt(m / (density * pi * length))
     head           sphere      as high as the head
@@ -53,7 +55,8 @@ def human_looks(
     depth = trunk_mass / (density * breadth * lengths.trunk * h)
     for link, above in itertools.pairwise(trunk):
         height = points[above][2] - points[link][2]
-        shapes[link] = Look(Box(depth, breadth, height), Placement(translation=(0.0, 0.0, height / 2.0)))
+        box = Box(depth, figures.chest_breadth * h if link == "T8" else breadth, height)
+        shapes[link] = Look(box, Placement(translation=(0.0, 0.0, height / 2.0)))
 
     limbs = ["LeftShoulder", "LeftUpperArm", "LeftForeArm", "LeftUpperLeg", "LeftLowerLeg", "Neck"]
     ends = ["LeftUpperArm", "LeftForeArm", "LeftHand", "LeftLowerLeg", "LeftFoot", "Head"]

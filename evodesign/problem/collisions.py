@@ -66,7 +66,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
         if frozenset(pair) not in ignored
     ]
     resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
-    built_in = built_in_pairs(agent.tree, agent.joints, checked, resized)
+    built_in = built_in_pairs(agent.tree, agent.joints, checked, resized, table.margin_m)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}
     names = {*agent.tree.link_by_name}

@@ -49,6 +49,14 @@ def test_a_demand_that_grows_with_the_size_is_met_within_four_rounds() -> None:
         assert found.sizes["x"] == pytest.approx(low, rel=2e-4)
 
 
+def test_a_demand_that_follows_its_size_closely_is_met_in_more_rounds() -> None:
+    """size = 8 size^0.62 is met at 8^(1 / 0.38); each round leaves 0.62 of the error, which is not mixed."""
+    found = sized(lambda s: {"x": 8.0 * s["x"] ** 0.62}, {"x": 200.0}, {"x": 1.0}, {"x": (0.1, 1e4)})
+    assert found.status is Status.SOLVED
+    assert found.rounds > 10
+    assert found.sizes["x"] == pytest.approx(8.0 ** (1.0 / 0.38), rel=3e-4)
+
+
 def test_a_demand_that_never_settles_says_so() -> None:
     found = sized(lambda s: {"x": 1.9 * s["x"]}, {"x": 1.0}, {"x": 1.0}, {"x": (0.1, 1e9)})
     assert found.status is Status.ITERATION_LIMIT

@@ -147,6 +147,19 @@ def test_standing_soles_touch_the_floor_and_the_head_reaches_the_stature(person:
     assert at["LeftUpperArm"].translation[2] + hip_height == pytest.approx(0.818 * person.stature, abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("sex", "stature", "breadth"), [(Sex.MALE, 1.756, 0.289), (Sex.FEMALE, 1.628, 0.269)]
+)
+def test_the_chest_is_as_broad_as_measured_between_the_arms(sex: Sex, stature: float, breadth: float) -> None:
+    """ANSUR II's means; the rest of the trunk is as broad as the hips, and hanging arms are clear of it."""
+    tree = human_tree(Person(stature, 80.0, sex))
+    widths = {name: tree.link_by_name[name].looks[0].shape.y for name in ("Pelvis", "L5", "L3", "T12", "T8")}
+    assert widths.pop("T8") == pytest.approx(breadth, rel=0.01)
+    assert set(widths.values()) == {0.191 * stature}
+    at, arm = placements(tree, {}), tree.link_by_name["LeftUpperArm"].looks[0].shape
+    assert at["LeftUpperArm"].translation[1] - arm.radius > breadth / 2.0 + 0.02
+
+
 @few
 @given(persons)
 def test_sole_frames_stand_in_the_middle_of_the_soles(person: Person) -> None:

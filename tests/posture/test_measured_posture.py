@@ -14,21 +14,24 @@ from evodesign.human.anthropometry import Person, Sex
 from evodesign.human.body import human_tree
 from evodesign.human.measured_posture import FEATURES, MARK, PostureRow, drawn_person, posture_rows
 from evodesign.mechanics.floating_base import BodyState
-from evodesign.mechanics.scene import HUMAN, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.nlp.solver import SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, PostureMotion, assemble, free_hands_beside
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem
+from evodesign.posture.formulations.joint import JointPostures
+from evodesign.posture.formulations.reach import HIGHEST, ReachProblem
 from evodesign.posture.measured_starts import mean_posture
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture, CaseSolution
 from evodesign.posture.solution_derivative import PostureDerivative
-from evodesign.posture.symmetry import Form, half, whole
+from evodesign.posture.symmetry import Form, half, symmetric_forms, whole
 from evodesign.posture.terms.measured_posture import MEASURED_POSTURE, any_person
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.records import Hold, ProblemSource
+from evodesign.records import Hold, ProblemSource, Status
 from evodesign.tree.urdf_write import urdf_text
 from tests.problem.test_person_keys import PERSON, refused
 
@@ -202,6 +205,20 @@ def test_a_start_at_the_mean_has_the_means_features_with_feet_on_the_ground(scen
         found = seen(state, side)
         for name in ("trunk_low", "trunk_up", "knee", "shank", "arm", "elbow"):
             assert found[name] == pytest.approx(mean[name], abs=1e-6), name
+
+
+def test_a_start_of_the_robot_alone_begins_beside_the_mean_person(
+    problem: DesignProblem, scene: Scene
+) -> None:
+    """In a T-pose the upper arm has no direction forward, and a solve would end where it begins."""
+    setting, solvers = Setting(scene, problem.space, problem.weights, problem.options), SolverCache()
+    postures = JointPostures("symmetric", symmetric_forms(scene), setting, solvers)
+    design = problem.space.unscaled(scene.robot.tree)
+    robot = ReachProblem(setting, symmetric=True, solvers=solvers).extreme_posture(design, HIGHEST)
+    assert {name.split(".")[0] for name in robot[0]} == {ROBOT}
+    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)))
+    trial = postures.solve(design, Hold(height_m=0.9), robot, checker)
+    assert [attempt.status for attempt in trial.attempts] == [Status.SOLVED]
 
 
 def test_the_person_stands_as_measured_people_do(problem: DesignProblem, scene: Scene) -> None:

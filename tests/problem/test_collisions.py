@@ -80,6 +80,26 @@ def test_what_only_a_resized_robot_brings_together_is_checked_and_told(problem: 
     assert not set(exempt) & set(rules.checked)
 
 
+def test_a_build_that_leaves_bodies_nearer_than_asked_is_refused_before_they_touch(
+    problem: DesignProblem,
+) -> None:
+    """Beside the shortest thigh the upper leg is 2.3 mm from the pelvis; flexed hips leave 5 mm nowhere."""
+    built = build_problem(with_table(problem))
+    rules, tree = built.scene.robot.collisions, built.scene.robot.tree
+    pair = ("root_link", "l_upper_leg")
+    assert rules is not None
+    assert pair in rules.built_in
+    assert deepest_at_zero(tree, pair) > 0.005
+    unscaled = dict(built.space.named(built.space.unscaled(tree)))
+    values = tuple((unscaled | {"length.thigh": 0.6}).values())
+    distance = deepest_at_zero(built.space.resized(tree, values), pair)
+    assert 0.0 < distance < 0.005
+    found = Evaluator(built).assess_values(values).assessment
+    assert found.status is Status.BODIES_OVERLAP
+    assert found.constrained[BODIES_APART] == pytest.approx(distance - 0.005, abs=1e-6)
+    assert "upper_leg while all joints are at zero: no posture was sought" in found.reason
+
+
 def test_a_design_whose_build_brings_bodies_together_is_infeasible_by_what_they_lack(
     problem: DesignProblem,
 ) -> None:

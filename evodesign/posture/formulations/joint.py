@@ -36,7 +36,7 @@ from evodesign.posture.check import Checker
 from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import WorstCase, aggregated
-from evodesign.posture.measured_starts import measured_starts
+from evodesign.posture.measured_starts import POSTURE, measured_starts
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
@@ -129,6 +129,12 @@ class JointPostures:
         return starts[:1] if self._setting.options.seldom else starts  # docs/benchmarks.md
 
     @cached_property
+    def _standing(self) -> tuple[str, ...]:
+        """Names of the variables that say where the person's base and joints are."""
+        own = layout_of(self._solver.program, HUMAN).items()
+        return tuple(name for slot, name in own if slot.part in POSTURE)
+
+    @cached_property
     def _people(self) -> list[Start]:
         return different_people(self._solver.program, self._others)
 
@@ -166,7 +172,14 @@ class JointPostures:
     def solve(
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
     ) -> Trial:
-        """What the portfolio leads to, or the fixed starts if none of it fits."""
+        """What the portfolio leads to, or the fixed starts if none of it fits.
+
+        Beside a robot alone a measured person stands at the mean: in a T-pose the direction of the upper arm
+        has no derivative.
+        """
+        if portfolio and self._forms[1].agent.measured is not None:
+            mean = {name: self._fixed(task)[0][name] for name in self._standing}
+            portfolio = [{**mean, **start} for start in portfolio]
         starts = named_starts(self._solver, portfolio, self._fixed(task))
         return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
