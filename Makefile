@@ -95,6 +95,8 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python -m benchmarks.lift_bodies
 	$(BIN)/python -m benchmarks.lift_gradients
 	$(BIN)/python -m benchmarks.least_time
+	$(BIN)/python -m benchmarks.lift_backs
+	$(BIN)/python -m benchmarks.measured_people
 	$(BIN)/python -m benchmarks.simulation
 
 faults: $(VENV)/installed-dev  ## kill searches and commands 1,000 times, damage logs (KILLS=, FOLDER= to go on)

@@ -22,12 +22,13 @@ from evodesign.posture.terms.measured_posture import chords
 from evodesign.posture.warm_start import layout_of
 from evodesign.tree.frames import link_frames
 
-__all__ = ["mean_posture", "measured_starts", "posture_of_features"]
+__all__ = ["POSTURE", "mean_posture", "measured_starts", "posture_of_features"]
 
 ELSEWHERE = (0.20, 0.35)
 """Heights of the palms over stature at which people stoop: their means are starts at any height."""
 
 POSTURE = ("base_position", "base_angles", JOINTS)
+"""Parts of a start that say where an agent is."""
 
 
 def measured_starts(program: Program, form: Form, scene: Scene, heights: Sequence[float]) -> list[Start]:

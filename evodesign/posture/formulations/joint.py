@@ -32,7 +32,7 @@ from evodesign.posture.check import Checker
 from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import WorstCase, aggregated
-from evodesign.posture.measured_starts import measured_starts
+from evodesign.posture.measured_starts import POSTURE, measured_starts
 from evodesign.posture.parting import parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
@@ -109,6 +109,12 @@ class JointPostures:
         return starts[:1] if self._setting.options.seldom else starts  # docs/benchmarks.md
 
     @cached_property
+    def _standing(self) -> tuple[str, ...]:
+        """Names of the variables that say where the person's base and joints are."""
+        own = layout_of(self._solver.program, HUMAN).items()
+        return tuple(name for slot, name in own if slot.part in POSTURE)
+
+    @cached_property
     def _people(self) -> list[Start]:
         return different_people(self._solver.program, self._others)
 
@@ -141,16 +147,12 @@ class JointPostures:
         )
 
     @cached_property
-    def _of_person(self) -> tuple[str, ...]:
-        """Names of the person's variables."""
-        return tuple(layout_of(self._solver.program, HUMAN).values())
-
-    @cached_property
     def person(self) -> frozenset[str]:
         """Names of all that starts say of the person."""
-        switches = self._solver.program.switches
-        names = switches.names if switches is not None else ()
-        return frozenset([*self._of_person, *(name for name in names if name.split(".")[-2] == HUMAN)])
+        program = self._solver.program
+        own = layout_of(program, HUMAN).values()
+        switches = program.switches.names if program.switches is not None else ()
+        return frozenset([*own, *(name for name in switches if name.split(".")[-2] == HUMAN)])
 
     def keeps_clear(self, raw: RawSolution, task: Task, checker: Checker) -> bool:
         """Whether the check finds no bodies that overlap in a solution."""
@@ -164,10 +166,9 @@ class JointPostures:
         Beside a robot alone a measured person stands at the mean: in a T-pose the direction of the upper arm
         has no derivative.
         """
-        if self._forms[1].agent.measured is not None:
-            mean = self._fixed(task)[0]
-            own = {name: mean[name] for name in self._of_person}
-            portfolio = [{**own, **start} for start in portfolio]
+        if portfolio and self._forms[1].agent.measured is not None:
+            mean = {name: self._fixed(task)[0][name] for name in self._standing}
+            portfolio = [{**mean, **start} for start in portfolio]
         starts = named_starts(self._solver, portfolio, self._fixed(task))
         return self._trial(design, task, starts, checker, self._people if portfolio else ())
 
