@@ -15,7 +15,6 @@ from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.nlp.landscape import spread_designs
-from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies
 from evodesign.posture.design_checkers import can_be_built
@@ -50,36 +49,40 @@ LOOKED_AT = 8
 NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
 
-ROUNDS = 16
-"""How often the pairs that overlap most at the lowest load are added, at most."""
+ROUNDS, DEEP = 8, 0.5
+"""How often the pairs that overlap most at the lowest load are added, at most, and how deep those are that are
+added at once, as a share of the deepest."""
 
 
 def found_meetings(
-    setting: Setting, tasks: Sequence[Task], *, symmetric: bool, part: int = 0, parts: int = 1
+    setting: Setting,
+    tasks: Sequence[Task],
+    *,
+    symmetric: bool,
+    extreme: bool = True,
+    part: int = 0,
+    parts: int = 1,
 ) -> dict[str, list[BodyPair]]:
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
-    What is near at the task's heights is kept apart there, and what overlaps at the highest load at extreme
-    heights. In the fold of the lowest one everything passes through everything, and a few rows part it all:
-    there the pair that overlaps most in each posture is kept apart, then the one that does so still, and so
-    on.
+    Two agents whose bodies pass through everything are in each other all over. So pairs that overlap at the
+    task's heights are kept apart, and what is near then counts. At extreme heights what overlaps at the highest
+    load counts. In the fold of the lowest one a few rows part everything: there the pairs that overlap most in
+    each posture are kept apart, then those that do so still, and so on.
 
     Args:
         setting: of one person and load.
         tasks: of the problem.
         symmetric: whether postures are.
+        extreme: whether postures at extreme heights are looked at.
         part: of the designs that are looked at.
         parts: how many there are.
     """
     finder = _Finder(setting, symmetric, part, parts)
     scene = finder.scene
-    extreme = {met for pairs in finder.at_reach(HIGHEST, ()) for met in pairs}
-    for _ in range(ROUNDS):
-        more = {pairs[0] for pairs in finder.at_reach(LOWEST, extreme) if pairs}
-        extreme |= more
-        if not more:
-            break
-    met = finder.held(tasks) | extreme
+    met = {*finder.held(tasks, {*finder.held(tasks, (), APART)}, NEAR)}
+    if extreme:
+        met |= finder.at_extremes()
     found = {name: {pair for of, pair in met if of == name} for name in (ROBOT, HUMAN, REACH)}
     return {
         ROBOT: _in_order(scene.robot, found[ROBOT], finder.forms[0]),
@@ -98,7 +101,7 @@ class _Finder:
             robot=replace(scene.robot, collisions=None),
             human=replace(scene.human, collisions=None),
         )
-        options = replace(setting.options, compiled=False, method=MethodName.IPOPT)  # compiling takes longer
+        options = replace(setting.options, seldom=True)
         self.scene, self._free = scene, free
         self.forms = symmetric_forms(free) if symmetric else (whole(free.robot), whole(free.human))
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
@@ -116,23 +119,42 @@ class _Finder:
 
         self._designs = [*own(float), *own(lambda place: float(round(place)))]
 
-    def held(self, tasks: Sequence[Task]) -> set[_Met]:
-        """What is near in postures of the tasks."""
-        name, scene, space = "symmetric" if self._symmetric else "whole", self._free, self._setting.space
-        problem = JointPostures(name, self.forms, self._setting, SolverCache())
-        human = AgentModel.of(scene.human, scene.human.tree)
+    def held(self, tasks: Sequence[Task], parted: Collection[_Met], distance: float) -> set[_Met]:
+        """What is nearer than a distance [m] in postures of the tasks in which some pairs are kept apart."""
+        name, free, space = "symmetric" if self._symmetric else "whole", self._free, self._setting.space
+        scene = self._parting(parted)
+        forms = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
+        problem = JointPostures(name, forms, replace(self._setting, scene=scene), SolverCache())
+        human = AgentModel.of(free.human, free.human.tree)
         found: set[_Met] = set()
         for values in self._designs:
-            robot = AgentModel.of(scene.robot, space.resized(scene.robot.tree, values))
-            checker = Checker(scene, robot, human)
+            robot = AgentModel.of(free.robot, space.resized(free.robot.tree, values))
+            checker = Checker(free, robot, human)
             for task in tasks:
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
-                    found |= self._near(values, instant.postures, height).keys()
+                    found |= {
+                        m for m, d in self._near(values, instant.postures, height).items() if d < distance
+                    }
         return found
 
-    def at_reach(self, sense: float, parted: Collection[_Met]) -> list[list[_Met]]:
-        """What of the robot overlaps in the extreme posture of each design, the deepest first.
+    def at_extremes(self) -> set[_Met]:
+        """What of the robot is to be kept apart at the highest and the lowest load."""
+        found = {met for pairs in self._at_reach(HIGHEST, ()) for met in pairs}
+        for _ in range(ROUNDS):
+            more = {
+                met
+                for pairs in self._at_reach(LOWEST, found)
+                for met, distance in pairs.items()
+                if distance <= DEEP * min(pairs.values())
+            }
+            if more <= found:
+                break
+            found |= more
+        return found
+
+    def _at_reach(self, sense: float, parted: Collection[_Met]) -> list[_Near]:
+        """What of the robot overlaps in the extreme posture of each design.
 
         Args:
             sense: of the reach problem.
@@ -140,14 +162,13 @@ class _Finder:
         """
         scene = self._parting(parted)
         problem = ReachProblem(replace(self._setting, scene=scene), symmetric=self._symmetric)
-        found: list[list[_Met]] = []
+        found: list[_Near] = []
         for values in self._designs:
             height, raw = problem.extreme(values, sense)
             if height is not None:
                 parts = {name.partition(".")[2]: value for name, value in raw.values.items()}
                 near = self._near(values, {ROBOT: self.forms[0].expand(parts)}, height)
-                deepest = sorted((distance, pair) for (_, pair), distance in near.items())
-                found.append([(REACH, pair) for distance, pair in deepest if distance < APART])
+                found.append({(REACH, pair): apart for (_, pair), apart in near.items() if apart < APART})
         return found
 
     def _parting(self, pairs: Collection[_Met]) -> Scene:

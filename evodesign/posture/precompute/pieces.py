@@ -56,7 +56,10 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
         own = Setting(scene, setting.space, setting.weights, setting.options)
         pairs = [each.pair for each in setting.scenes]
         part, parts, symmetric = pairs.index(piece.pair), len(pairs), setting.symmetric
-        found_pairs = found_meetings(own, setting.tasks, symmetric=symmetric, part=part, parts=parts)
+        extreme = piece.pair == setting.middle.pair
+        found_pairs = found_meetings(
+            own, setting.tasks, symmetric=symmetric, extreme=extreme, part=part, parts=parts
+        )
         return msgspec.json.encode(found_pairs)
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
