@@ -66,6 +66,17 @@ def test_the_machines_compiler_comes_before_the_one_from_pip(tmp_path: Path) -> 
     assert found({}) == found({"CC": BUNDLED})
 
 
+def test_what_is_solved_seldom_is_compiled_by_tinycc(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    script(tmp_path, "gcc", "echo gcc 12")
+    path = {"PATH": str(tmp_path)}
+    assert find_compiler(path, quick=True) == found({"CC": BUNDLED})
+    assert find_compiler({**path, "CC": "gcc"}, quick=True) == found(path)
+    request.getfixturevalue("without_tinycc")
+    assert find_compiler(path, quick=True) == found(path)
+
+
 def test_a_compiler_that_does_not_start_is_passed_over(tmp_path: Path) -> None:
     script(tmp_path, "cc", "echo no developer tools; exit 1")
     assert found({"PATH": str(tmp_path)}).bundled
