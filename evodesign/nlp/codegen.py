@@ -106,9 +106,16 @@ def compiled_function(function: Any) -> Any:
         return function
 
 
-def compiler_and_cache(environment: Mapping[str, str]) -> tuple[Compiler, Cache] | NotCompiled:
-    """What libraries are made with, and where they are kept."""
-    compiler = find_compiler(environment)
+def compiler_and_cache(
+    environment: Mapping[str, str], *, quick: bool = False
+) -> tuple[Compiler, Cache] | NotCompiled:
+    """What libraries are made with, and where they are kept.
+
+    Args:
+        environment: that names them.
+        quick: whether the compiler had better be quick than its code.
+    """
+    compiler = find_compiler(environment, quick=quick)
     if isinstance(compiler, NotCompiled):
         return compiler
     try:

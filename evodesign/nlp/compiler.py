@@ -14,6 +14,7 @@ import signal
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 __all__ = ["BUNDLED", "Compiler", "NotCompiled", "error_in", "find_compiler", "run"]
@@ -52,9 +53,14 @@ class Compiler:
     bundled: bool = False
 
 
-def find_compiler(environment: Mapping[str, str]) -> Compiler | NotCompiled:
-    """The C compiler that $CC names, or the first one on PATH that works, or TinyCC from pip."""
-    named = environment.get("CC", "").strip()
+def find_compiler(environment: Mapping[str, str], *, quick: bool = False) -> Compiler | NotCompiled:
+    """The C compiler that $CC names, or the first one on PATH that works, or TinyCC from pip.
+
+    Args:
+        environment: that names them.
+        quick: whether the compiler had better be quick than its code: then TinyCC comes first.
+    """
+    named = environment.get("CC", "").strip() or (BUNDLED if quick and find_spec(BUNDLED) else "")
     looked = (
         f"$CC names '{named}'" if named else f"looked for {', '.join(COMPILERS)} and the package {BUNDLED}"
     )
