@@ -50,8 +50,8 @@ NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
 
 ROUNDS, DEEP = 8, 0.5
-"""How often the pairs that overlap most at the lowest load are added, at most, and how deep those are that are
-added at once, as a share of the deepest."""
+"""How often the pairs that overlap most at the lowest load are added, at most, and how deep those are that
+are added at once, as a share of the deepest."""
 
 
 def found_meetings(
@@ -65,10 +65,10 @@ def found_meetings(
 ) -> dict[str, list[BodyPair]]:
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
-    Two agents whose bodies pass through everything are in each other all over. So pairs that overlap at the
-    task's heights are kept apart, and what is near then counts. At extreme heights what overlaps at the highest
-    load counts. In the fold of the lowest one a few rows part everything: there the pairs that overlap most in
-    each posture are kept apart, then those that do so still, and so on.
+    Where bodies pass through everything they are in each other all over. So pairs that overlap at the task's
+    heights are kept apart, and what is near then counts. At the highest load what overlaps counts. In the fold
+    of the lowest one a few rows part everything: there the pairs that overlap most in each posture are kept
+    apart, then those that do so still, and so on.
 
     Args:
         setting: of one person and load.
@@ -133,21 +133,18 @@ class _Finder:
             for task in tasks:
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
-                    found |= {
-                        m for m, d in self._near(values, instant.postures, height).items() if d < distance
-                    }
+                    near = self._near(values, instant.postures, height)
+                    found |= {met for met, apart in near.items() if apart < distance}
         return found
 
     def at_extremes(self) -> set[_Met]:
         """What of the robot is to be kept apart at the highest and the lowest load."""
         found = {met for pairs in self._at_reach(HIGHEST, ()) for met in pairs}
         for _ in range(ROUNDS):
-            more = {
-                met
-                for pairs in self._at_reach(LOWEST, found)
-                for met, distance in pairs.items()
-                if distance <= DEEP * min(pairs.values())
-            }
+            more: set[_Met] = set()
+            for pairs in self._at_reach(LOWEST, found):
+                deepest = min(pairs.values(), default=0.0)
+                more |= {met for met, apart in pairs.items() if apart <= max(deepest, DEEP * deepest)}
             if more <= found:
                 break
             found |= more
