@@ -49,9 +49,8 @@ LOOKED_AT = 8
 NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
 
-ROUNDS, DEEP = 8, 0.5
-"""How often the pairs that overlap most at the lowest load are added, at most, and how deep those are that
-are added at once, as a share of the deepest."""
+ROUNDS = 16
+"""How often the pairs that overlap most at the lowest load are added, at most."""
 
 
 def found_meetings(
@@ -65,10 +64,10 @@ def found_meetings(
 ) -> dict[str, list[BodyPair]]:
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
-    Where bodies pass through everything they are in each other all over. So pairs that overlap at the task's
-    heights are kept apart, and what is near then counts. At the highest load what overlaps counts. In the fold
-    of the lowest one a few rows part everything: there the pairs that overlap most in each posture are kept
-    apart, then those that do so still, and so on.
+    Where bodies pass through everything they are in each other all over. So pairs that overlap at the heights
+    of tasks are kept apart, and what is near then counts. At the highest load what overlaps counts. In the fold
+    of the lowest a few rows part everything: there the pair that overlaps most in each posture is kept apart,
+    then the one that does so still, and so on.
 
     Args:
         setting: of one person and load.
@@ -141,10 +140,8 @@ class _Finder:
         """What of the robot is to be kept apart at the highest and the lowest load."""
         found = {met for pairs in self._at_reach(HIGHEST, ()) for met in pairs}
         for _ in range(ROUNDS):
-            more: set[_Met] = set()
-            for pairs in self._at_reach(LOWEST, found):
-                deepest = min(pairs.values(), default=0.0)
-                more |= {met for met, apart in pairs.items() if apart <= max(deepest, DEEP * deepest)}
+            overlaps = self._at_reach(LOWEST, found)
+            more = {min(pairs, key=lambda met: (pairs[met], met)) for pairs in overlaps if pairs}
             if more <= found:
                 break
             found |= more
