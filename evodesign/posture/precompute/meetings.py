@@ -64,10 +64,10 @@ def found_meetings(
 ) -> dict[str, list[BodyPair]]:
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
-    Where bodies pass through everything they are in each other all over. So pairs that overlap at the heights
-    of tasks are kept apart, and what is near then counts. At the highest load what overlaps counts. In the fold
-    of the lowest a few rows part everything: there the pair that overlaps most in each posture is kept apart,
-    then the one that does so still, and so on.
+    Where bodies pass through everything they are in each other all over. So pairs that overlap at the tasks'
+    heights are kept apart, and what is near then counts. At the highest load what overlaps counts. In the
+    fold of the lowest a few rows part everything: there the pair that overlaps most in each posture is kept
+    apart, then the one that does so still, and so on.
 
     Args:
         setting: of one person and load.
