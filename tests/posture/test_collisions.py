@@ -199,9 +199,9 @@ def test_what_meets_at_corners_of_the_space_is_found_too(
     ends = zip(apart.space.given(lowest, {}), apart.space.given(highest, {}), strict=True)
     for values, own in zip(zip(*corners, strict=True), ends, strict=True):
         assert set(values) <= set(own)
-    everywhere = finder.held(apart.tasks[:1], (), 0.0)
+    everywhere = finder.held(apart.tasks[:1])
     finder._designs = inside
-    assert finder.held(apart.tasks[:1], (), 0.0) < everywhere
+    assert finder.held(apart.tasks[:1]) < everywhere
 
 
 def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:

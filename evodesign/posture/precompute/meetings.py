@@ -64,10 +64,10 @@ def found_meetings(
 ) -> dict[str, list[BodyPair]]:
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
-    Where bodies pass through everything they are in each other all over. So pairs that overlap at the tasks'
-    heights are kept apart, and what is near then counts. At the highest load what overlaps counts. In the
-    fold of the lowest a few rows part everything: there the pair that overlaps most in each posture is kept
-    apart, then the one that does so still, and so on.
+    Bodies pass through everything in the postures that are looked at. What is near each other there at the
+    tasks' heights, or in each other, is kept apart, and what overlaps at the highest load. In the fold of the
+    lowest a few rows part everything: there the pair that overlaps most in each posture is kept apart, then
+    the one that does so still, and so on.
 
     Args:
         setting: of one person and load.
@@ -79,9 +79,7 @@ def found_meetings(
     """
     finder = _Finder(setting, symmetric, part, parts)
     scene = finder.scene
-    met = {*finder.held(tasks, {*finder.held(tasks, (), APART)}, NEAR)}
-    if extreme:
-        met |= finder.at_extremes()
+    met = finder.held(tasks) | (finder.at_extremes() if extreme else set())
     found = {name: {pair for of, pair in met if of == name} for name in (ROBOT, HUMAN, REACH)}
     return {
         ROBOT: _in_order(scene.robot, found[ROBOT], finder.forms[0]),
@@ -118,22 +116,19 @@ class _Finder:
 
         self._designs = [*own(float), *own(lambda place: float(round(place)))]
 
-    def held(self, tasks: Sequence[Task], parted: Collection[_Met], distance: float) -> set[_Met]:
-        """What is nearer than a distance [m] in postures of the tasks in which some pairs are kept apart."""
-        name, free, space = "symmetric" if self._symmetric else "whole", self._free, self._setting.space
-        scene = self._parting(parted)
-        forms = symmetric_forms(scene) if self._symmetric else (whole(scene.robot), whole(scene.human))
-        problem = JointPostures(name, forms, replace(self._setting, scene=scene), SolverCache())
-        human = AgentModel.of(free.human, free.human.tree)
+    def held(self, tasks: Sequence[Task]) -> set[_Met]:
+        """What is near in postures of the tasks."""
+        name, scene, space = "symmetric" if self._symmetric else "whole", self._free, self._setting.space
+        problem = JointPostures(name, self.forms, self._setting, SolverCache())
+        human = AgentModel.of(scene.human, scene.human.tree)
         found: set[_Met] = set()
         for values in self._designs:
-            robot = AgentModel.of(free.robot, space.resized(free.robot.tree, values))
-            checker = Checker(free, robot, human)
+            robot = AgentModel.of(scene.robot, space.resized(scene.robot.tree, values))
+            checker = Checker(scene, robot, human)
             for task in tasks:
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
-                    near = self._near(values, instant.postures, height)
-                    found |= {met for met, apart in near.items() if apart < distance}
+                    found |= self._near(values, instant.postures, height).keys()
         return found
 
     def at_extremes(self) -> set[_Met]:
