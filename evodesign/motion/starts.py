@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,10 +36,7 @@ from evodesign.records import Hold, Lift, Status
 
 __all__ = ["lift_portfolio"]
 
-TRAINING = Training(designs=4, begun=4, portfolio=4)
-
-RANDOM_STARTS = 8
-"""From which optima are sought, beside the motion between the holds."""
+TRAINING = Training(designs=4, begun=4, random=8, portfolio=4)
 
 LOOKED_AT = 40
 """Designs among which those are sought that hold the load at both ends."""
@@ -75,6 +71,8 @@ class _LiftLandscape:
         holds: of the same scene.
         first: the design whose postures random starts are near.
     """
+
+    universal: tuple[Start, ...] = ({},)
 
     def __init__(
         self, program: LiftProgram, lift: Lift, mass: float, holds: PostureProblem, first: Design
@@ -111,13 +109,7 @@ class _LiftLandscape:
         relative, absolute = NEAR
         return np.asarray(costs <= best + relative * np.abs(best) + absolute)
 
-    @cached_property
-    def universal(self) -> tuple[Start, ...]:
-        """The motion between the holds, and some that are moved at random, always the same ones."""
-        rng = np.random.default_rng(0)
-        return ({}, *(self._random_start(rng) for _ in range(RANDOM_STARTS)))
-
-    def _random_start(self, rng: np.random.Generator) -> Start:
+    def random_start(self, rng: np.random.Generator) -> Start:
         """The person of a hold at either end, moved, and followed along the lift; some robots are moved."""
         last = int(rng.integers(2))
         postures = self._ends(self._first)[last]

@@ -64,6 +64,10 @@ class Searched(Protocol[End]):
         """From which optima are sought, for any design."""
         ...
 
+    def random_start(self, rng: np.random.Generator) -> Start:
+        """Another start, drawn."""
+        ...
+
     def rough(self, design: Design, start: Start) -> End:
         """The optimum that is found from a start."""
         ...

@@ -1,10 +1,10 @@
 """A portfolio of starts: a few from which nearly every design converges to its best known optimum.
 
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
-designs are solved from the landscape's universal starts. Then the best optimum of a design that no start
-serves is offered to all designs, until each is served: a start serves a design if the solver converges from
-it to within 1 % of the best optimum that any start led to. Of the offers those are chosen that serve all
-together with little work. The same landscape always gets the same portfolio.
+designs are solved from the landscape's universal starts and from a few random ones. Then the best optimum of a
+design that no start serves is offered to all designs, until each is served: a start serves a design if the
+solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept
+that serve all together with little work. The same landscape always gets the same portfolio.
 
 Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 """
@@ -32,13 +32,15 @@ class Training:
 
     Args:
         designs: to learn from.
-        begun: how many of them are solved from the universal starts.
+        begun: how many of them are solved from the universal starts and random ones.
+        random: starts of each of these.
         offers: optima that are offered at most.
         portfolio: the most starts that a portfolio holds.
     """
 
     designs: int = 24
     begun: int = 12
+    random: int = 6
     offers: int = 16
     portfolio: int = 6
 
@@ -58,8 +60,10 @@ def start_portfolio(
     """
     learned = [*islice(designs, training.designs)]
     work = _Ends(landscape, learned)
+    rng = np.random.default_rng(0)
     for place in range(min(training.begun, len(learned))):
-        work.begun(place)
+        drawn = [landscape.random_start(rng) for _ in range(training.random)]
+        work.begun(place, [*landscape.universal, *drawn])
     for _ in range(training.offers):
         wanted = work.wanted()
         if wanted is None:
@@ -78,10 +82,10 @@ class _Ends(Generic[End]):
         self._offers: list[Start] = []
         self._ends: list[list[End]] = []
 
-    def begun(self, place: int) -> None:
-        """Solve a design from the universal starts."""
+    def begun(self, place: int, starts: Sequence[Start]) -> None:
+        """Solve a design from some starts."""
         design = self._designs[place]
-        self._learn(place, [self._landscape.rough(design, start) for start in self._landscape.universal])
+        self._learn(place, [self._landscape.rough(design, start) for start in starts])
 
     def offered(self, start: Start) -> None:
         """Offer a start to all designs."""

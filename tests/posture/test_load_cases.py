@@ -12,12 +12,10 @@ from evodesign.errors import ModelError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
-from evodesign.nlp.program import Start
 from evodesign.nlp.solver import SolverCache
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.joint import FEW, MOST_OPTIMA
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -185,72 +183,6 @@ def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, prob
         costs.append(cost_of(best))
         like = best.postures
     assert costs[0] > costs[1] > costs[2]
-
-
-@pytest.fixture(scope="module")
-def several(problem: DesignProblem) -> StartPortfolio:
-    """Undisturbed postures of more random designs than are solved with disturbances at once."""
-    rng = np.random.default_rng(4)
-    program = postures_in(problem.scene, problem).landscape(HOLD).solver.program
-    starts: list[Start] = []
-    while len(starts) <= FEW:
-        values = problem.space.values(tuple(rng.uniform(size=len(problem.space.parameters))))
-        checker = checker_of(problem.scene, problem, values)
-        found = postures_in(problem.scene, problem).solve(values, HOLD, checker)
-        if found.solved:
-            starts.append(start_from(program, symmetric_forms(problem.scene), found.instants))
-    return StartPortfolio(tuple(starts), Coverage(0, 0, 0.0))
-
-
-def from_several(scene: Scene, problem: DesignProblem, starts: StartPortfolio, task: Hold) -> CaseSolution:
-    """Of the unscaled robot, from every start of a portfolio."""
-    setting = Setting(scene, problem.space, problem.weights, problem.options)
-    values = problem.space.unscaled(scene.robot.tree)
-    postures = PostureProblem(
-        setting, Symmetry.ON, Precomputed(postures={Case(person="", payload="", task=task): starts})
-    )
-    return postures.solve(values, task, checker_of(scene, problem, values))
-
-
-@pytest.mark.slow
-def test_the_best_undisturbed_optima_lead_to_the_best_disturbed_one(
-    problem: DesignProblem, several: StartPortfolio
-) -> None:
-    """It costs no more than where any start leads when it is solved with disturbances at once."""
-    scene = disturbed(problem, *EVERY)
-    both = from_several(scene, problem, several, HOLD)
-    each = [
-        from_several(scene, problem, StartPortfolio((start,), several.coverage), HOLD)
-        for start in several.starts
-    ]
-    assert cost_of(both) <= min(cost_of(one) for one in each if one.solved) + 1e-4
-    assert 1 <= len(both.attempts) <= MOST_OPTIMA < FEW < len(several.starts)
-
-
-@pytest.mark.slow
-def test_where_no_undisturbed_optimum_leads_to_a_posture_every_start_is_tried(
-    problem: DesignProblem, several: StartPortfolio
-) -> None:
-    blown_over = disturbed(problem, Disturbance("gale", push=(2000.0, 0.0, 0.0), at=PushedAt.ROBOT))
-    solution = from_several(blown_over, problem, several, HOLD)
-    assert not solution.solved
-    assert len({attempt.start for attempt in solution.attempts}) >= len(several.starts)
-
-
-@pytest.mark.slow
-def test_what_cannot_be_held_undisturbed_is_not_tried_with_disturbances(
-    problem: DesignProblem, several: StartPortfolio
-) -> None:
-    out_of_reach = Hold(height_m=2.6)
-    scenes = disturbed(problem, *EVERY), problem.scene
-    shaken, calm = (from_several(scene, problem, several, out_of_reach) for scene in scenes)
-    assert not shaken.solved
-    tried = [
-        [(a.start, a.status, a.iterations) for a in solution.attempts if not a.start.startswith("fixed")]
-        for solution in (shaken, calm)
-    ]
-    assert len(tried[0]) == len(several.starts)
-    assert tried[0] == tried[1]
 
 
 def changed(posture: AgentPosture, part: str) -> AgentPosture:

@@ -68,8 +68,8 @@ class Watcher(PrecomputeProgress):
     [
         (0, 0, [], []),
         (0, 0, [COMPILING], [1]),
-        (100, 0, [], [8]),
-        (100, 0, [COMPILING], [9]),
+        (100, 0, [], [9]),
+        (100, 0, [COMPILING], [10]),
         (6, 0, [], [6]),
         (6, 1, [], [6, 1]),
     ],
@@ -85,7 +85,8 @@ def test_all_pieces_are_told_before_the_first_is_worked_out(
     forgetful, watcher = Forgetful(problem, lost, damaged), Watcher()
     found = precomputed(problem, cast("Cache", forgetful), cast("Pool", forgetful), watcher, after)
     assert found.values.keys() == known.values.keys()
-    assert len(forgetful.asked) == 8, "starts of the highest and lowest load, and two pieces at three heights"
+    each = "designs, starts of the highest and lowest load, and two pieces at three heights"
+    assert len(forgetful.asked) == 9, each
     assert watcher.told == told
     assert len(watcher.left.done) == forgetful.worked_out == sum(told) - len(after)
     assert [each.piece for each in watcher.left.at_work] == after, "what the caller does next"
