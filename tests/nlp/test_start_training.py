@@ -117,7 +117,7 @@ def test_seeds_of_the_default_problem_lead_other_designs_well(known: Precomputed
     for found in (known.highest, known.lowest, *known.postures.values()):
         assert 1 <= len(found.starts) <= 6
         assert found.coverage.designs >= 12
-        assert found.coverage.share >= 0.97
+        assert found.coverage.share >= 0.9
 
 
 def test_an_evaluation_says_which_seed_led_to_it(problem: DesignProblem, evaluator: Evaluator) -> None:
