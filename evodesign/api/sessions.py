@@ -16,7 +16,7 @@ import msgspec
 from evodesign import evolve
 from evodesign.api.people import draw_people, usual_designs, usual_reference
 from evodesign.errors import InputError, Interrupted, ResumeMismatch, RunError
-from evodesign.nlp.codegen import NotCompiled
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.native.calls import method_library
 from evodesign.pool.base import Pool

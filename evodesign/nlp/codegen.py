@@ -6,16 +6,13 @@ the same bits: what IPOPT finds does not depend on whether there is a compiler. 
 subexpressions once more in the derivatives would save 2 % of their operations and cost that equality.)
 
 Threat model: see `cache`: a library is executed with the user's rights, so one that another user could have
-written or put in place is never loaded, but built again. The compiler that $CC or PATH names is trusted.
+written or put in place is never loaded, but built again. The compiler that $CC or PATH names or that pip
+installed is trusted.
 """
 
 from __future__ import annotations
 
-import math
 import os
-import shutil
-import signal
-import subprocess
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,49 +22,28 @@ from typing import Any
 import casadi as ca
 
 from evodesign.identity import code_digest, digest
+from evodesign.nlp.compiler import Compiler, NotCompiled, error_in, find_compiler, run
 from evodesign.nlp.disk_cache import Cache, user_cache
 
 __all__ = [
     "FUNCTION_FLAGS",
     "CompiledFunctions",
-    "Compiler",
     "Library",
-    "NotCompiled",
     "built",
     "compiled_function",
     "compiled_functions",
     "compiler_and_cache",
-    "find_compiler",
     "library",
 ]
 
 Expression = Any
 
-COMPILERS = ("cc", "gcc", "clang")
 FUNCTION_FLAGS = ("-Og", "-shared", "-fPIC", "-ffp-contract=off")
 """Compiled in two thirds of the time of -O1 and as fast; fused multiply-adds would round differently from the
 virtual machine."""
 
 COMPILING_LIMIT = 300.0
 """Wall time [s] after which a compiler is stopped; the largest program takes about 12."""
-
-VERSION_LIMIT = 10.0
-"""Wall time [s] in which a compiler must say its version."""
-
-
-@dataclass(frozen=True, slots=True)
-class NotCompiled:
-    """Why a program's functions run on CasADi's virtual machine: slower, with the same results."""
-
-    reason: str
-
-
-@dataclass(frozen=True, slots=True)
-class Compiler:
-    """A C compiler: the words that start it, and what it says of its version."""
-
-    command: tuple[str, ...]
-    version: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +85,7 @@ def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | Not
     try:
         return CompiledFunctions(ca.external("nlp", str(found.path)), found)
     except RuntimeError as error:  # such as a directory mounted without the right to execute
-        return NotCompiled(f"the compiled functions could not be loaded: {_gist(str(error))}")
+        return NotCompiled(f"the compiled functions could not be loaded: {error_in(str(error))}")
 
 
 def compiled_function(function: Any) -> Any:
@@ -130,31 +106,22 @@ def compiled_function(function: Any) -> Any:
         return function
 
 
-def compiler_and_cache(environment: Mapping[str, str]) -> tuple[Compiler, Cache] | NotCompiled:
-    """What libraries are made with, and where they are kept."""
-    compiler = find_compiler(environment)
+def compiler_and_cache(
+    environment: Mapping[str, str], *, quick: bool = False
+) -> tuple[Compiler, Cache] | NotCompiled:
+    """What libraries are made with, and where they are kept.
+
+    Args:
+        environment: that names them.
+        quick: whether the compiler had better be quick than its code.
+    """
+    compiler = find_compiler(environment, quick=quick)
     if isinstance(compiler, NotCompiled):
         return compiler
     try:
         return compiler, user_cache("functions", environment)
     except OSError as error:
         return NotCompiled(str(error))
-
-
-def find_compiler(environment: Mapping[str, str]) -> Compiler | NotCompiled:
-    """The C compiler that $CC or PATH names."""
-    named = environment.get("CC", "").strip()
-    wanted = [named.split()] if named else [[name] for name in COMPILERS]
-    for program, *arguments in wanted:
-        path = shutil.which(program, path=environment.get("PATH", ""))
-        if path is None:
-            continue
-        output = _run([path, *arguments, "--version"], VERSION_LIMIT, environment)
-        if isinstance(output, NotCompiled):
-            return output
-        return Compiler((path, *arguments), output)
-    looked = f"$CC names '{named}'" if named else f"looked for {', '.join(COMPILERS)}"
-    return NotCompiled(f"no C compiler found ({looked})")
 
 
 def library(nlp: Mapping[str, Expression], compiler: Compiler, cache: Cache) -> Library | NotCompiled:
@@ -228,44 +195,7 @@ def _compiled(
             (Path(name) / file).write_text(text, encoding="ascii")
         sources = [str(Path(name) / file) for file in texts if file.endswith(".c")]
         target = Path(name) / "library.so"
-        command = [*compiler.command, *flags, *sources, "-o", str(target), "-lm"]
-        output = _run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name})
+        libraries = [] if compiler.bundled else ["-lm"]
+        command = [*compiler.command, *flags, *sources, "-o", str(target), *libraries]
+        output = run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name})
         return output if isinstance(output, NotCompiled) else target.read_bytes()
-
-
-def _run(command: Sequence[str], limit: float, environment: Mapping[str, str]) -> str | NotCompiled:
-    """What a compiler writes; it is stopped, with the processes that it started, after a limit [s].
-
-    The limit holds for its processor time, too, should this process be killed beside it.
-    """
-    limited = ("/bin/sh", "-c", f'ulimit -t {math.ceil(limit)}; exec "$@"', "sh")
-    try:
-        process = subprocess.Popen(  # noqa: S603
-            [*limited, *command],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-            env={**environment, "LC_ALL": "C"},  # a version reads the same in every language
-            process_group=0,
-        )
-    except OSError as error:
-        return NotCompiled(f"the compiler could not be started: {error}")
-    with process:
-        try:
-            output, _ = process.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            return NotCompiled(f"{command[0]} did not finish within {limit:g} s")
-        finally:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-    if process.returncode != 0:
-        return NotCompiled(f"{command[0]} failed ({process.returncode}): {_gist(output)}")
-    return output
-
-
-def _gist(text: str) -> str:
-    """The line of a message that says what went wrong: the first about an error, or else the last."""
-    lines = text.strip().splitlines() or ["it said nothing"]
-    return next((line for line in lines if "error:" in line.lower()), lines[-1]).strip()

@@ -7,7 +7,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.nlp.codegen import CompiledFunctions, NotCompiled, compiled_functions
+from evodesign.nlp.codegen import CompiledFunctions, compiled_functions
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, MethodName, SolverOptions
 from evodesign.nlp.program import Array, Program
 

@@ -13,7 +13,8 @@ import numpy as np
 import scipy.sparse as sparse
 
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
-from evodesign.nlp.codegen import NotCompiled, compiled_function
+from evodesign.nlp.codegen import compiled_function
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.ipopt import casadi_options
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.blocks import NativeMaker, native_maker

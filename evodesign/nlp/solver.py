@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from evodesign.nlp.codegen import CompiledFunctions, Library, NotCompiled
+from evodesign.nlp.codegen import CompiledFunctions, Library
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.ipopt import Ipopt
 from evodesign.nlp.method import Method, MethodName, SolverOptions
 from evodesign.nlp.native.calls import method_library

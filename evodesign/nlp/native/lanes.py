@@ -15,7 +15,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from evodesign.nlp.codegen import Compiler
+from evodesign.nlp.compiler import Compiler
 
 __all__ = ["LANES", "LANES_SYMBOL", "in_lanes", "in_one_lane", "lane_flags"]
 

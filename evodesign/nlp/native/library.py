@@ -9,7 +9,8 @@ import casadi as ca
 import numpy as np
 
 from evodesign.identity import code_digest
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, Library, NotCompiled, built, compiler_and_cache
+from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, built, compiler_and_cache
+from evodesign.nlp.compiler import Compiler, NotCompiled
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, method_library
@@ -20,7 +21,7 @@ from evodesign.nlp.program import Array, Program
 __all__ = ["SELDOM_FLAGS", "NativeMethod", "native_method"]
 
 SELDOM_FLAGS = ("-O0", *FUNCTION_FLAGS[1:])
-"""Of programs that are solved seldom: a fifth of the time to compile, twice as slow to run, the same bits."""
+"""Of programs that are solved seldom, where there is no TinyCC: the same bits, twice as slow to run."""
 
 
 class NativeMethod:
@@ -70,7 +71,7 @@ def native_method(program: Program, *, seldom: bool = False) -> NativeMethod | N
         program: what is solved.
         seldom: whether it is solved so seldom that the compiler had better be quick than its code.
     """
-    method, tools = method_library(), compiler_and_cache(os.environ)
+    method, tools = method_library(), compiler_and_cache(os.environ, quick=seldom)
     if isinstance(method, NotCompiled):
         return method
     if isinstance(tools, NotCompiled):
@@ -83,12 +84,12 @@ def native_method(program: Program, *, seldom: bool = False) -> NativeMethod | N
 
 
 def _functions(program: Program, compiler: Compiler, cache: Cache, *, seldom: bool) -> Library | NotCompiled:
-    outputs = [program.cost, program.rows]
+    outputs, cut = [program.cost, program.rows], seldom and not compiler.bundled
     expressions = ca.Function("nlp", [program.symbols, program.given], outputs).serialize()
     return built(
         (code_digest(__name__), expressions, program.bounds, program.limits),
-        lambda: {"functions.c": in_pieces(program_text(program)) if seldom else program_text(program)},
-        SELDOM_FLAGS if seldom else FUNCTION_FLAGS,
+        lambda: {"functions.c": in_pieces(program_text(program)) if cut else program_text(program)},
+        SELDOM_FLAGS if cut else FUNCTION_FLAGS,
         compiler,
         cache,
     )

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.blocks import Block, Repeated
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, find_compiler
+from evodesign.nlp.codegen import FUNCTION_FLAGS
+from evodesign.nlp.compiler import Compiler, find_compiler
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native import blocks
 from evodesign.nlp.native.lanes import LANES, LANES_SYMBOL, in_lanes, lane_flags

@@ -9,10 +9,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.codegen import Compiler, NotCompiled, find_compiler
+from evodesign.nlp.compiler import Compiler, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.elimination import Entries, determined, elimination
-from evodesign.nlp.native.library import native_method
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import Solver, available
 from evodesign.records import Status
@@ -279,14 +278,3 @@ def test_near_solves_keep_the_solution() -> None:
     assert near.status is Status.SOLVED
     assert near.values["x"] == pytest.approx(far.values["x"], abs=1e-6)
     assert near.iterations < far.iterations
-
-
-def test_without_a_compiler_ipopt_is_had(monkeypatch: pytest.MonkeyPatch) -> None:
-    from evodesign.nlp.native import calls
-
-    calls.method_library.cache_clear()
-    monkeypatch.setenv("PATH", "")
-    monkeypatch.delenv("CC", raising=False)
-    assert available(NATIVE).method is MethodName.IPOPT
-    assert isinstance(native_method(random_program(0, convex=True).program), NotCompiled)
-    calls.method_library.cache_clear()

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Compiler, find_compiler
+from evodesign.nlp.codegen import FUNCTION_FLAGS
+from evodesign.nlp.compiler import BUNDLED, Compiler, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.library import SELDOM_FLAGS
 from evodesign.nlp.native.pieces import in_pieces
@@ -59,7 +61,12 @@ def test_short_functions_stay_whole() -> None:
 
 
 @pytest.mark.needs_compiler
-def test_programs_that_are_seldom_solved_end_at_the_same_bits() -> None:
+@pytest.mark.parametrize("tinycc", [True, False])
+def test_programs_that_are_seldom_solved_end_at_the_same_bits(
+    tinycc: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not tinycc:
+        monkeypatch.setitem(sys.modules, BUNDLED, None)
     random = random_program(4, convex=False)
     given = {"numbers": np.random.default_rng(3).normal(size=random.numbers)}
     often, seldom = (
