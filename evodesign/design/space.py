@@ -38,6 +38,7 @@ __all__ = [
     "Allocation",
     "DesignParameter",
     "DesignSpace",
+    "Family",
     "ParameterKind",
 ]
 
@@ -100,11 +101,6 @@ class DesignSpace:
             wanted = "parameters that keep the robot its own mirror image"
             raise ModelError(tree.name, "design", wanted, f"others ({error})") from error
 
-    def growths(self, tree: Tree) -> Mapping[str, Growth]:
-        """How each link of a length parameter grows."""
-        lengths = self._of(ParameterKind.LENGTH)
-        return {link: growth_of(tree, link) for parameter in lengths for link in parameter.links}
-
     @property
     def margins(self) -> tuple[int, ...]:
         """Places of the margins among the parameters."""
@@ -126,31 +122,25 @@ class DesignSpace:
     def _of(self, kind: ParameterKind) -> list[DesignParameter]:
         return [parameter for parameter in self.parameters if parameter.kind is kind]
 
-    def resized(
-        self, tree: Tree, values: Sequence[Scalar], growths: Mapping[str, Growth] | None = None
-    ) -> Tree:
+    def family(self, tree: Tree) -> Family:
+        """The trees of all designs of an unscaled one."""
+        lengths = [link for parameter in self._of(ParameterKind.LENGTH) for link in parameter.links]
+        growths = {link: growth_of(tree, link) for link in lengths}
+        fixed = [wall for wall in self.walls if wall.thickness is not None and wall.density is not None]
+        return Family(self, with_walls(tree, walls_of_links(fixed, {})), growths)
+
+    def resized(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
         """The tree of a design.
 
         Args:
             tree: unscaled.
             values: one number or expression per parameter; of a margin, the rated torque [N m].
-            growths: of the tree's links, if they are known already.
         """
-        return self.with_actuators(self.without_actuators(tree, values, growths), values)
+        return self.family(tree).resized(values)
 
     def with_actuators(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
         """The tree of a design that has no actuators yet, with them."""
         return with_actuators(tree, self.actuators(values))
-
-    def without_actuators(
-        self, tree: Tree, values: Sequence[Scalar], growths: Mapping[str, Growth] | None = None
-    ) -> Tree:
-        """The same tree with joints that nothing drives."""
-        by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
-        for parameter, value in zip(self.parameters, values, strict=True):
-            by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
-        tree = with_walls(tree, walls_of_links(self.walls, by_kind[ParameterKind.WALL]))
-        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], growths)
 
     def actuators(self, values: Sequence[Scalar]) -> dict[str, Actuator]:
         """The actuators of a design, by joint name; arguments as in `resized`."""
@@ -164,11 +154,6 @@ class DesignSpace:
     def driven(self) -> tuple[str, ...]:
         """Names of the joints whose actuators a design chooses."""
         return tuple(joint for parameter in self.parameters for joint in parameter.joints)
-
-    def with_fixed_walls(self, tree: Tree) -> Tree:
-        """The tree with the walls that all designs have in common, which `resized` leaves as they are."""
-        fixed = [wall for wall in self.walls if wall.thickness is not None and wall.density is not None]
-        return with_walls(tree, walls_of_links(fixed, {}))
 
     def allocations(self, values: Sequence[Scalar]) -> Mapping[str, Scalar]:
         """The allocation parameters among a design's values, by their own names."""
@@ -219,3 +204,30 @@ class DesignSpace:
     def named(self, values: Sequence[float]) -> Mapping[str, float]:
         """Parameter values by full name."""
         return {parameter.name: value for parameter, value in zip(self.parameters, values, strict=True)}
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """The trees of all designs of a robot; what they have in common is worked out once.
+
+    Args:
+        space: of the designs.
+        tree: unscaled, with the walls that all designs have.
+        growths: how each link of a length parameter grows.
+    """
+
+    space: DesignSpace
+    tree: Tree
+    growths: Mapping[str, Growth]
+
+    def resized(self, values: Sequence[Scalar]) -> Tree:
+        """The tree of a design; values as in `DesignSpace.resized`."""
+        return self.space.with_actuators(self.without_actuators(values), values)
+
+    def without_actuators(self, values: Sequence[Scalar]) -> Tree:
+        """The same tree with joints that nothing drives."""
+        by_kind: dict[ParameterKind, dict[str, Scalar]] = {kind: {} for kind in ParameterKind}
+        for parameter, value in zip(self.space.parameters, values, strict=True):
+            by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
+        tree = with_walls(self.tree, walls_of_links(self.space.walls, by_kind[ParameterKind.WALL]))
+        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], self.growths)

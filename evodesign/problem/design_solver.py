@@ -51,8 +51,8 @@ class DesignSolver:
     def __init__(self, problem: DesignProblem, known: Precomputed, inner: InnerProblems) -> None:
         self.problem, self.known, self.inner = problem, known, inner
         robot, space = problem.scene.robot, problem.space
-        self.growths = space.growths(robot.tree)
-        self.tree = space.with_fixed_walls(robot.tree)
+        self.family = space.family(robot.tree)
+        self.tree = self.family.tree
         self.robot = AgentModel.of(robot, self.tree)
         self.people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
 
@@ -88,7 +88,7 @@ class DesignSolver:
         """The unscaled robot in each standing case."""
         space = self.problem.space
         unscaled = space.given(space.unscaled(self.problem.scene.robot.tree), {})
-        return tuple(found for _, found in self.alone.torques(space.resized(self.tree, unscaled)))
+        return tuple(found for _, found in self.alone.torques(self.family.resized(unscaled)))
 
     @cached_property
     def added(self) -> AddedMasses:
@@ -108,7 +108,7 @@ class _OneDesign:
 
     def __init__(self, solver: DesignSolver, values: Sequence[float]) -> None:
         self._solver, self._problem, self._values = solver, solver.problem, values
-        self._tree = solver.problem.space.without_actuators(solver.tree, values, solver.growths)
+        self._tree = solver.family.without_actuators(values)
         self._robot = solver.robot.resized(self._tree)
 
     @property

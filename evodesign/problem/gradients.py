@@ -123,7 +123,7 @@ class _Design:
         self._values, self._result = values, result
         self._known: dict[str, list[OverTime]] = {}
         self._near: dict[int, list[tuple[Instant, ...]]] = {}
-        self._moved: dict[int, tuple[float, tuple[DesignResult, ...]]] = {}
+        self._trees = sensitivities.beside(result)
 
     @cached_property
     def _as_given(self) -> list[CaseDerivative | NotDifferentiable]:
@@ -134,7 +134,7 @@ class _Design:
     @cached_property
     def _given(self) -> Array | NotDifferentiable | None:
         """The derivatives of what programs are given; None where that is the design itself."""
-        return program_slopes(self._result, self._as_given)
+        return program_slopes(self._result, self._as_given, self._trees)
 
     @cached_property
     def _cases(self) -> list[CaseDerivative | NotDifferentiable]:
@@ -273,17 +273,8 @@ class _Design:
 
     def _beside(self, position: int) -> tuple[float, tuple[DesignResult, ...]]:
         """The same postures with another value of a parameter: a step, and results at -2 to 2 steps."""
-        if position not in self._moved:
-            given = np.array(self._result.program_values)
-            step = STEP * (abs(given[position]) or 1.0)
-            unit = np.eye(len(given))[position] * step
-            designs = [(given + count * unit).tolist() for count in (-2, -1, 1, 2)]
-            space, tree = self._problem.space, self._result.robot.tree
-            before, lower, upper, after = (
-                replace(self._result, tree=space.resized(tree, values)) for values in designs
-            )
-            self._moved[position] = (step, (before, lower, self._result, upper, after))
-        return self._moved[position]
+        step, trees = self._trees.along(position)
+        return step, tuple(replace(self._result, tree=tree) for tree in trees)
 
     def _of_shared_reach(self) -> Found:
         people, robot = self._result.people_highest, self._result.reach.highest
@@ -321,7 +312,6 @@ class _Design:
 
     def _of_bodies(self) -> Found:
         """Of the nearest two bodies at zero, differenced along the resized robot: lengths alone move them."""
-        space, tree = self._problem.space, self._result.robot.tree
         slack = built_in_slack(self._result.tree, self._result.robot.collisions)
         if slack is None:
             return NotDifferentiable("the design has no such value")
@@ -331,9 +321,9 @@ class _Design:
         def value(position: int, moved: float) -> float:
             values = list(self._result.program_values)
             values[position] += moved
-            return apart(space.without_actuators(tree, values))
+            return apart(self._trees.family.without_actuators(values))
 
-        for position, parameter in enumerate(space.parameters):
+        for position, parameter in enumerate(self._problem.space.parameters):
             if parameter.kind is ParameterKind.LENGTH:
                 step = STEP * self._values[position]
                 found[position] = (value(position, step) - value(position, -step)) / (2.0 * step)

@@ -36,6 +36,7 @@ from evodesign.problem.design_result import DesignResult
 from evodesign.problem.inner import InnerProblems, inner_problems
 from evodesign.problem.objectives import objective_value
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
+from evodesign.problem.trees_beside import TreesBeside
 from evodesign.records import Status
 
 __all__ = [
@@ -163,12 +164,17 @@ class Sensitivities:
     ) -> None:
         self._problem = problem
         self._inner = inner or inner_problems(problem, known)
+        self._family = problem.space.family(problem.scene.robot.tree)
+
+    def beside(self, result: DesignResult) -> TreesBeside:
+        """The robots of designs beside one, from its results."""
+        return TreesBeside(self._family, result.program_values, result.tree)
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
         given = result.program_values
         cases = [self.of_case(given, solution) for solution in result.cases]
-        slopes = program_slopes(result, cases)
+        slopes = program_slopes(result, cases, self.beside(result))
         highest, lowest = (self.of_reach(given, sense) for sense in (HIGHEST, LOWEST))
         return DesignDerivative(
             problem=self._problem,

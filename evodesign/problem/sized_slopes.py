@@ -28,24 +28,26 @@ from evodesign.problem.demand import Demand
 from evodesign.problem.design_result import DesignResult
 from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.sizing import BOUNDS
+from evodesign.problem.trees_beside import TreesBeside
 
 __all__ = ["CaseDerivative", "along_design", "program_slopes", "reach_along_design"]
 
 CaseDerivative = PostureDerivative | LiftDerivative
 """Of a load held still, or of a lift."""
 
-STEP = 1e-5
-"""Step of differences, as a share of a value."""
+_Torques = list[tuple[StanceCase, StanceTorques]]
+"""Of every standing case."""
 
 
 def program_slopes(
-    result: DesignResult, cases: Sequence[CaseDerivative | NotDifferentiable]
+    result: DesignResult, cases: Sequence[CaseDerivative | NotDifferentiable], beside: TreesBeside
 ) -> Array | NotDifferentiable | None:
     """The derivatives of what programs are given, by the design's parameters, shape (parameters, parameters).
 
     Args:
         result: of a design.
         cases: tangents of its postures by what programs are given, one per case.
+        beside: robots of other designs.
     Returns:
         None where no actuator is sized: then both are the same.
     """
@@ -60,7 +62,7 @@ def program_slopes(
     tangents = [each for each in cases if isinstance(each, PostureDerivative)]
     count, places = len(result.values), result.space.margins
     by_given, by_margin = np.zeros((len(places), count)), np.zeros(len(places))
-    stances = _Stances(as_given, result.standing)
+    stances = _Stances(as_given, result.standing, beside)
     for row, place in enumerate(places):
         asked = float(np.abs(demand.torques[:, list(demand.members[row])]).max(initial=0.0))
         if not BOUNDS[0] < result.values[place] * asked < BOUNDS[1]:
@@ -109,38 +111,34 @@ class _Stances:
     Args:
         result: of the design, with the values that programs are given.
         model: of the cases.
+        beside: robots of other designs.
     """
 
-    def __init__(self, result: DesignResult, model: StanceModel) -> None:
-        self._result, self._model = result, model
-        self._steps = [STEP * max(abs(value), 1e-3) for value in result.values]
+    def __init__(self, result: DesignResult, model: StanceModel, beside: TreesBeside) -> None:
+        self._result, self._model, self._trees = result, model, beside
 
     def slope(self, case: int, joint: str, demand: Demand) -> Array:
         """Of what a case asks of a joint, by what programs are given."""
         model = self._model
         known = self._size(model.torques(self._result.tree), case, joint)
         asked = demand.torques[case - len(model.cases), demand.joints.index(joint)]
-        ends = [[self._size(end, case, joint) for end in both] for both in self._beside]
         differences = [
-            (above - below) / (2.0 * step) for (above, below), step in zip(ends, self._steps, strict=True)
+            (self._size(above, case, joint) - self._size(below, case, joint)) / (2.0 * step)
+            for step, below, above in self._beside
         ]
         return abs(float(asked)) / known * np.array(differences)
 
     @cached_property
-    def _beside(self) -> list[list[list[tuple[StanceCase, StanceTorques]]]]:
-        """Of each value, a step above and below."""
-        return [
-            [self._torques(place, sign * step) for sign in (1.0, -1.0)]
-            for place, step in enumerate(self._steps)
-        ]
-
-    def _torques(self, place: int, step: float) -> list[tuple[StanceCase, StanceTorques]]:
-        values = list(self._result.values)
-        values[place] += step
-        return self._model.torques(self._result.space.resized(self._result.robot.tree, values))
+    def _beside(self) -> list[tuple[float, _Torques, _Torques]]:
+        """By place of a value: the step, and the torques a step below and above."""
+        found = []
+        for place in range(len(self._result.values)):
+            step, (_, below, _, above, _) = self._trees.along(place)
+            found.append((step, self._model.torques(below), self._model.torques(above)))
+        return found
 
     @staticmethod
-    def _size(found: list[tuple[StanceCase, StanceTorques]], case: int, joint: str) -> float:
+    def _size(found: _Torques, case: int, joint: str) -> float:
         return abs(float(found[case][1].torques[joint]))
 
 
