@@ -192,7 +192,7 @@ def _compilation(
         return None
     if compiler.bundled:
         progress.note(
-            "no gcc or clang found: TinyCC compiles, in no time; evaluations take up to twice as long, "
+            "TinyCC compiles, within seconds; evaluations take up to twice as long as with gcc or clang, "
             "to the same digits"
         )
     if options.method is MethodName.IPOPT and isinstance(native := method_library(), NotCompiled):

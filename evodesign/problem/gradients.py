@@ -46,8 +46,9 @@ from evodesign.problem.objectives import (
     split_name,
 )
 from evodesign.problem.person_objectives import HOLDING_TIME
-from evodesign.problem.sensitivities import STEP, ObjectiveSensitivity, Sensitivities, five_point
+from evodesign.problem.sensitivities import ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
+from evodesign.problem.trees_beside import STEP
 from evodesign.records import Case, CaseGradient, Gradients, Lift
 from evodesign.violations import BODIES_APART, HEIGHT
 

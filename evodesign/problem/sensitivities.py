@@ -40,7 +40,6 @@ from evodesign.problem.trees_beside import TreesBeside
 from evodesign.records import Status
 
 __all__ = [
-    "STEP",
     "DesignDerivative",
     "ObjectiveSensitivity",
     "Sensitivities",
