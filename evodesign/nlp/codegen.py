@@ -33,6 +33,7 @@ __all__ = [
     "compiled_function",
     "compiled_functions",
     "compiler_and_cache",
+    "kept_library",
     "library",
 ]
 
@@ -140,7 +141,12 @@ def _of(nlp: Mapping[str, Expression]) -> tuple[str, str]:
 
 
 def built(
-    of: object, texts: Callable[[], Mapping[str, str]], flags: Sequence[str], compiler: Compiler, cache: Cache
+    of: object,
+    texts: Callable[[], Mapping[str, str]],
+    flags: Sequence[str],
+    compiler: Compiler,
+    cache: Cache,
+    niceness: int = 0,
 ) -> Library | NotCompiled:
     """A library from the cache or, when it is not there, compiled.
 
@@ -154,21 +160,26 @@ def built(
         flags: of the compiler.
         compiler: to use.
         cache: where libraries are kept.
+        niceness: how much less urgent the compiler is than this process.
     Raises:
         OSError: a file cannot be written.
     """
+    if kept := kept_library(of, flags, compiler, cache):
+        return kept
     key = _key(of, flags, compiler)
-    path = cache.find(key)
-    if path is not None:
-        return Library(path, fresh=False)
     with cache.lock(key) as waited:
-        path = cache.find(key)
-        if path is not None:
-            return Library(path, fresh=False)
+        if kept := kept_library(of, flags, compiler, cache):
+            return kept
         if waited:  # trying again would take as long, and fail as surely, in one process after another
             return NotCompiled("another process tried to compile the same functions and failed")
-        content = _compiled(texts(), flags, compiler, cache.directory)
+        content = _compiled(texts(), flags, compiler, cache.directory, niceness)
         return content if isinstance(content, NotCompiled) else Library(cache.store(key, content), fresh=True)
+
+
+def kept_library(of: object, flags: Sequence[str], compiler: Compiler, cache: Cache) -> Library | None:
+    """A library that was compiled before; None if there is none. Arguments as in `built`."""
+    path = cache.find(_key(of, flags, compiler))
+    return Library(path, fresh=False) if path else None
 
 
 def _key(of: object, flags: Sequence[str], compiler: Compiler) -> str:
@@ -187,7 +198,7 @@ def _c_text(nlp: Mapping[str, Expression]) -> str:
 
 
 def _compiled(
-    texts: Mapping[str, str], flags: Sequence[str], compiler: Compiler, directory: Path
+    texts: Mapping[str, str], flags: Sequence[str], compiler: Compiler, directory: Path, niceness: int
 ) -> bytes | NotCompiled:
     """The library of C files; every file on the way to it lies in the user's own directory."""
     with tempfile.TemporaryDirectory(prefix=".", dir=directory) as name:
@@ -197,5 +208,5 @@ def _compiled(
         target = Path(name) / "library.so"
         libraries = [] if compiler.bundled else ["-lm"]
         command = [*compiler.command, *flags, *sources, "-o", str(target), *libraries]
-        output = run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name})
+        output = run(command, COMPILING_LIMIT, {**os.environ, "TMPDIR": name}, niceness)
         return output if isinstance(output, NotCompiled) else target.read_bytes()

@@ -7,6 +7,7 @@ optimise, and rounds each operation to a double as GCC does without fused multip
 
 from __future__ import annotations
 
+import atexit
 import math
 import os
 import shutil
@@ -29,6 +30,9 @@ HEADERS = Path(__file__).parent / "headers"
 
 VERSION_LIMIT = 10.0
 """Wall time [s] in which a compiler must say its version."""
+
+LEAST_URGENT = 19
+"""The largest niceness of a process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +94,18 @@ def _bundled(environment: Mapping[str, str]) -> Compiler | NotCompiled | None:
     return Compiler((path, "-nostdlib", "-nostdinc", f"-I{HEADERS}"), output + headers, bundled=True)
 
 
-def run(command: Sequence[str], limit: float, environment: Mapping[str, str]) -> str | NotCompiled:
+def run(
+    command: Sequence[str], limit: float, environment: Mapping[str, str], niceness: int = 0
+) -> str | NotCompiled:
     """What a compiler writes; it is stopped, with the processes that it started, after a limit [s].
 
-    The limit holds for its processor time, too, should this process be killed beside it.
+    It ends with this process; should this one be killed beside it, the limit holds for its processor time.
+
+    Args:
+        command: its words.
+        limit: of wall time [s].
+        environment: that it sees.
+        niceness: how much less urgent it is than this process.
     """
     limited = ("/bin/sh", "-c", f'ulimit -t {math.ceil(limit)}; exec "$@"', "sh")
     try:
@@ -109,17 +121,39 @@ def run(command: Sequence[str], limit: float, environment: Mapping[str, str]) ->
         )
     except OSError as error:
         return NotCompiled(f"the compiler could not be started: {error}")
+    _RUNNING.add(process)
     with process:
         try:
+            if niceness:
+                os.setpriority(os.PRIO_PGRP, process.pid, min(LEAST_URGENT, os.nice(0) + niceness))
             output, _ = process.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
             return NotCompiled(f"{command[0]} did not finish within {limit:g} s")
         finally:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
+            _stop(process)
+            _RUNNING.discard(process)
     if process.returncode != 0:
         return NotCompiled(f"{command[0]} failed ({process.returncode}): {error_in(output)}")
     return output
+
+
+_RUNNING: set[subprocess.Popen[str]] = set()
+"""Compilers that a thread waits for when the process ends."""
+
+
+def _stop(process: subprocess.Popen[str]) -> None:
+    """With all that it started."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+@atexit.register
+def _stop_all() -> None:
+    for process in [*_RUNNING]:
+        _stop(process)
+
+
+os.register_at_fork(after_in_child=_RUNNING.clear)
 
 
 def error_in(text: str) -> str:

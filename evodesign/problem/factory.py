@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import functools
 import os
-import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
@@ -33,7 +32,7 @@ from evodesign.problem.baseline import BaselineFactory
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.problem.file import HumanTable, ProblemFile, SolverTable
-from evodesign.problem.precompute import COMPILING, precomputed
+from evodesign.problem.precompute import precomputed
 from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.source import decode_toml
 from evodesign.records import (
@@ -75,10 +74,7 @@ def evaluation_factory(header: RunHeader, pool: Pool, progress: PrecomputeProgre
         evaluation = _assessment_factory(problem, pool, progress)
         return replace(evaluation, gradients=header.search.with_gradients)
     factory = BaselineFactory(f"{digest(header.problem)}-{JOINT_STARTS}", header.problem, problem.limits)
-    compilation = _compilation(BaselineFactory, factory.digest, problem.joint.options, progress)
-    if compilation:
-        progress.missing([COMPILING], 1)
-        compilation.run(factory, progress)
+    _say_what_compiles(problem.joint.options, progress)
     return factory
 
 
@@ -141,64 +137,26 @@ def cached_precomputed(
 def _assessment_factory(
     problem: DesignProblem, pool: Pool, progress: PrecomputeProgress
 ) -> AssessmentFactory:
-    """The evaluation of a problem's designs, with all that is worked out once: pieces, then machine code."""
-    name = digest(problem.source)
-    compilation = _compilation(AssessmentFactory, name, problem.options, progress)
-    after = [COMPILING] if compilation else []
-    known = precomputed(problem, _cache("precomputed", progress), pool, progress, after)
-    factory = AssessmentFactory(name, problem, known)
-    if compilation:
-        compilation.run(factory, progress)
-    return factory
+    """The evaluation of a problem's designs, with all that is worked out once."""
+    _say_what_compiles(problem.options, progress)
+    known = precomputed(problem, _cache("precomputed", progress), pool, progress)
+    return AssessmentFactory(digest(problem.source), problem, known)
 
 
-@dataclass(frozen=True, slots=True)
-class _Compilation:
-    """The compilation of a problem's functions, done once so that no worker waits for another.
-
-    Args:
-        cache: of marks that it is done; None where nothing can be kept.
-        key: of this problem's mark.
-    """
-
-    cache: Cache | None
-    key: str
-
-    def run(self, factory: Evaluations, progress: PrecomputeProgress) -> None:
-        """Compile, and leave the mark."""
-        began = time.monotonic()
-        factory()
-        progress.done(COMPILING, time.monotonic() - began)
-        if self.cache is not None:
-            self.cache.store(self.key, b"ready")
-
-
-def _compilation(
-    kind: type[Evaluations], name: str, options: SolverOptions, progress: PrecomputeProgress
-) -> _Compilation | None:
-    """What is to be compiled of a problem; None if that is done, not wanted, or not possible.
-
-    Args:
-        kind: of the evaluation.
-        name: its digest.
-        options: of its solver.
-        progress: is told what stands in the way.
-    """
+def _say_what_compiles(options: SolverOptions, progress: PrecomputeProgress) -> None:
+    """Tell what stands in the way of fast solves by some options."""
     if not options.compiled:
-        return None
+        return
     compiler = find_compiler(os.environ)
     if isinstance(compiler, NotCompiled):
         progress.note(f"{compiler.reason}: IPOPT solves, on CasADi's virtual machine, many times slower")
-        return None
+        return
     if compiler.bundled:
         progress.note(
-            "TinyCC compiles, within seconds; evaluations take up to twice as long as with gcc or clang, "
-            "to the same digits"
+            "TinyCC compiles; evaluations take up to twice as long as with gcc or clang, to the same digits"
         )
     if options.method is MethodName.IPOPT and isinstance(native := method_library(), NotCompiled):
         progress.note(f"{native.reason}: IPOPT solves, several times slower")
-    cache, key = _cache("ready", progress), digest((name, code_digest(kind.__module__), compiler))
-    return None if cache is not None and cache.read(key) else _Compilation(cache, key)
 
 
 def _cache(subject: str, progress: PrecomputeProgress = SILENT) -> Cache | None:

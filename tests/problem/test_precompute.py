@@ -14,7 +14,7 @@ from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.plan import Piece
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.precompute import COMPILING, precompute_setting, precomputed
+from evodesign.problem.precompute import precompute_setting, precomputed
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece, TimeLeft
 
@@ -64,30 +64,20 @@ class Watcher(PrecomputeProgress):
 
 
 @pytest.mark.parametrize(
-    ("lost", "damaged", "after", "told"),
-    [
-        (0, 0, [], []),
-        (0, 0, [COMPILING], [1]),
-        (100, 0, [], [9]),
-        (100, 0, [COMPILING], [10]),
-        (6, 0, [], [6]),
-        (6, 1, [], [6, 1]),
-    ],
+    ("lost", "damaged", "told"), [(0, 0, []), (100, 0, [9]), (6, 0, [6]), (6, 1, [6, 1])]
 )
 def test_all_pieces_are_told_before_the_first_is_worked_out(
     lost: int,
     damaged: int,
-    after: list[PendingPiece],
     told: list[int],
     problem: DesignProblem,
     known: Precomputed,
 ) -> None:
     forgetful, watcher = Forgetful(problem, lost, damaged), Watcher()
-    found = precomputed(problem, cast("Cache", forgetful), cast("Pool", forgetful), watcher, after)
+    found = precomputed(problem, cast("Cache", forgetful), cast("Pool", forgetful), watcher)
     assert found.values.keys() == known.values.keys()
     each = "designs, starts of the highest and lowest load, and two pieces at three heights"
     assert len(forgetful.asked) == 9, each
     assert watcher.told == told
-    assert len(watcher.left.done) == forgetful.worked_out == sum(told) - len(after)
-    assert [each.piece for each in watcher.left.at_work] == after, "what the caller does next"
-    assert watcher.left.waiting == ()
+    assert len(watcher.left.done) == forgetful.worked_out == sum(told)
+    assert watcher.left.at_work == watcher.left.waiting == ()

@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.problem.precompute import COMPILING
 from evodesign.problem.time_left import LATE, LATER, PendingPiece, TimeLeft, in_words
+
+LAST = PendingPiece("a lift", "lift", 0.1, 3)
 
 
 def pieces_of(heights: int, people: int = 1) -> list[PendingPiece]:
@@ -23,7 +24,7 @@ def pieces_of(heights: int, people: int = 1) -> list[PendingPiece]:
         *reach,
         *persons,
         *(PendingPiece(f"posture {number}", "posture", 1.7, 1) for number in range(heights)),
-        COMPILING,
+        LAST,
     ]
 
 
@@ -170,9 +171,9 @@ def test_a_piece_that_hangs_silences_the_forecast_and_its_end_brings_it_back() -
 
 
 def test_the_last_piece_leaves_nothing() -> None:
-    left = TimeLeft().with_missing([COMPILING], 1, 3.0)
+    left = TimeLeft().with_missing([LAST], 1, 3.0)
     assert left.seconds(9.0) is None
-    assert left.with_done(COMPILING, 6.0, 9.0).seconds(9.0) == 0.0
+    assert left.with_done(LAST, 6.0, 9.0).seconds(9.0) == 0.0
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,6 @@ from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.lanes import LANES_SYMBOL, in_lanes, in_one_lane, lane_flags
-from evodesign.nlp.native.library import SELDOM_FLAGS
 from evodesign.nlp.native.pieces import in_pieces
 from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
 from evodesign.nlp.native.source import UNBOUNDED
@@ -64,18 +63,18 @@ def block_functions(block: Block, *, seldom: bool = False) -> BlockFunctions | N
         block: whose functions are wanted.
         seldom: whether they run so seldom that the compiler had better be quick than its code.
     """
-    tools = compiler_and_cache(os.environ)
+    tools = compiler_and_cache(os.environ, quick=seldom)
     if isinstance(tools, NotCompiled):
         return tools
     expressions = ca.Function("block", block.arguments, block.values).serialize()
     lanes = lane_flags(tools[0])
-    flags = (*(SELDOM_FLAGS if seldom else FUNCTION_FLAGS), *lanes)
+    flags = (*FUNCTION_FLAGS, *lanes)
 
     def texts() -> Mapping[str, str]:
         text = _c_text(block)
         if lanes:
             return {"functions.c": in_lanes(in_pieces(text))}
-        return {"functions.c": in_one_lane(in_pieces(text) if seldom else text)}
+        return {"functions.c": in_one_lane(text)}
 
     try:
         found = built((code_digest(__name__), expressions), texts, flags, *tools)
