@@ -89,7 +89,7 @@ def test_a_robot_that_is_moved_by_nothing_begins_at_its_hold(
 def test_a_chosen_start_leads_to_no_worse_a_lift_than_the_holds(
     lifted: Lifted, problem: DesignProblem, solution: LiftSolution, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(starts, "TRAINING", Training(1, 2, 0, 1, 1, 1))
+    monkeypatch.setattr(starts, "TRAINING", Training(designs=1, begun=1, random=0, offers=1, portfolio=1))
     lift = LIFT.coarse
     compiled = replace(precompute_setting(problem), options=lifted.setting.options)
     portfolio = lift_portfolio(compiled, ("", ""), lift, NOTHING_PRECOMPUTED)

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from benchmarks.clear_robots import ROBOTS, measured
-from evodesign.posture.precompute import meetings
 
 pytestmark = pytest.mark.needs_robots
 
@@ -17,14 +16,7 @@ DEEPEST = 0.003
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["gr1"])
-def test_a_robot_with_meshes_holds_the_load_without_overlap(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Pairs are looked for in a seventh of the usual designs, and nothing is compiled, for time."""
-    for number in ("DESIGNS", "AT_CORNERS", "AT_REACH", "FEWEST"):
-        usual = getattr(meetings, number)
-        monkeypatch.setattr(meetings, number, max(usual // 7, 1))
-    monkeypatch.setenv("CC", "/nowhere/cc")
+def test_a_robot_with_meshes_holds_the_load_without_overlap(name: str, tmp_path: Path) -> None:
     found = measured(ROBOTS[name], tmp_path, fixed_starts=True)
     assert found["solved"]
     assert found["nearest"]["distance_m"] > -DEEPEST
