@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
 
+from evodesign.nlp.codegen import CompiledFunctions, Library
+from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.program import Array
 
 __all__ = ["NEAR_BARRIER", "NEAR_PUSH", "Ending", "Method", "MethodName", "SolverOptions"]
@@ -82,6 +84,11 @@ class Method(Protocol):
     """Solves one program, any number of times."""
 
     name: MethodName
+
+    @property
+    def functions(self) -> CompiledFunctions | Library | NotCompiled:
+        """The machine code that evaluates the program, or why CasADi's virtual machine does."""
+        ...
 
     def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
         """Solve from a start, in the program's own units."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping, Sequence
-from copy import copy
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ __all__ = [
     "after",
     "available",
     "has_any",
+    "own_solvers",
     "status_of",
 ]
 
@@ -90,6 +91,9 @@ BRIEF = 60
 WORTH = 1e-3
 """Share of its cost that a solution must gain by parting bodies in other ways to be solved again."""
 
+KEPT = 16
+"""Solvers that a process keeps for its next work; a problem has about three for each person."""
+
 UNSETTLED = "rows remain that are to be switched on"
 
 _STATUS = {
@@ -108,33 +112,45 @@ class Solver:
     Attributes:
         program: what is solved.
         options: of every solve.
-        functions: the machine code that evaluates it, or why CasADi's virtual machine does.
     """
 
     def __init__(self, program: Program, options: SolverOptions) -> None:
         self.program = program
         self.options = options
-        self.functions, self._method = _made(program, options)
-        self._origin = self  # also of copies with other options
+        self._method = _made(program, options)
+        self._origin = self  # also of those with other options
+
+    @property
+    def functions(self) -> CompiledFunctions | Library | NotCompiled:
+        """The machine code that evaluates the program, or why CasADi's virtual machine does."""
+        return self._method.functions
+
+    def with_options(self, options: SolverOptions) -> Solver:
+        """The same program, solved with others of the options that say nothing of machine code and method."""
+        if options == self.options:
+            return self
+        other = object.__new__(Solver)
+        other.program, other.options = self.program, options
+        other._method, other._origin = self._method, self._origin
+        return other
 
     @cached_property
     def near(self) -> Solver:
         """The same for solves that begin close to a solution: a third of the iterations."""
-        other = copy(self)
-        other.options = replace(self.options, near=True)
-        return other
+        return self.with_options(replace(self.options, near=True))
 
     @cached_property
     def brief(self) -> Solver:
         """The same for solves that are given up early."""
-        other = copy(self)
-        other.options = replace(self.options, iterations=min(BRIEF, self.options.iterations))
-        return other
+        return self.with_options(replace(self.options, iterations=min(BRIEF, self.options.iterations)))
 
     @cached_property
     def by_ipopt(self) -> Solver:
         """The same program for what the native method does not solve; too seldom to compile for."""
-        return Solver(self.program, replace(self.options, compiled=False))
+        options = replace(self.options, compiled=False)
+        if self._origin is not self:
+            return self._origin.by_ipopt.with_options(options)
+        return Solver(self.program, options)
 
     @property
     def native(self) -> bool:
@@ -196,9 +212,7 @@ class Solver:
     @property
     def _parted_alike(self) -> Solver:
         """With all rows, and the options of these solves."""
-        other = copy(self.parted)
-        other.options = self.options
-        return other
+        return self.parted.with_options(self.options)
 
     def _is_parted(self, start: Start) -> bool:
         switches = self.program.switches
@@ -291,16 +305,13 @@ def has_any(names: Collection[str], start: Start) -> bool:
     return any(np.count_nonzero(start[name]) for name in names if name in start)
 
 
-def _made(
-    program: Program, options: SolverOptions
-) -> tuple[CompiledFunctions | Library | NotCompiled, Method]:
-    """A program's machine code, or why there is none, and who solves it."""
+def _made(program: Program, options: SolverOptions) -> Method:
+    """Who solves a program."""
     if options.method is MethodName.NATIVE:
         native = native_method(program, seldom=options.seldom)
         if not isinstance(native, NotCompiled):
-            return native.functions, native
-    ipopt = Ipopt(program, options)
-    return ipopt.functions, ipopt
+            return native
+    return Ipopt(program, options)
 
 
 def available(options: SolverOptions) -> SolverOptions:
@@ -316,10 +327,14 @@ class SolverCache:
     The load's mass is a number that every program is given, and a robot's program knows of the person only
     what the load passes on. So scenes that differ in the mass of their load alone share all programs, and
     scenes that differ in the person share the robot's.
+
+    Args:
+        most: how many are kept at a time, those that were last asked for.
     """
 
-    def __init__(self) -> None:
-        self._solvers: dict[tuple[str, SolverOptions], Solver] = {}
+    def __init__(self, most: float = np.inf) -> None:
+        self._most = most
+        self._solvers: OrderedDict[object, Solver] = OrderedDict()
 
     def solver(self, key: str, program: Callable[[], Program], options: SolverOptions) -> Solver:
         """The solver of a program, built when it is first asked for.
@@ -329,6 +344,16 @@ class SolverCache:
             program: builds it.
             options: of the solver.
         """
-        if (key, options) not in self._solvers:
-            self._solvers[key, options] = Solver(program(), options)
-        return self._solvers[key, options]
+        own = key, options.compiled, options.method, options.seldom
+        if own not in self._solvers:
+            self._solvers[own] = Solver(program(), options)
+        self._solvers.move_to_end(own)
+        if len(self._solvers) > self._most:
+            self._solvers.popitem(last=False)
+        return self._solvers[own].with_options(options)
+
+
+@cache
+def own_solvers() -> SolverCache:
+    """Those of this process, for work that follows other work on the same problem."""
+    return SolverCache(KEPT)

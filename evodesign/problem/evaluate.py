@@ -14,7 +14,7 @@ import msgspec
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
-from evodesign.nlp.solver import SolverCache
+from evodesign.nlp.solver import SolverCache, own_solvers
 from evodesign.pool.base import Limits
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
@@ -279,5 +279,5 @@ class AssessmentFactory:
 
     def __call__(self) -> Callable[[Genome], Assessed]:
         """Build the inner problems and return the function from genome to results."""
-        evaluator = Evaluator(self.problem, self.known)
+        evaluator = Evaluator(self.problem, self.known, own_solvers())
         return evaluator.assess_with_gradients if self.gradients else evaluator.assess

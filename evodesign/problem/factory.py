@@ -24,6 +24,7 @@ from evodesign.nlp.compiler import NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import method_library
+from evodesign.nlp.solver import own_solvers
 from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
@@ -95,7 +96,7 @@ class ValuesFactory:
 
     def __call__(self) -> Callable[[Sequence[float]], Assessed]:
         """Build the inner problems and return the function from values to results."""
-        return Evaluator(self.factory.problem, self.factory.known).assess_values
+        return Evaluator(self.factory.problem, self.factory.known, own_solvers()).assess_values
 
 
 def values_factory(

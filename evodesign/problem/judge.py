@@ -14,8 +14,8 @@ from evodesign.records import Evaluation, Genome
 
 __all__ = ["is_judged", "judged_notes"]
 
-ONE_IN = 500
-"""Of so many designs one is judged."""
+ONE_IN = 2000
+"""Of so many designs one is judged, which takes about a hundred times as long as an evaluation."""
 
 AGREEMENT = 1e-5
 """Largest difference of an objective, relative to its size or to 1, that goes without a word."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from evodesign.errors import InputError, RunError
 from evodesign.motion.starts import lift_portfolio
 from evodesign.nlp.disk_cache import Cache
+from evodesign.nlp.solver import own_solvers
 from evodesign.pool.base import Limits, Pool
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import compute_piece, encoded_piece, with_piece
@@ -224,4 +225,4 @@ class _PieceFactory:
 def _content(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
     if isinstance(piece.task, Lift):
         return encoded_piece(lift_portfolio(setting, piece.pair, piece.task, known))
-    return compute_piece(setting, piece, known)
+    return compute_piece(setting, piece, known, own_solvers())

@@ -28,13 +28,6 @@ from evodesign.records import ActiveLimit, Task
 
 __all__ = ["NO_PART_OF_PROGRAMS", "Formulation", "Setting", "program_key"]
 
-NO_PART_OF_PROGRAMS: Exceptions = {
-    Scene: {"human": "only hands stand in for a person who has no body in the program"},
-    Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},
-    Agent: {"label": "is a word for results"},
-    MeasuredPosture: {"drawn": "is a parameter of every program with the person's body"},
-}
-
 
 @dataclass(frozen=True, slots=True)
 class Setting:
@@ -51,6 +44,15 @@ class Setting:
     space: DesignSpace
     weights: EffortWeights
     options: SolverOptions
+
+
+NO_PART_OF_PROGRAMS: Exceptions = {
+    Setting: {"options": "say how a program is solved"},
+    Scene: {"human": "only hands stand in for a person who has no body in the program"},
+    Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},
+    Agent: {"label": "is a word for results"},
+    MeasuredPosture: {"drawn": "is a parameter of every program with the person's body"},
+}
 
 
 class Formulation(Protocol):

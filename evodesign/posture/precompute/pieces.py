@@ -16,7 +16,7 @@ import numpy as np
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
-from evodesign.nlp.solver import BRIEF, SolverOptions
+from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
@@ -42,14 +42,18 @@ LEARNED_FROM, LOOKED_AT = 96, 8
 looked at, at most, as many cannot be built."""
 
 
-def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:
+def compute_piece(
+    setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache | None = None
+) -> bytes:
     """A piece, as it is kept.
 
     Args:
         setting: of the problem.
         piece: which one.
         known: what earlier stages gave.
+        solvers: of other pieces.
     """
+    solvers = solvers or SolverCache()
     found: HumanValue | PersonReach | StartPortfolio | list[HeldLoads] | None
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
@@ -69,12 +73,12 @@ def compute_piece(setting: PrecomputeSetting, piece: Piece, known: Precomputed) 
     elif piece.subject is Subject.PERSON_REACH:
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
     elif piece.subject is Subject.DESIGNS:
-        found = _designs(setting, scene)
+        found = _designs(setting, scene, solvers)
     elif piece.subject in PROGRAMS:
-        _compile(setting, piece.subject, scene)
+        _compile(setting, piece.subject, scene, solvers)
         found = None
     else:
-        found = _portfolio(setting, piece, known)
+        found = _portfolio(setting, piece, known, solvers)
     return encoded_piece(found)
 
 
@@ -129,25 +133,25 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
     return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.heights[0])
 
 
-def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene) -> None:
+def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene, solvers: SolverCache) -> None:
     """Compile a scene's program, with all rows and without those that are switched on when needed."""
     own = Setting(scene, setting.space, setting.weights, setting.options)
     if subject is Subject.REACH_PROGRAM:
-        reach = ReachProblem(own, symmetric=setting.symmetric)
+        reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
         _ = reach.landscape(HIGHEST).solver.parted
         return
     if subject is Subject.UNDISTURBED_PROGRAM:
         own = replace(own, scene=scene.undisturbed)
-    problem = PostureProblem(own, setting.symmetry)
+    problem = PostureProblem(own, setting.symmetry, solvers=solvers)
     for task in {type(task): task for task in setting.tasks}.values():
         _ = problem.landscape(task).solver.parted
 
 
-def _designs(setting: PrecomputeSetting, scene: Scene) -> list[HeldLoads]:
+def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
     """Quasi-random designs that can be built and hold the load somewhere."""
     space, built = setting.space, can_be_built(scene.robot, setting.space)
     own = Setting(scene, space, setting.weights, _briefly(setting))
-    reach = ReachProblem(own, symmetric=setting.symmetric)
+    reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
     every = spread_designs(
         len(space.parameters),
         lambda genome: space.given(space.values(genome), {}),
@@ -167,12 +171,15 @@ def _briefly(setting: PrecomputeSetting) -> SolverOptions:
     return replace(setting.options, iterations=min(BRIEF, setting.options.iterations))
 
 
-def _portfolio(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> StartPortfolio:
+def _portfolio(
+    setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache
+) -> StartPortfolio:
     scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
     own, designs = Setting(scene, space, setting.weights, _briefly(setting)), known.designs_for(task)
     if task is None:
         sense = HIGHEST if piece.subject is Subject.HIGHEST else LOWEST
-        return start_portfolio(ReachProblem(own, symmetric=setting.symmetric).landscape(sense), designs)
+        reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
+        return start_portfolio(reach.landscape(sense), designs)
     checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
-    landscape = PostureProblem(own, setting.symmetry, known).landscape(task, checker_of)
+    landscape = PostureProblem(own, setting.symmetry, known, solvers).landscape(task, checker_of)
     return start_portfolio(landscape, designs)
