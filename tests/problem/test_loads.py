@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -12,14 +11,9 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.nlp.codegen import Library
-from evodesign.nlp.method import MethodName
-from evodesign.posture.formulations.base import Setting
-from evodesign.posture.postures import PostureProblem, Symmetry
+from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import key_of
-from evodesign.posture.precompute.pieces import compute_piece, with_piece
-from evodesign.posture.precompute.plan import Piece, Subject, stages
-from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
+from evodesign.posture.precompute.plan import Subject, stages
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
@@ -216,26 +210,4 @@ def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
     undisturbed = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
     for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False):
         for piece in stage:
-            same = key_of(precompute_setting(shaken), piece) == key_of(precompute_setting(undisturbed), piece)
-            assert same is (piece.subject is Subject.UNDISTURBED_PROGRAM)
-
-
-@pytest.mark.needs_compiler
-@pytest.mark.slow
-def test_programs_of_postures_are_compiled_before_they_are_solved(
-    shaken: DesignProblem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("EVODESIGN_CACHE", str(tmp_path))
-    options = replace(shaken.options, compiled=True, method=MethodName.NATIVE)
-    setting = replace(precompute_setting(shaken), options=options)
-    piece = Piece(Subject.PROGRAM, shaken.scene.pair)
-    assert piece in stages(setting, shaken.tasks, portfolios=True, person_reaches=False)[1]
-    content = compute_piece(setting, piece, NOTHING_PRECOMPUTED)
-    assert with_piece(NOTHING_PRECOMPUTED, piece, content) is NOTHING_PRECOMPUTED
-    assert with_piece(NOTHING_PRECOMPUTED, piece, b"spoilt") is None
-    postures = PostureProblem(
-        Setting(shaken.scene, shaken.space, shaken.weights, options), shaken.symmetry, NOTHING_PRECOMPUTED
-    )
-    functions = postures.landscape(shaken.tasks[0]).solver.functions
-    assert isinstance(functions, Library)
-    assert not functions.fresh
+            assert key_of(precompute_setting(shaken), piece) != key_of(precompute_setting(undisturbed), piece)

@@ -8,7 +8,6 @@ from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene, scene_of
 from evodesign.nlp.solver import SolverOptions
 from evodesign.posture.precompute.plan import (
-    PROGRAMS,
     Piece,
     PrecomputeSetting,
     Subject,
@@ -70,7 +69,6 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.DESIGNS: NO_PART_OF_PIECES,
     Subject.HIGHEST: NO_PART_OF_PIECES,
     Subject.LOWEST: NO_PART_OF_PIECES,
-    **dict.fromkeys(PROGRAMS, NO_PART_OF_PIECES),
     Subject.POSTURE: NO_PART_OF_PIECES,
     Subject.LIFT: NO_PART_OF_PARTED,
 }

@@ -26,7 +26,6 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, 
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
-    PROGRAMS,
     Piece,
     PrecomputeSetting,
     Subject,
@@ -74,9 +73,6 @@ def compute_piece(
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
     elif piece.subject is Subject.DESIGNS:
         found = _designs(setting, scene, solvers)
-    elif piece.subject in PROGRAMS:
-        _compile(setting, piece.subject, scene, solvers)
-        found = None
     else:
         found = _portfolio(setting, piece, known, solvers)
     return encoded_piece(found)
@@ -103,9 +99,6 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
             return replace(known, person_reaches=reaches)
         if piece.subject is Subject.DESIGNS:
             return replace(known, designs=msgspec.json.decode(content, type=tuple[HeldLoads, ...]))
-        if piece.subject in PROGRAMS:
-            msgspec.json.decode(content, type=None)
-            return known
         found = msgspec.json.decode(content, type=StartPortfolio)
     except msgspec.DecodeError:
         return None
@@ -131,20 +124,6 @@ def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[B
 def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue | None:
     form = symmetric_forms(scene)[1]
     return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.heights[0])
-
-
-def _compile(setting: PrecomputeSetting, subject: Subject, scene: Scene, solvers: SolverCache) -> None:
-    """Compile a scene's program, with all rows and without those that are switched on when needed."""
-    own = Setting(scene, setting.space, setting.weights, setting.options)
-    if subject is Subject.REACH_PROGRAM:
-        reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
-        _ = reach.landscape(HIGHEST).solver.parted
-        return
-    if subject is Subject.UNDISTURBED_PROGRAM:
-        own = replace(own, scene=scene.undisturbed)
-    problem = PostureProblem(own, setting.symmetry, solvers=solvers)
-    for task in {type(task): task for task in setting.tasks}.values():
-        _ = problem.landscape(task).solver.parted
 
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:

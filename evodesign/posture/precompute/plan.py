@@ -16,7 +16,6 @@ from evodesign.records import Hold, Lift, Task
 
 __all__ = [
     "OF_STARTS",
-    "PROGRAMS",
     "Piece",
     "PrecomputeSetting",
     "Subject",
@@ -35,25 +34,12 @@ class Subject(StrEnum):
     DESIGNS = "designs to learn from"
     HIGHEST = "starts of the highest load"
     LOWEST = "starts of the lowest load"
-    REACH_PROGRAM = "the program of reach"
-    UNDISTURBED_PROGRAM = "the program of undisturbed postures"
-    PROGRAM = "the program of postures"
     POSTURE = "starts of postures"
     LIFT = "starts of lifts"
 
 
-OF_PEOPLE = (
-    Subject.PERSON,
-    Subject.PERSON_REACH,
-    Subject.UNDISTURBED_PROGRAM,
-    Subject.PROGRAM,
-    Subject.POSTURE,
-    Subject.LIFT,
-)
+OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.POSTURE, Subject.LIFT)
 """Of one person with one load; other pieces serve everyone."""
-
-PROGRAMS = (Subject.REACH_PROGRAM, Subject.UNDISTURBED_PROGRAM, Subject.PROGRAM)
-"""Machine code, which is found again in the cache of functions."""
 
 OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE)
 """Portfolios of starts."""
@@ -139,7 +125,7 @@ def stages(
     starts = [Piece(Subject.POSTURE, pair, task) for task in longest for pair in own]
     extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
     designs = Piece(Subject.DESIGNS, middle)
-    found = [meetings, [*_programs(setting), *people, designs], [*extremes, *starts]]
+    found = [meetings, [designs, *people], [*extremes, *starts]]
     return [*found, lift_pieces(setting, lifts)] if lifts else found
 
 
@@ -147,20 +133,6 @@ def lift_pieces(setting: PrecomputeSetting, lifts: Sequence[Lift]) -> list[Piece
     """Starts of lifts, of every person with every load; they serve any number of knots."""
     coarse = dict.fromkeys(lift.coarse for lift in lifts)
     return [Piece(Subject.LIFT, scene.pair, lift) for scene in setting.scenes for lift in coarse]
-
-
-def _programs(setting: PrecomputeSetting) -> list[Piece]:
-    """What is compiled beforehand, side by side, or one worker would wait for another; longest work last.
-
-    Actuators are sized about by undisturbed postures.
-    """
-    joint = [each for each in setting.scenes if not (setting.symmetric and _push_alone(each, setting.space))]
-    disturbed = [scene for scene in joint if scene.disturbances and setting.space.margins]
-    return [
-        *([Piece(Subject.REACH_PROGRAM, setting.middle.pair)] if joint else []),
-        *(Piece(Subject.UNDISTURBED_PROGRAM, scene.pair) for scene in disturbed),
-        *(Piece(Subject.PROGRAM, scene.pair) for scene in joint),
-    ]
 
 
 def _push_alone(scene: Scene, space: DesignSpace) -> bool:
