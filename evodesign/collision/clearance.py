@@ -220,6 +220,21 @@ class PlacedSolids:
                 found[gap.first, gap.second] = gap
         return list(found.values())
 
+    def in_each_other(self, places: Places, least: float = ACCURACY) -> set[tuple[str, str]]:
+        """Those of some pairs whose bodies are in each other, not asked how deep, which takes longest.
+
+        Args:
+            places: of the pairs among the solids.
+            least: overlaps of meshes that are not deeper [m] are left out.
+        """
+        near = places[self._balls_apart(places) < 0.0]
+        found: set[tuple[str, str]] = set()
+        for i, j in near[self._boxes_apart(near) < 0.0].tolist():
+            pair = self.names[i], self.names[j]
+            if pair not in found and self._overlap(i, j, least):
+                found.add(pair)
+        return found
+
     def near_floor(self, floor: Indices, within: float = 0.0) -> list[BodyDistance]:
         """Those of some solids that are nearer to the floor z = 0 than a distance [m]."""
         low = floor[self.centres[floor, 2] - self.bodies.radii[floor] < within].tolist()
@@ -261,13 +276,25 @@ class PlacedSolids:
         if distance >= 0.0 or not (self.bodies.solids[i].mesh or self.bodies.solids[j].mesh):
             return distance
         one, other = self._body(i), self._body(j)
-        if within <= 0.0 and (
-            distance > -ACCURACY or not are_in_each_other(one, other.moved(ACCURACY * way))
-        ):
-            return 0.0
-        if are_in_each_other(one, other):
+        if self._meshes_overlap(one, other, distance, way, ACCURACY if within <= 0.0 else 0.0):
             return -depth_along(one, other, way, -distance)
         return distance_apart(one, other) if within > 0.0 else 0.0
+
+    def _overlap(self, i: int, j: int, least: float) -> bool:
+        """Whether two solids are in each other; meshes by more than `least` [m]."""
+        distance, way, *_ = self.parted(i, j)
+        if distance >= 0.0 or not (self.bodies.solids[i].mesh or self.bodies.solids[j].mesh):
+            return distance < 0.0
+        return self._meshes_overlap(self._body(i), self._body(j), distance, way, least)
+
+    @staticmethod
+    def _meshes_overlap(
+        one: PlacedBody, other: PlacedBody, distance: float, way: Array, least: float
+    ) -> bool:
+        """Whether bodies with hulls at a distance [m] along a way are in each other by more than `least`."""
+        if least > 0.0 and (distance > -least or not are_in_each_other(one, other.moved(least * way))):
+            return False
+        return are_in_each_other(one, other)
 
     def _body(self, place: int) -> PlacedBody:
         """A solid by its triangles, if it has any."""

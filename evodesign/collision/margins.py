@@ -79,8 +79,7 @@ def fitted_margins(
     postures = zip(*(placed_in_postures(tree, joints, bodies) for bodies in (shown, known)), strict=True)
     samples = 0
     for as_shown, as_known in postures:
-        near = as_shown.overlapping(places[0], margin)
-        overlaps = {frozenset((gap.first, gap.second)) for gap in near if gap.distance < 0.0}
+        overlaps = {*map(frozenset, as_shown.in_each_other(places[0], least=0.0))}
         for gap in as_known.overlapping(places[1], margin):
             both = frozenset((gap.first, gap.second))
             found[both].append((gap.distance, both in overlaps))

@@ -260,18 +260,16 @@ def shares_of_postures(
     tree: Tree,
     joints: Collection[str],
     pairs: Collection[BodyPair],
-    within: float = 0.0,
     *,
     bodies: SolidBodies | None = None,
     images: Mapping[str, str] | None = None,
 ) -> Mapping[BodyPair, float]:
-    """In what share of postures pairs are near: those that ever are, with that of their mirror images.
+    """In what share of postures pairs are in each other, with their mirror images: those that ever are.
 
     Args:
         tree: of the agent.
         joints: that move; their positions are drawn from their ranges, always the same ones.
         pairs: of links.
-        within: nearer than this [m]; at zero, in each other.
         bodies: the links' solids; left out, the tree's own.
         images: the mirror image of each link; left out, the tree's own.
     """
@@ -282,7 +280,7 @@ def shares_of_postures(
     counts: Counter[frozenset[str]] = Counter()
     places, samples = places_of(bodies.names, pairs), 0
     for placed in placed_in_postures(tree, joints, bodies):
-        counts.update(frozenset((gap.first, gap.second)) for gap in placed.overlapping(places, within))
+        counts.update(map(frozenset, placed.in_each_other(places)))
         samples += 1
     found: dict[BodyPair, float] = {}
     for pair in pairs:

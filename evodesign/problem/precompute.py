@@ -20,10 +20,10 @@ from evodesign.posture.precompute.plan import (
     stages,
 )
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.build import DesignProblem
 from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
-from evodesign.records import Lift, ProblemSource
+from evodesign.records import Lift
 
 __all__ = ["precompute_setting", "precomputed", "staged_pieces"]
 
@@ -180,8 +180,7 @@ def _worked_out(
     contents: dict[Piece, bytes] = {}
     pieces = [*missing]
     name = " ".join(key_of(setting, piece) for piece in pieces)
-    drawn = setting != all_mean_people(setting)
-    factory = _PieceFactory(name, problem.source, known, drawn)
+    factory = _PieceFactory(name, setting, known)
     for finished in pool.run(factory, pieces):
         piece = pieces[finished.index]
         if finished.value is None:
@@ -198,15 +197,14 @@ machine."""
 
 @dataclass(frozen=True, slots=True)
 class _PieceFactory:
-    """Builds, in whichever process it is called, the function from a piece to its content.
+    """Gives, in whichever process it is called, the function from a piece to its content.
 
-    `drawn` says whether people are as they were drawn, in place of the mean ones.
+    The setting travels as numbers: meshes and what may overlap take seconds to work out again.
     """
 
     name: str
-    source: ProblemSource = field(compare=False)
+    setting: PrecomputeSetting = field(compare=False)
     known: Precomputed = field(compare=False)
-    drawn: bool
 
     @property
     def limits(self) -> Limits:
@@ -214,9 +212,7 @@ class _PieceFactory:
         return LIMITS
 
     def __call__(self) -> Callable[[Piece], bytes]:
-        setting = precompute_setting(build_problem(self.source))
-        setting = setting if self.drawn else all_mean_people(setting)
-        return lambda piece: _content(setting, piece, self.known)
+        return lambda piece: _content(self.setting, piece, self.known)
 
 
 def _content(setting: PrecomputeSetting, piece: Piece, known: Precomputed) -> bytes:

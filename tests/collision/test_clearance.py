@@ -158,6 +158,7 @@ def test_the_nearest_of_many_is_found_and_the_overlapping_ones() -> None:
         assert nearest.distance == min(each.values()) == each[nearest.first, nearest.second]
         overlapping = {(gap.first, gap.second): gap.distance for gap in placed.overlapping(places)}
         assert overlapping == {p: found for p, found in each.items() if found < 0.0}
+        assert placed.in_each_other(places) == overlapping.keys()
 
 
 def test_an_agent_without_any_shape_touches_nothing_and_leaves_the_others_what_they_are() -> None:

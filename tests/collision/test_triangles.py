@@ -78,6 +78,9 @@ def test_an_overlap_of_meshes_within_their_accuracy_is_none() -> None:
     one = surface(box((0.1, 0.1, 0.1)))
     for depth, count in ((0.0015, 0), (0.0025, 1)):
         assert len(overlapping(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0)))) == count
+        both = placed(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0)))
+        assert len(both.in_each_other(PAIR)) == count
+        assert both.in_each_other(PAIR, least=0.0) == {("one", "other")}
         assert distance(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0))) == pytest.approx(
             -depth, abs=3e-4
         )
@@ -103,6 +106,7 @@ def test_boxes_of_triangles_are_as_far_apart_as_solid_boxes() -> None:
         place = Placement(tuple(map(tuple, rows.tolist())), tuple(position.tolist()))
         found = distance(mesh, mesh, place)
         overlaps += exact < 0.0
+        assert bool(placed(mesh, mesh, place).in_each_other(PAIR, least=0.0)) == (exact < 0.0)
         assert found == pytest.approx(exact, abs=4e-4)
     assert 10 < overlaps < 50
 
