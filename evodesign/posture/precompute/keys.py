@@ -42,6 +42,14 @@ NO_PART_OF_A_PERSONS: Exceptions = {
     Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
 }
 
+NO_PART_OF_DESIGNS: Exceptions = {
+    **NO_PART_OF_PIECES,
+    PrecomputeSetting: {
+        name: why for name, why in NO_PART_OF_PIECES[PrecomputeSetting].items() if name != "tasks"
+    },
+}
+"""As many are found as hold the load at each height of the tasks."""
+
 NO_PART_OF_MEETINGS: Exceptions = {
     **NO_PART_OF_PIECES,
     PrecomputeSetting: {
@@ -66,7 +74,7 @@ NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.MEETINGS: NO_PART_OF_MEETINGS,
     Subject.PERSON: NO_PART_OF_A_PERSONS,
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
-    Subject.DESIGNS: NO_PART_OF_PIECES,
+    Subject.DESIGNS: NO_PART_OF_DESIGNS,
     Subject.HIGHEST: NO_PART_OF_PIECES,
     Subject.LOWEST: NO_PART_OF_PIECES,
     Subject.POSTURE: NO_PART_OF_PIECES,

@@ -6,6 +6,7 @@ piece and the code but for named exceptions; so a score depends neither on a cac
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
@@ -18,7 +19,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import spread_designs
 from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.nlp.start_training import start_portfolio
+from evodesign.nlp.start_training import USUAL, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
@@ -37,8 +38,8 @@ from evodesign.records import Case, Task
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
 LEARNED_FROM, LOOKED_AT = 96, 8
-"""Designs whose reach is asked for, to learn from those that hold a load; and how many times as many are
-looked at, at most, as many cannot be built."""
+"""Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many
+are looked at, at most, as many cannot be built."""
 
 
 def compute_piece(
@@ -127,7 +128,7 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
-    """Quasi-random designs that can be built and hold the load somewhere."""
+    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
     space, built = setting.space, can_be_built(scene.robot, setting.space)
     own = Setting(scene, space, setting.weights, _briefly(setting))
     reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
@@ -137,12 +138,16 @@ def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> 
         built,
         LOOKED_AT * LEARNED_FROM,
     )
-    found = [(design, reach.solve(design)) for design in islice(every, LEARNED_FROM)]
-    return [
-        (design, held.lowest, held.highest)
-        for design, held in found
-        if held.lowest is not None and held.highest is not None
-    ]
+    found: list[HeldLoads] = []
+    holding = Counter({height: 0 for task in setting.tasks for height in task.heights})
+    for design in islice(every, LEARNED_FROM):
+        held = reach.solve(design)
+        if held.lowest is not None and held.highest is not None:
+            found.append((design, held.lowest, held.highest))
+            holding.update(height for height in holding if held.lowest <= height <= held.highest)
+        if min(holding.values(), default=0) >= USUAL.designs:
+            break
+    return found
 
 
 def _briefly(setting: PrecomputeSetting) -> SolverOptions:
