@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-__all__ = ["BUNDLED", "Compiler", "NotCompiled", "error_in", "find_compiler", "run"]
+__all__ = ["BUNDLED", "Compiler", "NotCompiled", "error_in", "find_compiler", "optimiser", "run"]
 
 COMPILERS = ("cc", "gcc", "clang")
 
@@ -78,6 +78,12 @@ def find_compiler(environment: Mapping[str, str], *, quick: bool = False) -> Com
                 return Compiler((path, *arguments), output)
             reason = output
     return reason if named else _bundled(environment) or reason
+
+
+def optimiser(environment: Mapping[str, str]) -> str | None:
+    """The compiler that optimises behind what runs on TinyCC's code already; None if there is none."""
+    best, quick = find_compiler(environment), find_compiler(environment, quick=True)
+    return None if best == quick or isinstance(best, NotCompiled) else Path(best.command[0]).name
 
 
 def _bundled(environment: Mapping[str, str]) -> Compiler | NotCompiled | None:

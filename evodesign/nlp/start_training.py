@@ -38,11 +38,11 @@ class Training:
         portfolio: the most starts that a portfolio holds.
     """
 
-    designs: int = 24
-    begun: int = 12
-    random: int = 6
-    offers: int = 16
-    portfolio: int = 6
+    designs: int = 48
+    begun: int = 24
+    random: int = 2
+    offers: int = 24
+    portfolio: int = 8
 
 
 USUAL = Training()

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from evodesign.errors import InputError, RunError
 from evodesign.motion.starts import lift_portfolio
+from evodesign.nlp.compiler import optimiser
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.solver import own_solvers
 from evodesign.pool.base import Limits, Pool
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import compute_piece, encoded_piece, with_piece
 from evodesign.posture.precompute.plan import (
+    OF_STARTS,
     Piece,
     PrecomputeSetting,
     Subject,
@@ -124,6 +127,9 @@ def _all_of(
     absent = [piece for piece in pieces if content_of(piece) is None]
     if absent:
         watcher.missing([pieces[piece] for piece in absent], pool.processes)
+        behind = optimiser(os.environ) if problem.options.compiled else None
+        if behind and any(piece.subject in OF_STARTS for piece in absent):
+            watcher.note(f"all solves begin on TinyCC's code; {behind} optimises behind them what takes long")
     for stage in staged:
         missing = {}
         for piece in stage:

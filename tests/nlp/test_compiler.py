@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.codegen import Library, compiled_function
-from evodesign.nlp.compiler import BUNDLED, HEADERS, Compiler, NotCompiled, find_compiler
+from evodesign.nlp.compiler import BUNDLED, HEADERS, Compiler, NotCompiled, find_compiler, optimiser
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native import calls
 from evodesign.nlp.native.lanes import lane_flags
@@ -209,3 +209,14 @@ def test_a_posture_has_the_bits_of_the_machines_compiler(
     request.getfixturevalue("bare")
     assert find_compiler(os.environ) == find_compiler({"CC": BUNDLED})
     assert solved() == optimised
+
+
+def test_who_optimises_behind_is_named(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    script(tmp_path, "gcc", "echo gcc 12")
+    path = {"PATH": str(tmp_path)}
+    assert optimiser(path) == "gcc"
+    assert optimiser({**path, "CC": "gcc"}) is None
+    assert optimiser({"PATH": ""}) is None
+    request.getfixturevalue("without_tinycc")
+    assert optimiser(path) is None
+    assert optimiser({"PATH": ""}) is None
