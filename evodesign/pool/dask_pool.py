@@ -331,11 +331,11 @@ def deliver(factory: Factory[A, R]) -> Factory[A, R]:
 
 def finish_there(factory: Factory[A, R], index: int, argument: A) -> Finished[R]:
     """Run a factory's task on an argument, in the process of this thread."""
-    if _thread.process is None or _thread.process.factory != factory:
-        if _thread.process is not None:
-            _thread.process.close()
+    if _thread.process is None:
         multiprocessing.current_process().daemon = False  # Dask's mark, with which no process may be started
         _thread.process = WorkerProcess(factory, socket.gethostname())
+    elif _thread.process.factory != factory:
+        _thread.process.take(factory)
     group = WorkerGroup([_thread.process])
     group.begin(index, argument)
     return group.next_end()

@@ -1,6 +1,6 @@
 """A pool of processes on this machine: joblib's executors, one per worker.
 
-Workers live on between runs and build their task once; arguments are handed out one by one. A worker that
+Workers live on between runs and build each task once; arguments are handed out one by one. A worker that
 dies or takes too long is replaced, and nothing else notices.
 """
 
@@ -21,7 +21,7 @@ __all__ = ["JoblibPool"]
 class JoblibPool(Pool):
     """Runs in processes, each with one thread for numerical libraries.
 
-    Arguments and results must pickle. A run with another factory starts new workers.
+    Arguments and results must pickle. A run with another factory gives it to the same workers.
 
     Args:
         jobs: arguments that run at the same time, at least 1.
@@ -40,9 +40,11 @@ class JoblibPool(Pool):
     def run(self, factory: Factory[A, R], arguments: Iterable[A]) -> Iterator[Finished[R]]:
         """Every argument's end, in the order in which they come; ends a run that was left unfinished."""
         self._end_run()
-        if not self._processes or self._processes[0].factory != factory:
-            self._close_processes()
+        if not self._processes:
             self._processes = [WorkerProcess(factory, "local") for _ in range(self._jobs)]
+        elif self._processes[0].factory != factory:
+            for process in self._processes:
+                process.take(factory)
         ends = _ends(WorkerGroup(self._processes, prefetch=self._jobs), arguments)
         self._current = weakref.ref(ends)
         return ends

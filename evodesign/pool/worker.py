@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import resource
 import signal
+import sys
 import threading
 import time
 import traceback
@@ -18,6 +19,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic
+
+from joblib.externals.loky import process_executor
 
 from evodesign.pool.base import A, Factory, Finished, Pool, R
 
@@ -121,20 +124,21 @@ class SerialPool(Pool):
 
 
 class _Process:
-    """The one bench of a worker process; its parent sends the factory at the start, then arguments only."""
+    """The one bench of a worker process; its parent sends a factory, then arguments only."""
 
     bench: Workbench[Any, Any]
 
 
-def start_worker(factory: Factory[A, R], place: str, memory: int | None, parent: int) -> None:
+def start_worker(memory: int | None, parent: int) -> None:
     """Make this process a worker: first thing that runs in it.
 
     Ctrl-C reaches every process of a terminal; the parent alone decides what it means. A worker whose
     parent was killed ends by itself. When the machine runs out of memory, a worker goes before the search.
 
+    Loky would replace a worker that has grown by 300 MB, as those do that keep what they have built; here the
+    limit of its memory counts.
+
     Args:
-        factory: builds the task.
-        place: first part of the worker's name.
         memory: that this process may have [byte]; None for what the machine has.
         parent: its process number; a parent that is gone by now is seen to be.
     """
@@ -146,11 +150,17 @@ def start_worker(factory: Factory[A, R], place: str, memory: int | None, parent:
         hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
         allowed = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
         resource.setrlimit(resource.RLIMIT_DATA, (allowed, hard))
+    process_executor._MAX_MEMORY_LEAK_SIZE = sys.maxsize
+
+
+def build_here(factory: Factory[A, R], place: str) -> str:
+    """Build this worker's task, whether or not that succeeds; gives the name of the worker.
+
+    Args:
+        factory: builds the task.
+        place: first part of the worker's name.
+    """
     _Process.bench = Workbench(factory, place)
-
-
-def build_here() -> str:
-    """Build this worker's task, whether or not that succeeds; gives the name of the worker."""
     _Process.bench.build()
     return _Process.bench.name
 

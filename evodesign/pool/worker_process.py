@@ -11,7 +11,6 @@ import os
 import re
 import signal
 import time
-import warnings
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -54,13 +53,23 @@ class WorkerProcess(Generic[A, R]):
     """
 
     def __init__(self, factory: Factory[A, R], place: str) -> None:
-        self.factory = factory
-        self._limits = limits_of(factory)
+        self.factory, self._limits = factory, limits_of(factory)
         self._place = place
         self._name = f"{place}-lost"
         self._executor: ProcessPoolExecutor | None = None
+        self._given: Factory[A, R] | None = None
         self._begun = 0.0
         self._ready = False
+
+    def take(self, factory: Factory[A, R]) -> None:
+        """Work with another factory from the next argument on; none may be at work.
+
+        Its process goes on, with what it keeps, if it may have as much memory.
+        """
+        limits = limits_of(factory)
+        if limits.memory != self._limits.memory:
+            self.close()
+        self.factory, self._limits, self._ready = factory, limits, False
 
     def begin(self, index: int, argument: A) -> Future[Finished[R]]:
         """Begin an argument; the future is to be given to `end`."""
@@ -93,7 +102,7 @@ class WorkerProcess(Generic[A, R]):
 
     def close(self) -> None:
         """End the process, also one at work."""
-        executor, self._executor, self._ready = self._executor, None, False
+        executor, self._executor, self._ready, self._given = self._executor, None, False, None
         if executor is not None:
             executor.shutdown(wait=True, kill_workers=True)
 
@@ -117,19 +126,17 @@ class WorkerProcess(Generic[A, R]):
     def _submit(self, index: int, argument: A) -> Future[Finished[R]]:
         if self._executor is None:
             _begin_resource_trackers()
-            # A worker that has grown by 300 MB, as with programs of lifts, is replaced between two arguments.
-            warnings.filterwarnings(
-                "ignore", message="A worker stopped while some jobs", category=UserWarning
-            )
             self._executor = ProcessPoolExecutor(
                 max_workers=1,
                 initializer=start_worker,
-                initargs=(self.factory, self._place, self._limits.memory, os.getpid()),
+                initargs=(self._limits.memory, os.getpid()),
                 env=ONE_THREAD,
             )
+        if self._given is not self.factory:
             with _interrupts_held_off():
-                built = self._executor.submit(build_here)
+                built = self._executor.submit(build_here, self.factory, self._place)
             built.add_done_callback(self._built)
+            self._given = self.factory
         future: Future[Finished[R]] = self._executor.submit(finish_here, index, argument)
         return future
 

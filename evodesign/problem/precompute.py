@@ -186,7 +186,7 @@ def _worked_out(
     contents: dict[Piece, bytes] = {}
     pieces = [*missing]
     name = " ".join(key_of(setting, piece) for piece in pieces)
-    factory = _PieceFactory(name, setting, known)
+    factory = _PieceFactory(name, setting, known, replace(problem.limits, seconds=SECONDS))
     for finished in pool.run(factory, pieces):
         piece = pieces[finished.index]
         if finished.value is None:
@@ -196,8 +196,8 @@ def _worked_out(
     return {piece: contents[piece] for piece in pieces}
 
 
-LIMITS = Limits(seconds=3600.0)
-"""What a piece may cost: a portfolio takes thousands of solves, long ones with rigid grasps or a busy
+SECONDS = 3600.0
+"""What a piece may cost [s]: a portfolio takes thousands of solves, long ones with rigid grasps or a busy
 machine."""
 
 
@@ -211,11 +211,7 @@ class _PieceFactory:
     name: str
     setting: PrecomputeSetting = field(compare=False)
     known: Precomputed = field(compare=False)
-
-    @property
-    def limits(self) -> Limits:
-        """Those of a piece."""
-        return LIMITS
+    limits: Limits = field(compare=False)
 
     def __call__(self) -> Callable[[Piece], bytes]:
         return lambda piece: _content(self.setting, piece, self.known)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from types import SimpleNamespace
 from typing import Any
 
@@ -22,6 +23,12 @@ class Counted(Solver):
     def __init__(self) -> None:
         self.options = SolverOptions()
         self.asked: list[tuple[str, int]] = []
+
+    def with_options(self, options: SolverOptions) -> Solver:
+        """The same, asked in the same way."""
+        other = copy(self)
+        other.options = options
+        return other
 
     def solve(self, parameters: object, start: Any) -> Any:
         """What a start leads to."""

@@ -6,7 +6,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from evodesign.pool.base import Limits
@@ -187,3 +187,20 @@ class Grows:
 def mark() -> Callable[[object], str]:
     """A task that reads how readily the system ends its process."""
     return lambda _: Path("/proc/self/oom_score_adj").read_text().strip()
+
+
+@dataclass(frozen=True)
+class Where:
+    """A task that gives a name and its process; a large one."""
+
+    name: str
+    memory: int | None = None
+    filling: bytes = field(default=b"x" * 1_000_000, compare=False)
+
+    @property
+    def limits(self) -> Limits:
+        """With some memory."""
+        return Limits(memory=self.memory)
+
+    def __call__(self) -> Callable[[int], tuple[str, int]]:
+        return lambda _: (self.name, os.getpid())

@@ -21,6 +21,7 @@ from tests.pool.tasks import (
     Hoards,
     KillsOnce,
     SlowToBuild,
+    Where,
     Within,
     deadly,
     environment,
@@ -295,7 +296,7 @@ def test_processes_that_end_before_they_are_given_anything_are_an_argument_lost(
     assert given == [3, 3]
 
 
-def test_a_worker_that_grew_is_replaced_without_a_word() -> None:
+def test_a_worker_that_grew_goes_on_without_a_word() -> None:
     script = """
 from evodesign.pool.joblib_pool import JoblibPool
 from tests.pool.tasks import Grows
@@ -308,7 +309,7 @@ with JoblibPool(1) as pool:
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120
     )
     assert (done.returncode, done.stderr) == (0, "")
-    assert int(done.stdout) > 1
+    assert int(done.stdout) == 1
 
 
 def test_where_no_process_can_be_had_every_argument_says_so(tmp_path: Path) -> None:
@@ -329,3 +330,26 @@ with JoblibPool(2) as pool:
     lines = done.stdout.splitlines()
     assert len(lines) == 3
     assert all("worker process" in line and "also when retried alone" in line for line in lines), lines
+
+
+def test_another_factory_is_given_to_the_same_process_unless_it_may_have_more_memory() -> None:
+    with JoblibPool(1) as pool:
+        tasks = [
+            Where("one"),
+            Where("other"),
+            Where("other"),
+            *(Where(n, memory=2**34) for n in ("more", "last")),
+        ]
+        ends = [next(iter(pool.run(task, [0]))).value for task in tasks]
+    names, places = zip(*filter(None, ends), strict=True)
+    assert names == ("one", "other", "other", "more", "last")
+    assert places[0] == places[1] == places[2] != places[3] == places[4]
+
+
+def test_a_worker_that_dies_at_once_is_told_however_large_its_task(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loky hands a new process what it begins with through a pipe that nobody would empty."""
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with JoblibPool(1) as pool:
+        end = next(iter(pool.run(Where("one"), [0])))
+    assert end.value is None
+    assert "worker process" in (end.failure or "")
