@@ -20,8 +20,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic
 
-from joblib.externals.loky import process_executor
-
 from evodesign.pool.base import A, Factory, Finished, Pool, R
 
 __all__ = ["SerialPool", "Workbench", "build_here", "explain", "finish_here", "start_worker"]
@@ -142,6 +140,8 @@ def start_worker(memory: int | None, parent: int) -> None:
         memory: that this process may have [byte]; None for what the machine has.
         parent: its process number; a parent that is gone by now is seen to be.
     """
+    from joblib.externals.loky import process_executor  # where there is no shared memory it complains
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(parent,), name="orphan-watch", daemon=True).start()
     with suppress(OSError):  # not Linux, or not allowed
