@@ -40,7 +40,7 @@ class Training:
 
     designs: int = 48
     begun: int = 24
-    random: int = 2
+    random: int = 6
     offers: int = 24
     portfolio: int = 8
 
