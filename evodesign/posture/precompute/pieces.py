@@ -7,16 +7,16 @@ piece and the code but for named exceptions; so a score depends neither on a cac
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 
 import msgspec
 import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.landscape import spread_designs
+from evodesign.nlp.landscape import Design, spread_designs
 from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import USUAL, start_portfolio
@@ -128,16 +128,24 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
-    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
+    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height.
+
+    One in four lies in a corner of the bounds, where searches end.
+    """
     space, built = setting.space, can_be_built(scene.robot, setting.space)
     own = Setting(scene, space, setting.weights, _briefly(setting))
     reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
-    every = spread_designs(
-        len(space.parameters),
-        lambda genome: space.given(space.values(genome), {}),
-        built,
-        LOOKED_AT * LEARNED_FROM,
-    )
+
+    def spread(of: Callable[[float], float]) -> Iterator[Design]:
+        return spread_designs(
+            len(space.parameters),
+            lambda genome: space.given(space.values(tuple(map(of, genome))), {}),
+            built,
+            LOOKED_AT * LEARNED_FROM,
+        )
+
+    inside, corners = spread(float), spread(lambda place: float(round(place)))
+    every = chain.from_iterable(zip(inside, inside, inside, corners, strict=False))
     found: list[HeldLoads] = []
     holding = Counter({height: 0 for task in setting.tasks for height in task.heights})
     for design in islice(every, LEARNED_FROM):
