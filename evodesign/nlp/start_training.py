@@ -3,15 +3,16 @@
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
 designs are solved from the landscape's universal starts and from a few random ones. Then the best optimum of
 a design that no start serves is offered to all designs, until each is served: a start serves a design if the
-solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept
-that serve all together with little work. The same landscape always gets the same portfolio.
+solver converges from it to within 1 % of the best optimum that any start led to. A design that no
+start leads anywhere may begin elsewhere at last. Of the offers those are kept that serve all together with
+little work. The same landscape always gets the same portfolio.
 
 Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Generic
@@ -49,7 +50,10 @@ USUAL = Training()
 
 
 def start_portfolio(
-    landscape: Searched[End], designs: Iterable[Design], training: Training = USUAL
+    landscape: Searched[End],
+    designs: Iterable[Design],
+    training: Training = USUAL,
+    elsewhere: Callable[[Design], Start | None] | None = None,
 ) -> StartPortfolio:
     """The portfolio of a landscape.
 
@@ -57,6 +61,7 @@ def start_portfolio(
         landscape: whose optima are sought.
         designs: to learn from; the portfolio makes do with those that there are.
         training: how much work to do.
+        elsewhere: gives another start of a design that no offer leads anywhere.
     """
     learned = [*islice(designs, training.designs)]
     work = _Ends(landscape, learned)
@@ -66,6 +71,11 @@ def start_portfolio(
         work.begun(place, [*landscape.universal, *drawn])
     for _ in range(training.offers):
         wanted = work.wanted()
+        if wanted is None and elsewhere is not None:
+            for place in work.lost():
+                start = elsewhere(learned[place])
+                work.begun(place, [start] if start else [])
+            elsewhere, wanted = None, work.wanted()
         if wanted is None:
             break
         work.offered(wanted)
@@ -103,6 +113,10 @@ class _Ends(Generic[End]):
                 self._refused.add(place)
                 return self._landscape.needed(best)
         return None
+
+    def lost(self) -> list[int]:
+        """The designs of which no optimum is known."""
+        return [place for place, best in enumerate(self._best) if best is None]
 
     def _learn(self, place: int, ends: Sequence[End]) -> None:
         """Remember the best of some ends of a design that is better than what is known of it and counts."""

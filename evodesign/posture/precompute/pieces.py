@@ -16,7 +16,8 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.landscape import Design, spread_designs
+from evodesign.nlp.landscape import Design, cost_of, spread_designs
+from evodesign.nlp.program import Start
 from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import USUAL, start_portfolio
@@ -33,7 +34,7 @@ from evodesign.posture.precompute.plan import (
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.records import Case, Task
+from evodesign.records import Case, Hold, Status, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
@@ -173,5 +174,14 @@ def _portfolio(
         reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
         return start_portfolio(reach.landscape(sense), designs)
     checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
-    landscape = PostureProblem(own, setting.symmetry, known, solvers).landscape(task, checker_of)
-    return start_portfolio(landscape, designs)
+    problem = PostureProblem(own, setting.symmetry, known, solvers)
+    reaches = {design: (lowest, highest) for design, lowest, highest in known.designs}
+
+    def in_the_middle(design: Design) -> Start | None:
+        """How a design holds the load in the middle of its reach, where it does so most easily."""
+        middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
+        ends = [middle.solve(design, start) for start in middle.universal]
+        best = min((end for end in ends if end.status is Status.SOLVED), key=cost_of, default=None)
+        return best.values if best else None
+
+    return start_portfolio(problem.landscape(task, checker_of), designs, elsewhere=in_the_middle)
