@@ -15,7 +15,6 @@ import signal
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 
 __all__ = ["BUNDLED", "Compiler", "NotCompiled", "error_in", "find_compiler", "optimiser", "run"]
@@ -64,7 +63,9 @@ def find_compiler(environment: Mapping[str, str], *, quick: bool = False) -> Com
         environment: that names them.
         quick: whether the compiler had better be quick than its code: then TinyCC comes first.
     """
-    named = environment.get("CC", "").strip() or (BUNDLED if quick and find_spec(BUNDLED) else "")
+    named = environment.get("CC", "").strip()
+    if quick and not named and isinstance(bundled := _bundled(environment), Compiler):
+        return bundled
     looked = (
         f"$CC names '{named}'" if named else f"looked for {', '.join(COMPILERS)} and the package {BUNDLED}"
     )

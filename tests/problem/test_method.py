@@ -49,7 +49,7 @@ def test_runs_that_do_not_tell_were_solved_by_ipopt(problem: DesignProblem) -> N
     assert upgraded(header)["problem"]["method"] == "native"
 
 
-def test_one_genome_in_500_is_judged() -> None:
+def test_one_genome_in_so_many_is_judged() -> None:
     genomes = [(k / 40_000, 0.5) for k in range(40_000)]
     assert sum(map(is_judged, genomes)) == pytest.approx(len(genomes) / ONE_IN, rel=0.4)
 

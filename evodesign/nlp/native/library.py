@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.identity import code_digest
-from evodesign.nlp.behind import behind
+from evodesign.nlp.background import in_background
 from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, built, compiler_and_cache, kept_library
 from evodesign.nlp.compiler import Compiler, NotCompiled
 from evodesign.nlp.disk_cache import Cache
@@ -170,7 +170,7 @@ class Optimised:
             texts = self.kept or _texts(self.program)  # CasADi stays in this thread
             if isinstance(texts, Library):
                 return texts
-            self._coming = behind(
+            self._coming = in_background(
                 lambda: built(self.source, lambda: texts, FUNCTION_FLAGS, self.compiler, self.cache, NICENESS)
             )
         return None

@@ -125,10 +125,10 @@ def test_a_compiler_gives_way_and_ends_with_the_process(tmp_path: Path) -> None:
     program = f"""
 import os, time
 from pathlib import Path
-from evodesign.nlp.behind import behind
+from evodesign.nlp.background import in_background
 from evodesign.nlp.compiler import run
 pid = Path({str(pid)!r})
-behind(lambda: run([{str(tmp_path / "bin" / "gcc")!r}, "a.c"], 300.0, os.environ, 3))
+in_background(lambda: run([{str(tmp_path / "bin" / "gcc")!r}, "a.c"], 300.0, os.environ, 3))
 while not pid.is_file() or os.getpriority(os.PRIO_PROCESS, int(pid.read_text())) != min(19, os.nice(0) + 3):
     time.sleep(0.01)
 """
@@ -140,11 +140,11 @@ while not pid.is_file() or os.getpriority(os.PRIO_PROCESS, int(pid.read_text()))
 def test_a_forked_process_has_work_done_behind_too() -> None:
     program = """
 import os
-from evodesign.nlp.behind import behind
-assert behind(lambda: 1).result(60.0) == 1
+from evodesign.nlp.background import in_background
+assert in_background(lambda: 1).result(60.0) == 1
 child = os.fork()
 if child == 0:
-    os._exit(behind(lambda: 2).result(60.0))
+    os._exit(in_background(lambda: 2).result(60.0))
 assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 2
 """
     subprocess.run([sys.executable, "-c", program], check=True, timeout=120.0, env=dict(os.environ))

@@ -1,4 +1,4 @@
-"""Work done behind what a process does: one piece after the other, until the process ends.
+"""Work done in the background of what a process does: one piece after the other, until the process ends.
 
 It is for compilers, which are processes of their own: this one waits for them in a thread.
 """
@@ -13,13 +13,13 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any, TypeVar
 
-__all__ = ["behind"]
+__all__ = ["in_background"]
 
 T = TypeVar("T")
 Orders = SimpleQueue[tuple[Future[Any], Callable[[], Any]]]
 
 
-def behind(work: Callable[[], T]) -> Future[T]:
+def in_background(work: Callable[[], T]) -> Future[T]:
     """The result of work, when it is done; never, if the process ends or forks before."""
     future: Future[T] = Future()
     _orders().put((future, work))
@@ -29,7 +29,7 @@ def behind(work: Callable[[], T]) -> Future[T]:
 @cache
 def _orders() -> Orders:
     orders: Orders = SimpleQueue()
-    Thread(target=_work, args=(orders,), name="behind", daemon=True).start()
+    Thread(target=_work, args=(orders,), name="background", daemon=True).start()
     return orders
 
 
