@@ -95,15 +95,17 @@ class _Ends(Generic[End]):
     def begun(self, place: int, starts: Sequence[Start]) -> None:
         """Solve a design from some starts."""
         design = self._designs[place]
-        self._learn(place, [self._landscape.rough(design, start) for start in starts])
+        for end in sorted((self._landscape.rough(design, start) for start in starts), key=cost_of):
+            least = self._cost(place)
+            self._learned(place, end)
+            if self._cost(place) < least:
+                break
 
     def offered(self, start: Start) -> None:
         """Offer a start to all designs."""
-        ends = [self._landscape.rough(design, start) for design in self._designs]
+        rough = [self._landscape.rough(design, start) for design in self._designs]
         self._offers.append(start)
-        self._ends.append(ends)
-        for place, end in enumerate(ends):
-            self._learn(place, [end])
+        self._ends.append([self._learned(place, end) for place, end in enumerate(rough)])
 
     def wanted(self) -> Start | None:
         """The best optimum of the first design that no offer serves, once each; None where there is none."""
@@ -118,16 +120,15 @@ class _Ends(Generic[End]):
         """The designs of which no optimum is known."""
         return [place for place, best in enumerate(self._best) if best is None]
 
-    def _learn(self, place: int, ends: Sequence[End]) -> None:
-        """Remember the best of some ends of a design that is better than what is known of it and counts."""
-        for end in sorted(ends, key=cost_of):
-            if not cost_of(end) < self._cost(place):
-                break
-            found = self._landscape.finished(self._designs[place], end)
-            if cost_of(found) < self._cost(place):
-                self._best[place] = found
-                self._refused.discard(place)
-                break
+    def _learned(self, place: int, end: End) -> End:
+        """An end; as one that failed where it would be the best of a design and does not count."""
+        if not cost_of(end) < self._cost(place):
+            return end
+        found = self._landscape.finished(self._designs[place], end)
+        if cost_of(found) < self._cost(place):
+            self._best[place] = found
+            self._refused.discard(place)
+        return end if np.isfinite(cost_of(found)) else found
 
     def _cost(self, place: int) -> float:
         best = self._best[place]

@@ -16,7 +16,7 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.landscape import Design, cost_of, spread_designs
+from evodesign.nlp.landscape import Design, spread_designs
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
@@ -180,8 +180,7 @@ def _portfolio(
     def in_the_middle(design: Design) -> Start | None:
         """How a design holds the load in the middle of its reach, where it does so most easily."""
         middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
-        ends = [middle.solve(design, start) for start in middle.universal]
-        best = min((end for end in ends if end.status is Status.SOLVED), key=cost_of, default=None)
-        return best.values if best else None
+        ends = (middle.solve(design, start) for start in middle.universal)
+        return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
     return start_portfolio(problem.landscape(task, checker_of), designs, elsewhere=in_the_middle)
