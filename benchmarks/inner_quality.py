@@ -1,12 +1,12 @@
 """How much does the result of a design depend on the starting points?
 
-Random designs of a problem, the load at four heights (at its own for the problem of a file). Of the heights
-that reach says can be held: how many are solved and pass the check; how many solved ones lie within 1 % of
-the best of 25 random starts of the same program; and, for the first designs of a symmetric problem, how far
-robot and person solved one after the other lie from the best of 25 random starts of both together. The lowest
-and highest heights are compared with the best of 25 random starts of the reach problem. Results go to
-benchmarks/results/inner_quality.json (of another problem, to inner_quality_NAME.json) and are printed as
-tables.
+Random designs of a problem that can be built, the load at four heights (at its own for the problem of a
+file). Of the heights that reach says can be held: how many are solved and pass the check; how many solved
+ones lie within 1 % of the best of 25 random starts of the same program; and, for the first designs of a
+symmetric problem, how far robot and person solved one after the other lie from the best of 25 random starts
+of both together. The lowest and highest heights are compared with the best of 25 random starts of the reach
+problem. Results go to benchmarks/results/inner_quality.json (of another problem, to
+inner_quality_NAME.json) and are printed as tables.
 
     python -m benchmarks.inner_quality [--problem default|longer_arm|load_aside|pushed_aside|FILE]
         [--designs 200] [--joint-designs 50] [--starts 25] [--jobs 2]
@@ -17,6 +17,7 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
 from evodesign.nlp.landscape import Landscape
-from evodesign.posture.design_checkers import DesignCheckers
+from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
@@ -203,7 +204,9 @@ def main() -> None:
     options = parser.parse_args()
     problem = problem_named(options.problem)
     known_at(problem, options.jobs)
-    designs = random_designs(problem, options.designs)
+    built, given = can_be_built(problem.scene.robot, problem.space), problem.space.given
+    drawn = random_designs(problem, 10 * options.designs)
+    designs = list(islice((each for each in drawn if built(tuple(given(each, {})))), options.designs))
     joint = 0 if problem.symmetry is Symmetry.OFF else options.joint_designs
     chunks = [(first, designs[first : first + 5]) for first in range(0, len(designs), 5)]
     work = (delayed(judge)(first, chunk, joint, options.starts, options.problem) for first, chunk in chunks)

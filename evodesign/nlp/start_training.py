@@ -3,15 +3,16 @@
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
 designs are solved from the landscape's universal starts and from a few random ones. Then the best optimum of
 a design that no start serves is offered to all designs, until each is served: a start serves a design if the
-solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept
-that serve all together with little work. The same landscape always gets the same portfolio.
+solver converges from it to within 1 % of the best optimum that any start led to. A design that no
+start leads anywhere may begin elsewhere at last. Of the offers those are kept that serve all together with
+little work. The same landscape always gets the same portfolio.
 
 Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Generic
@@ -49,7 +50,10 @@ USUAL = Training()
 
 
 def start_portfolio(
-    landscape: Searched[End], designs: Iterable[Design], training: Training = USUAL
+    landscape: Searched[End],
+    designs: Iterable[Design],
+    training: Training = USUAL,
+    elsewhere: Callable[[Design], Start | None] | None = None,
 ) -> StartPortfolio:
     """The portfolio of a landscape.
 
@@ -57,6 +61,7 @@ def start_portfolio(
         landscape: whose optima are sought.
         designs: to learn from; the portfolio makes do with those that there are.
         training: how much work to do.
+        elsewhere: gives another start of a design that no offer leads anywhere.
     """
     learned = [*islice(designs, training.designs)]
     work = _Ends(landscape, learned)
@@ -66,6 +71,11 @@ def start_portfolio(
         work.begun(place, [*landscape.universal, *drawn])
     for _ in range(training.offers):
         wanted = work.wanted()
+        if wanted is None and elsewhere is not None:
+            for place in work.lost():
+                start = elsewhere(learned[place])
+                work.begun(place, [start] if start else [])
+            elsewhere, wanted = None, work.wanted()
         if wanted is None:
             break
         work.offered(wanted)
@@ -85,15 +95,17 @@ class _Ends(Generic[End]):
     def begun(self, place: int, starts: Sequence[Start]) -> None:
         """Solve a design from some starts."""
         design = self._designs[place]
-        self._learn(place, [self._landscape.rough(design, start) for start in starts])
+        for end in sorted((self._landscape.rough(design, start) for start in starts), key=cost_of):
+            least = self._cost(place)
+            self._learned(place, end)
+            if self._cost(place) < least:
+                break
 
     def offered(self, start: Start) -> None:
         """Offer a start to all designs."""
-        ends = [self._landscape.rough(design, start) for design in self._designs]
+        rough = [self._landscape.rough(design, start) for design in self._designs]
         self._offers.append(start)
-        self._ends.append(ends)
-        for place, end in enumerate(ends):
-            self._learn(place, [end])
+        self._ends.append([self._learned(place, end) for place, end in enumerate(rough)])
 
     def wanted(self) -> Start | None:
         """The best optimum of the first design that no offer serves, once each; None where there is none."""
@@ -104,16 +116,19 @@ class _Ends(Generic[End]):
                 return self._landscape.needed(best)
         return None
 
-    def _learn(self, place: int, ends: Sequence[End]) -> None:
-        """Remember the best of some ends of a design that is better than what is known of it and counts."""
-        for end in sorted(ends, key=cost_of):
-            if not cost_of(end) < self._cost(place):
-                break
-            found = self._landscape.finished(self._designs[place], end)
-            if cost_of(found) < self._cost(place):
-                self._best[place] = found
-                self._refused.discard(place)
-                break
+    def lost(self) -> list[int]:
+        """The designs of which no optimum is known."""
+        return [place for place, best in enumerate(self._best) if best is None]
+
+    def _learned(self, place: int, end: End) -> End:
+        """An end; as one that failed where it would be the best of a design and does not count."""
+        if not cost_of(end) < self._cost(place):
+            return end
+        found = self._landscape.finished(self._designs[place], end)
+        if cost_of(found) < self._cost(place):
+            self._best[place] = found
+            self._refused.discard(place)
+        return end if np.isfinite(cost_of(found)) else found
 
     def _cost(self, place: int) -> float:
         best = self._best[place]

@@ -12,7 +12,7 @@ import pytest
 
 from evodesign.nlp.landscape import Landscape, spread_designs
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
-from evodesign.nlp.solver import Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
 from evodesign.nlp.start_portfolio import Coverage
 from evodesign.nlp.start_training import Training, _cover, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -203,3 +203,22 @@ def test_designs_that_are_not_begun_are_served_as_well() -> None:
     found = start_portfolio(landscape(), designs(), replace(TRAINING, designs=24, begun=6))
     assert {well_of(start) for start in found.starts} == set(WELLS)
     assert found.coverage.designs == 12
+
+
+def test_a_design_that_no_start_leads_anywhere_begins_elsewhere() -> None:
+    """One design counts another well alone than all are led to; it alone is asked where else it can begin."""
+    lost, own, asked = next(designs()), -0.5, []
+
+    def accepted(design: tuple[float, ...], end: RawSolution) -> bool:
+        return design != lost or well_of(end.values) == own
+
+    def elsewhere(design: tuple[float, ...]) -> Start:
+        asked.append(design)
+        return {"robot.joints": [own]}
+
+    one = replace(landscape(), universal=({"robot.joints": [-2.0]},), accepted=accepted)
+    alone = start_portfolio(one, designs(), TRAINING)
+    assert {well_of(start) for start in alone.starts} == {-2.0}
+    found = start_portfolio(one, designs(), TRAINING, elsewhere)
+    assert asked == [lost]
+    assert {well_of(start) for start in found.starts} == {-2.0, own}

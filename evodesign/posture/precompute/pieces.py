@@ -7,16 +7,17 @@ piece and the code but for named exceptions; so a score depends neither on a cac
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 
 import msgspec
 import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.landscape import spread_designs
+from evodesign.nlp.landscape import Design, spread_designs
+from evodesign.nlp.program import Start
 from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import USUAL, start_portfolio
@@ -33,7 +34,7 @@ from evodesign.posture.precompute.plan import (
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.records import Case, Task
+from evodesign.records import Case, Hold, Status, Task
 
 __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
@@ -128,16 +129,24 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
-    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
+    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height.
+
+    One in four lies in a corner of the bounds, where searches end.
+    """
     space, built = setting.space, can_be_built(scene.robot, setting.space)
     own = Setting(scene, space, setting.weights, _briefly(setting))
     reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
-    every = spread_designs(
-        len(space.parameters),
-        lambda genome: space.given(space.values(genome), {}),
-        built,
-        LOOKED_AT * LEARNED_FROM,
-    )
+
+    def spread(of: Callable[[float], float]) -> Iterator[Design]:
+        return spread_designs(
+            len(space.parameters),
+            lambda genome: space.given(space.values(tuple(map(of, genome))), {}),
+            built,
+            LOOKED_AT * LEARNED_FROM,
+        )
+
+    inside, corners = spread(float), spread(lambda place: float(round(place)))
+    every = chain.from_iterable(zip(inside, inside, inside, corners, strict=False))
     found: list[HeldLoads] = []
     holding = Counter({height: 0 for task in setting.tasks for height in task.heights})
     for design in islice(every, LEARNED_FROM):
@@ -165,5 +174,13 @@ def _portfolio(
         reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
         return start_portfolio(reach.landscape(sense), designs)
     checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
-    landscape = PostureProblem(own, setting.symmetry, known, solvers).landscape(task, checker_of)
-    return start_portfolio(landscape, designs)
+    problem = PostureProblem(own, setting.symmetry, known, solvers)
+    reaches = {design: (lowest, highest) for design, lowest, highest in known.designs}
+
+    def in_the_middle(design: Design) -> Start | None:
+        """How a design holds the load in the middle of its reach, where it does so most easily."""
+        middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
+        ends = (middle.solve(design, start) for start in middle.universal)
+        return next((end.values for end in ends if end.status is Status.SOLVED), None)
+
+    return start_portfolio(problem.landscape(task, checker_of), designs, elsewhere=in_the_middle)
