@@ -180,7 +180,7 @@ def _portfolio(
     def in_the_middle(design: Design) -> Start | None:
         """How a design holds the load in the middle of its reach, where it does so most easily."""
         middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
-        ends = (middle.solve(design, start) for start in middle.universal)
-        return next((end.values for end in ends if end.status is Status.SOLVED), None)
+        end = middle.solve(design, middle.universal[0])
+        return end.values if end.status is Status.SOLVED else None
 
     return start_portfolio(problem.landscape(task, checker_of), designs, elsewhere=in_the_middle)
