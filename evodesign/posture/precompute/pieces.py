@@ -42,6 +42,10 @@ LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many
 are looked at, at most, as many cannot be built."""
 
+TRIED = 3
+"""From how many universal starts the posture of a design that no start leads anywhere is sought: a robot beside
+three people."""
+
 
 def compute_piece(
     setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache | None = None
@@ -178,9 +182,9 @@ def _portfolio(
     reaches = {design: (lowest, highest) for design, lowest, highest in known.designs}
 
     def in_the_middle(design: Design) -> Start | None:
-        """How a design holds the load in the middle of its reach, where it does so most easily."""
+        """How a design holds the load in the middle of its reach, where that is easiest."""
         middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
-        end = middle.solve(design, middle.universal[0])
-        return end.values if end.status is Status.SOLVED else None
+        ends = (middle.solve(design, start) for start in middle.universal[:TRIED])
+        return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
     return start_portfolio(problem.landscape(task, checker_of), designs, elsewhere=in_the_middle)
