@@ -43,8 +43,7 @@ LEARNED_FROM, LOOKED_AT = 96, 8
 are looked at, at most, as many cannot be built."""
 
 TRIED = 3
-"""From how many universal starts the posture of a design that no start leads anywhere is sought: a robot beside
-three people."""
+"""From how many universal starts a design that none leads anywhere is begun in the middle of its reach."""
 
 
 def compute_piece(
