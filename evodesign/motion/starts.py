@@ -81,7 +81,7 @@ class _LiftLandscape:
         self._first = first
         self._held: dict[Design, list[Mapping[str, AgentPosture]]] = {}
 
-    def rough(self, design: Design, start: Start) -> _Found:
+    def free(self, design: Design, start: Start) -> _Found:
         """The best optimum that a start leads to."""
         best = _Found(np.inf, Status.INFEASIBLE, 0, {})
         for begun in lift_starts(self._program, self._lift, self._ends(design), design, [start]).values():
@@ -92,9 +92,11 @@ class _LiftLandscape:
                 best = _Found(ending.cost, status, ending.iterations, {**start, **person})
         return best
 
-    def finished(self, design: Design, end: _Found) -> _Found:
-        """It is as good as it gets."""
+    def settled(self, design: Design, end: _Found) -> _Found:
+        """Nothing comes in later."""
         return end
+
+    finished = settled
 
     def needed(self, end: _Found) -> Start:
         """How its person moves."""

@@ -68,12 +68,16 @@ class Searched(Protocol[End]):
         """Another start, drawn."""
         ...
 
-    def rough(self, design: Design, start: Start) -> End:
-        """The optimum that is found from a start."""
+    def free(self, design: Design, start: Start) -> End:
+        """The optimum from a start, without what comes in where it is violated: a cheaper one."""
+        ...
+
+    def settled(self, design: Design, end: End) -> End:
+        """The same with all that it violates."""
         ...
 
     def finished(self, design: Design, end: End) -> End:
-        """The same as good as it gets; one that does not count has failed."""
+        """A settled one as good as it gets; one that does not count has failed."""
         ...
 
     def needed(self, end: End) -> Start:
@@ -117,19 +121,23 @@ class Landscape:
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
-        return self.finished(design, self.rough(design, start))
+        return self.finished(design, self.settled(design, self.free(design, start)))
 
-    def rough(self, design: Design, start: Start) -> RawSolution:
-        """The optimum from a start, with bodies parted somehow, whether it counts or not."""
+    def free(self, design: Design, start: Start) -> RawSolution:
+        """The optimum from a start; bodies pass through each other, unless they are always parted."""
         parameters = {"design": design, **self.beside}
         if self.begun is not None:
             start = self.begun(start, parameters)
         if self.parted:
             start = self.solver.parted_start(parameters, start)
-        return self.solver.settled(parameters, self.solver.solve(parameters, start), gain=np.inf)
+        return self.solver.solve(parameters, start)
+
+    def settled(self, design: Design, end: RawSolution) -> RawSolution:
+        """What it leads to with bodies parted somehow, whether that counts or not."""
+        return self.solver.settled({"design": design, **self.beside}, end, gain=np.inf)
 
     def finished(self, design: Design, end: RawSolution) -> RawSolution:
-        """What a rough one leads to with bodies parted in better ways; one that does not count has failed."""
+        """The same with bodies parted in better ways; one that does not count has failed."""
         found = self.solver.bettered({"design": design, **self.beside}, end, 0.0)
         if found.status is Status.SOLVED and self.accepted is not None and not self.accepted(design, found):
             return replace(found, status=Status.NUMERICAL_FAILURE, reason=REFUSED)

@@ -14,7 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from heapq import heapify, heappop, heappush
+from itertools import count, islice
 from typing import Generic
 
 import numpy as np
@@ -93,19 +94,35 @@ class _Ends(Generic[End]):
         self._ends: list[list[End]] = []
 
     def begun(self, place: int, starts: Sequence[Start]) -> None:
-        """Solve a design from some starts."""
-        design = self._designs[place]
-        for end in sorted((self._landscape.rough(design, start) for start in starts), key=cost_of):
-            least = self._cost(place)
-            self._learned(place, end)
-            if self._cost(place) < least:
+        """Solve a design from some starts; the cheapest end is settled while another one may cost less."""
+        design, landscape = self._designs[place], self._landscape
+        numbers = count()
+        ends = [
+            (cost_of(end), next(numbers), False, end) for end in (landscape.free(design, s) for s in starts)
+        ]
+        heapify(ends)
+        while ends:
+            cost, _, is_settled, end = heappop(ends)
+            if not cost < self._cost(place):
                 break
+            if is_settled:
+                self._learned(place, end)
+            else:
+                end = landscape.settled(design, end)
+                heappush(ends, (cost_of(end), next(numbers), True, end))
 
     def offered(self, start: Start) -> None:
-        """Offer a start to all designs."""
-        rough = [self._landscape.rough(design, start) for design in self._designs]
+        """Offer a start to all designs; ends that cost too much although bodies pass are not settled."""
         self._offers.append(start)
-        self._ends.append([self._learned(place, end) for place, end in enumerate(rough)])
+        self._ends.append([self._end(place, start) for place in range(len(self._designs))])
+
+    def _end(self, place: int, start: Start) -> End:
+        design, landscape = self._designs[place], self._landscape
+        end = landscape.free(design, start)
+        best, cost = self._cost(place), cost_of(end)
+        if np.isfinite(best) and not landscape.good(np.array([cost]), np.array([best]))[0]:
+            return end
+        return self._learned(place, landscape.settled(design, end))
 
     def wanted(self) -> Start | None:
         """The best optimum of the first design that no offer serves, once each; None where there is none."""

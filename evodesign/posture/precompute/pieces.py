@@ -7,9 +7,9 @@ piece and the code but for named exceptions; so a score depends neither on a cac
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import chain, islice
+from itertools import islice
 
 import msgspec
 import numpy as np
@@ -132,24 +132,16 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
-    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height.
-
-    One in four lies in a corner of the bounds, where searches end.
-    """
+    """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
     space, built = setting.space, can_be_built(scene.robot, setting.space)
     own = Setting(scene, space, setting.weights, _briefly(setting))
     reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
-
-    def spread(of: Callable[[float], float]) -> Iterator[Design]:
-        return spread_designs(
-            len(space.parameters),
-            lambda genome: space.given(space.values(tuple(map(of, genome))), {}),
-            built,
-            LOOKED_AT * LEARNED_FROM,
-        )
-
-    inside, corners = spread(float), spread(lambda place: float(round(place)))
-    every = chain.from_iterable(zip(inside, inside, inside, corners, strict=False))
+    every = spread_designs(
+        len(space.parameters),
+        lambda genome: space.given(space.values(genome), {}),
+        built,
+        LOOKED_AT * LEARNED_FROM,
+    )
     found: list[HeldLoads] = []
     holding = Counter({height: 0 for task in setting.tasks for height in task.heights})
     for design in islice(every, LEARNED_FROM):
