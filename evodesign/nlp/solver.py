@@ -221,7 +221,7 @@ class Solver:
     def settled(self, parameters: Mapping[str, Any], raw: RawSolution, gain: float = 0.0) -> RawSolution:
         """A solution with the rows on that it violates; as it is where it violates none.
 
-        Where going on from it leads nowhere, the solve begins anew with all rows on.
+        Where going on from it leads nowhere, the solve begins anew with these rows on.
 
         Args:
             parameters: that it was found for.
@@ -235,9 +235,8 @@ class Solver:
         if found is raw and not has_any(switches.names, raw.values):
             return raw
         if found.status is not Status.SOLVED and not has_any(switches.names, raw.start):
-            found = self._without_violations(
-                parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
-            )
+            start = {**raw.start, **switches.begun(raw.start, parameters, found.values)}
+            found = self._without_violations(parameters, self.solve(parameters, start))
         return self.bettered(parameters, found, gain)
 
     def needed(self, raw: RawSolution) -> Start:

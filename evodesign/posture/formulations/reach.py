@@ -197,20 +197,19 @@ class ReachProblem:
         return known
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
-        """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on there."""
+        """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on at once."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        solver = self._solver
-        if sense == LOWEST and self.program.switches is not None:
-            for begun in (starts, FIXED) if self._starts[sense] else (FIXED,):
-                parted = [solver.parted_start(parameters, start) for start in begun]
-                found = _best_settled(solver, parameters, parted, sense)
-                if any(raw.status is Status.SOLVED for raw in found):
-                    return found
-        found = _best_settled(solver, parameters, starts, sense)
-        if solver.native and not any(raw.status is Status.SOLVED for raw in found):
-            return _best_settled(solver.by_ipopt, parameters, starts, sense)
-        return found
+        solver, ways = self._solver, [starts]
+        if self.program.switches is not None:
+            every = [starts, [*FIXED]] if self._starts[sense] else [starts]
+            parted = [[solver.parted_start(parameters, start) for start in each] for each in every]
+            ways = [*parted, starts] if sense == LOWEST else [starts, *parted]
+        for way in ways:
+            found = _best_settled(solver, parameters, way, sense)
+            if any(raw.status is Status.SOLVED for raw in found):
+                return found
+        return _best_settled(solver.by_ipopt, parameters, starts, sense) if solver.native else found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
