@@ -200,11 +200,9 @@ class ReachProblem:
         """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on at once."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        solver, ways = self._solver, [starts]
-        if self.program.switches is not None:
-            every = [starts, [*FIXED]] if self._starts[sense] else [starts]
-            parted = [[solver.parted_start(parameters, start) for start in each] for each in every]
-            ways = [*parted, starts] if sense == LOWEST else [starts, *parted]
+        solver, ways = self._solver, [starts, [*FIXED]] if self._starts[sense] else [starts]
+        if sense == LOWEST and self.program.switches is not None:
+            ways = [[solver.parted_start(parameters, start) for start in way] for way in ways] + [starts]
         for way in ways:
             found = _best_settled(solver, parameters, way, sense)
             if any(raw.status is Status.SOLVED for raw in found):
