@@ -112,12 +112,13 @@ class Switches(Protocol):
         """
         ...
 
-    def begun(self, values: Start, given: Mapping[str, Any]) -> Start:
-        """Parameters that switch on every row, for a solve that begins at some values.
+    def begun(self, values: Start, given: Mapping[str, Any], alike: Start | None = None) -> Start:
+        """Parameters that switch on rows, for a solve that begins at some values.
 
         Args:
             values: where it begins.
             given: the other parameters.
+            alike: values with the same rows on; left out, all are on.
         """
         ...
 

@@ -218,26 +218,28 @@ class Solver:
         switches = self.program.switches
         return switches is not None and not self.program.switched and has_any(switches.names, start)
 
-    def settled(self, parameters: Mapping[str, Any], raw: RawSolution, gain: float = 0.0) -> RawSolution:
+    def settled(
+        self, parameters: Mapping[str, Any], raw: RawSolution, gain: float = 0.0, *, patient: bool = True
+    ) -> RawSolution:
         """A solution with the rows on that it violates; as it is where it violates none.
 
-        Where going on from it leads nowhere, the solve begins anew with all rows on.
+        Where going on from it leads nowhere, the solve begins anew with these rows on.
 
         Args:
             parameters: that it was found for.
             raw: the solution; one that failed stays as it is.
             gain: of its cost, below which rows are not kept in better ways; if infinite, none are sought.
+            patient: whether solves that take long are not given up.
         """
-        switches = self.program.switches
+        switches, solver = self.program.switches, self if patient else self.brief
         if switches is None or raw.status is not Status.SOLVED:
             return raw
-        found = self._without_violations(parameters, raw)
+        found = solver._without_violations(parameters, raw)
         if found is raw and not has_any(switches.names, raw.values):
             return raw
         if found.status is not Status.SOLVED and not has_any(switches.names, raw.start):
-            found = self._without_violations(
-                parameters, self.solve(parameters, self.parted_start(parameters, raw.start))
-            )
+            start = {**raw.start, **switches.begun(raw.start, parameters, found.values)}
+            found = solver._without_violations(parameters, solver.solve(parameters, start))
         return self.bettered(parameters, found, gain)
 
     def needed(self, raw: RawSolution) -> Start:

@@ -96,12 +96,13 @@ class Finishing:
 
     Args:
         settle: goes on from a solution that violates rows which were switched off; what it gives costs more.
+            It is told whether no other end is left: where one is, what takes long is given up.
         better: what a solution leads to that may cost less by more than so much.
         finish: makes a candidate of a named solve that succeeded.
         go_on: what a solve that was given up early leads to in as many iterations again; None where none was.
     """
 
-    settle: Callable[[RawSolution], RawSolution]
+    settle: Callable[[RawSolution, bool], RawSolution]
     better: Callable[[RawSolution, float], RawSolution]
     finish: Callable[[str, RawSolution], Candidate]
     go_on: Callable[[RawSolution], RawSolution] | None = None
@@ -128,7 +129,7 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
         place = min(left, key=lambda place: (raws[place].cost, place))
         if place not in settled:
             settled.add(place)
-            raws[place] = finishing.settle(raws[place])
+            raws[place] = finishing.settle(raws[place], len(left) == 1)
             attempts[place] = checked(formulation, starts[place], raws[place], ())
         else:
             candidate = finishing.finish(starts[place], raws[place])
@@ -146,9 +147,9 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
         raw, found = raws[place], raws[place]
         least, most = np.multiply(PROMISING, best.raw.cost)
         if go_on is not None and place in given_up and least < raw.cost < most:
-            found = finishing.settle(go_on(raw))
+            found = finishing.settle(go_on(raw), False)
         elif best.raw.cost > FAR * bound:
-            found = finishing.settle(raw)
+            found = finishing.settle(raw, False)
         elif DISTINCT * best.raw.cost < raw.cost - best.raw.cost <= MAY_GAIN * best.raw.cost:
             found = finishing.better(raw, raw.cost - best.raw.cost)
         if found.status is Status.SOLVED and found.cost < best.raw.cost:

@@ -98,10 +98,11 @@ class Parted:
         ]
         return [*zip(rows_of(self._bodies, program.constraints).tolist(), on, strict=True)]
 
-    def begun(self, values: Start, given: Mapping[str, Any]) -> Start:
-        """What parts all bodies best at some values."""
+    def begun(self, values: Start, given: Mapping[str, Any], alike: Start | None = None) -> Start:
+        """What parts all bodies best at some values, or those that other values part."""
         numbers, held = self._at(values, given)
-        return self._named(held, self._meetings.begun(numbers, held))
+        places = None if alike is None else np.flatnonzero(self._held(alike)[:, 0])
+        return self._named(held, self._meetings.begun(numbers, held, places))
 
     def violated(self, values: Start, given: Mapping[str, Any], short: float = 0.0) -> Start:
         """What parts bodies that overlap, beside those that are parted already; none where none overlap."""
@@ -181,18 +182,19 @@ class Meetings:
     rows: Places
     margins: Array
 
-    def begun(self, at: Sequence[Array], held: Array) -> dict[int, Array]:
-        """What parts all bodies best.
+    def begun(self, at: Sequence[Array], held: Array, places: Places | None = None) -> dict[int, Array]:
+        """What parts all bodies best, or those of some meetings.
 
         Args:
             at: the functions' arguments.
             held: numbers that say what parts each meeting, shape (meetings, NUMBERS).
+            places: of the meetings.
         Returns:
             New numbers by the meeting's place.
         """
-        return self._changed(
-            at, held, lambda seen: np.ones(len(seen.margins), bool), lambda own, *_: own.best
-        )
+        wanted = np.zeros(len(held), bool)
+        wanted[slice(None) if places is None else places] = True
+        return self._changed(at, held, lambda _: wanted, lambda own, *_: own.best)
 
     def violated(self, at: Sequence[Array], held: Array, short: float = 0.0) -> dict[int, Array]:
         """What parts bodies that overlap, beside those that are parted already; likewise."""

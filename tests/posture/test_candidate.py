@@ -35,6 +35,7 @@ class Asked:
     ) -> None:
         self.asked: list[tuple[float, float]] = []
         self.settled: list[float] = []
+        self.patient: list[bool] = []
         self.gone_on: list[float] = []
         self._costs, self._refused, self._settled = costs, refused, settled or {}
 
@@ -52,8 +53,9 @@ class Asked:
         self.gone_on.append(raw.cost)
         return replace(raw, status=Status.SOLVED, cost=self._costs.get(raw.cost, raw.cost))
 
-    def settle(self, raw: RawSolution) -> RawSolution:
+    def settle(self, raw: RawSolution, last: bool) -> RawSolution:
         self.settled.append(raw.cost)
+        self.patient.append(last)
         return replace(raw, cost=self._settled.get(raw.cost, raw.cost))
 
     def better(self, raw: RawSolution, least: float) -> RawSolution:
@@ -102,6 +104,7 @@ def test_a_better_solve_that_the_check_refuses_is_not_taken() -> None:
 def test_what_the_check_refuses_makes_room_for_the_next() -> None:
     asked = Asked({}, refused=(10.0, 10.1))
     assert best_of(asked.trial(10.0, 10.1, 10.2)) == ("start 3", 10.2)
+    assert asked.patient == [False, False, True], "the last one that is left may take long"
     refused = Asked({}, refused=(10.0,)).trial(10.0)
     assert refused.best is None
     assert not refused.overlaps

@@ -196,7 +196,7 @@ class DecoupledPostures:
             return Candidate(checked(self.name, start, both, residuals), instants, residuals, robot, human)
 
         finishing = Finishing(
-            lambda raw: self._robot.settled(parameters, raw),
+            lambda raw, last: self._robot.settled(parameters, raw, patient=last),
             lambda raw, least: self._robot.bettered(parameters, raw, least),
             finish,
         )

@@ -312,7 +312,7 @@ class JointPostures:
     ) -> Trial:
         """The best of where starts led, settled with a gain and checked."""
         finishing = Finishing(
-            lambda raw: self._solver.settled(parameters, raw, gain),
+            lambda raw, last: self._solver.settled(parameters, raw, gain, patient=last),
             lambda raw, least: self._solver.bettered(parameters, raw, max(gain, least)),
             lambda start, raw: self._candidate(start, raw, task, checker),
             lambda raw: self._solver.continued(parameters, raw),

@@ -197,20 +197,17 @@ class ReachProblem:
         return known
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
-        """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on there."""
+        """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on at once."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        solver = self._solver
+        solver, ways = self._solver, [starts, [*FIXED]] if self._starts[sense] else [starts]
         if sense == LOWEST and self.program.switches is not None:
-            for begun in (starts, FIXED) if self._starts[sense] else (FIXED,):
-                parted = [solver.parted_start(parameters, start) for start in begun]
-                found = _best_settled(solver, parameters, parted, sense)
-                if any(raw.status is Status.SOLVED for raw in found):
-                    return found
-        found = _best_settled(solver, parameters, starts, sense)
-        if solver.native and not any(raw.status is Status.SOLVED for raw in found):
-            return _best_settled(solver.by_ipopt, parameters, starts, sense)
-        return found
+            ways = [[solver.parted_start(parameters, start) for start in way] for way in ways] + [starts]
+        for way in ways:
+            found = _best_settled(solver, parameters, way, sense)
+            if any(raw.status is Status.SOLVED for raw in found):
+                return found
+        return _best_settled(solver.by_ipopt, parameters, starts, sense) if solver.native else found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
