@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -42,13 +43,15 @@ def instants_of(
         times: of each instant [s].
     """
 
+    named: dict[tuple[str, int, int], dict[str, Array]] = defaultdict(dict)
+    for slot, name in layout.items():
+        named[slot.party, slot.instant, slot.load_case][slot.part] = values[name]
+
     def postures(instant: int, load_case: int) -> dict[str, AgentPosture]:
         return {form.agent.name: form.expand(parts(instant, form.agent.name, load_case)) for form in forms}
 
     def parts(instant: int, party: str, load_case: int) -> dict[str, Array]:
-        own = {slot: name for slot, name in layout.items() if (slot.party, slot.instant) == (party, instant)}
-        found = {slot.part: values[name] for slot, name in own.items() if slot.load_case == 0}
-        return found | {slot.part: values[name] for slot, name in own.items() if slot.load_case == load_case}
+        return named[party, instant, 0] | named[party, instant, load_case]
 
     return tuple(
         Instant(
