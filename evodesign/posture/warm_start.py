@@ -42,7 +42,6 @@ def instants_of(
         values: of a solution, by variable name, SI units.
         times: of each instant [s].
     """
-
     named: dict[tuple[str, int, int], dict[str, Array]] = defaultdict(dict)
     for slot, name in layout.items():
         named[slot.party, slot.instant, slot.load_case][slot.part] = values[name]
