@@ -18,16 +18,14 @@ import numpy as np
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import population
 from evodesign.mechanics.scene import ROBOT, Payload, Scene
+from evodesign.nlp.landscape import cost_of
 from evodesign.nlp.solver import RawSolution, SolverOptions
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.results import Array
 from evodesign.posture.symmetry import half
-from evodesign.records import Status
+from evodesign.validation.compare import LARGE
 from evodesign.validation.posed import agent_of
-
-LARGE = (0.5, 0.5, 0.025)
-"""Size of the load [m]."""
 
 SEXES = ("female", "male")
 
@@ -48,11 +46,6 @@ def costs_of_hold(rng: np.random.Generator, starts: int) -> tuple[RawSolution, A
     wide = [each for each in problem.program.variables if each.drawn]
     drawn = [led({v.name: rng.uniform(v.lower, v.upper) for v in wide}) for _ in range(starts)]
     return mean, np.array([cost_of(raw) for raw in drawn])
-
-
-def cost_of(raw: RawSolution) -> float:
-    """Of a solve; infinite where it failed."""
-    return raw.cost if raw.status is Status.SOLVED else np.inf
 
 
 def main() -> None:
