@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush
-from itertools import count, islice
+from itertools import islice
 from typing import Generic
 
 import numpy as np
@@ -26,6 +25,10 @@ from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 
 __all__ = ["USUAL", "Training", "start_portfolio"]
+
+
+SAME = 1e-3
+"""Share of their costs by which two optima of one design differ at most that are one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,46 +86,55 @@ def start_portfolio(
     return work.portfolio(training.portfolio)
 
 
+@dataclass(frozen=True, slots=True)
+class _Tried:
+    """Where a start led a design: the cost, infinite where it led nowhere, and what that took."""
+
+    cost: float
+    iterations: int
+
+
 class _Ends(Generic[End]):
-    """Where offers lead designs."""
+    """Where offers lead designs. Optima of a design with one cost are one: it is settled once."""
 
     def __init__(self, landscape: Searched[End], designs: Sequence[Design]) -> None:
         self._landscape, self._designs = landscape, designs
         self._best: list[End | None] = [None] * len(designs)
         self._refused: set[int] = set()
         self._offers: list[Start] = []
-        self._ends: list[list[End]] = []
+        self._ends: list[list[_Tried]] = []
+        self._settled: list[list[tuple[float, int, End]]] = [[] for _ in designs]
 
     def begun(self, place: int, starts: Sequence[Start]) -> None:
         """Solve a design from some starts; the cheapest end is settled while another one may cost less."""
-        design, landscape = self._designs[place], self._landscape
-        numbers = count()
-        ends = [
-            (cost_of(end), next(numbers), False, end) for end in (landscape.free(design, s) for s in starts)
-        ]
-        heapify(ends)
-        while ends:
-            cost, _, is_settled, end = heappop(ends)
-            if not cost < self._cost(place):
-                break
-            if is_settled:
-                self._learned(place, end)
-            else:
-                end = landscape.settled(design, end)
-                heappush(ends, (cost_of(end), next(numbers), True, end))
+        free = self._landscape.free
+        for end in sorted((free(self._designs[place], start) for start in starts), key=cost_of):
+            if cost_of(end) < self._cost(place):
+                self._settle(place, end)
 
     def offered(self, start: Start) -> None:
         """Offer a start to all designs; ends that cost too much although bodies pass are not settled."""
         self._offers.append(start)
-        self._ends.append([self._end(place, start) for place in range(len(self._designs))])
+        self._ends.append([self._tried(place, start) for place in range(len(self._designs))])
 
-    def _end(self, place: int, start: Start) -> End:
-        design, landscape = self._designs[place], self._landscape
-        end = landscape.free(design, start)
+    def _tried(self, place: int, start: Start) -> _Tried:
+        end = self._landscape.free(self._designs[place], start)
         best, cost = self._cost(place), cost_of(end)
-        if np.isfinite(best) and not landscape.good(np.array([cost]), np.array([best]))[0]:
-            return end
-        return self._learned(place, landscape.settled(design, end))
+        if np.isfinite(best) and not self._landscape.good(np.array([cost]), np.array([best]))[0]:
+            return _Tried(cost, end.iterations)
+        return self._settle(place, end)
+
+    def _settle(self, place: int, end: End) -> _Tried:
+        """An end settled, finished where it may be the best of its design, and remembered."""
+        cost = cost_of(end)
+        for other, iterations, settled in self._settled[place]:
+            if abs(cost - other) <= SAME * abs(other):
+                return _Tried(cost_of(settled), end.iterations + settled.iterations - iterations)
+        settled = self._landscape.settled(self._designs[place], end)
+        found = self._learned(place, settled)
+        if np.isfinite(cost_of(settled)):
+            self._settled[place].append((cost, end.iterations, found))
+        return _Tried(cost_of(found), found.iterations)
 
     def wanted(self) -> Start | None:
         """The best optimum of the first design that no offer serves, once each; None where there is none."""
@@ -155,7 +167,7 @@ class _Ends(Generic[End]):
     def _costs(self) -> Costs:
         """Of each design (row) from each offer (column)."""
         shape = len(self._offers), len(self._designs)
-        return np.array([[cost_of(end) for end in row] for row in self._ends]).reshape(shape).T
+        return np.array([[end.cost for end in row] for row in self._ends]).reshape(shape).T
 
     @property
     def _good(self) -> NDArray[np.bool_]:

@@ -178,4 +178,6 @@ def _portfolio(
         ends = (middle.solve(design, start) for start in middle.universal[:TRIED])
         return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
-    return start_portfolio(problem.landscape(task, checker_of), designs, elsewhere=in_the_middle)
+    drawn = scene.human.measured is not None
+    training = replace(USUAL, random=0) if drawn else USUAL  # where all random starts end, if anywhere: as others
+    return start_portfolio(problem.landscape(task, checker_of), designs, training, in_the_middle)
