@@ -22,6 +22,7 @@ from evodesign.records import Objective
 __all__ = [
     "console",
     "heading",
+    "interval",
     "markup",
     "print_commands",
     "print_json",
@@ -46,6 +47,11 @@ def console(*, stderr: bool = False) -> Console:
 def rounded(value: float | None) -> str:
     """A number with four significant figures, or a dash for none."""
     return "-" if value is None else f"{value:.4g}"
+
+
+def interval(lowest: float | None, highest: float | None, *, or_lower: bool) -> str:
+    """The interval of heights within reach; `or_lower` where nobody asked for lower ones."""
+    return f"{rounded(lowest)}{' or lower' if or_lower else ''} to {rounded(highest)}"
 
 
 def printable(text: str) -> str:

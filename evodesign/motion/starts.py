@@ -25,7 +25,6 @@ from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training, start_portfolio
 from evodesign.posture.check import Unchecked
 from evodesign.posture.design_checkers import can_be_built
-from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import with_meetings
@@ -142,7 +141,7 @@ def lift_portfolio(
         known: what earlier stages gave.
     """
     scene, space = with_meetings(scene_of(setting.scenes, pair), known.meetings), setting.space
-    own = Setting(scene, space, setting.weights, setting.options)
+    own = setting.of(scene)
     holds = PostureProblem(own, setting.symmetry, known)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
 

@@ -22,7 +22,7 @@ from evodesign.problem.agents import (
 )
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
-from evodesign.problem.descriptors import search_descriptors
+from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
 from evodesign.problem.design_space import (
     check_allocations,
     effort_weights,
@@ -48,6 +48,7 @@ from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.records import (
+    SUM,
     Case,
     Constraint,
     Genome,
@@ -62,6 +63,9 @@ from evodesign.records import (
 from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS, POPULATIONS, USUAL_POPULATION
 
 __all__ = ["DesignProblem", "build_problem"]
+
+BELOW = 0.1
+"""How far below the lowest height of a task it is asked whether the robot holds the load [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +92,7 @@ class DesignProblem:
         joint_start: genomes that its starts begin with.
         stances: postures in which the robot stands alone, for what they ask of actuators.
         samples: how many people of measured distributions answer for a front; 0 for none.
+        whole_reach: whether the lowest load of all is asked for, and not only what tasks need.
     """
 
     name: str
@@ -109,6 +114,7 @@ class DesignProblem:
     joint_start: tuple[Genome, ...]
     stances: tuple[StanceCase, ...] = ()
     samples: int = 0
+    whole_reach: bool = False
 
     def __repr__(self) -> str:
         return f"<built problem {self.name}: {len(self.space.parameters)} parameters>"
@@ -136,6 +142,14 @@ class DesignProblem:
         lifts = [task for task in self.tasks if isinstance(task, Lift)]
         ends = [Hold(height_m=height) for lift in lifts for height in lift.heights]
         return tuple(dict.fromkeys([*(task for task in self.tasks if isinstance(task, Hold)), *ends]))
+
+    @property
+    def lowest_asked(self) -> float:
+        """Height of the load [m] below which nobody asks whether the robot holds it."""
+        names = {name for each in self.search.descriptor for name in each.name.split(SUM)}
+        if self.whole_reach or LOWEST_REACH in names:
+            return 0.0
+        return max(min(height for task in self.tasks for height in task.heights) - BELOW, 0.0)
 
     @property
     def named_heights(self) -> dict[str, float]:

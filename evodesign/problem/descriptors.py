@@ -11,9 +11,10 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import DescriptorTable
 from evodesign.records import SUM, Constraint, Descriptor, Objective
 
-__all__ = ["search_descriptors"]
+__all__ = ["LOWEST_REACH", "search_descriptors"]
 
-REACHES = ("lowest_reach", "highest_reach")
+LOWEST_REACH = "lowest_reach"
+REACHES = (LOWEST_REACH, "highest_reach")
 TORQUES = ("robot_torque", "human_torque")
 
 

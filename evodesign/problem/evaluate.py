@@ -173,7 +173,11 @@ def rated_of(result: DesignResult) -> dict[str, float]:
 def reach_of(reach: Reach) -> ReachOutcome:
     """The reachable interval, as it is logged."""
     return ReachOutcome(
-        lowest_m=reach.lowest, highest_m=reach.highest, status=reach.status, reason=reach.reason
+        lowest_m=reach.lowest,
+        highest_m=reach.highest,
+        status=reach.status,
+        reason=reach.reason,
+        or_lower=reach.or_lower,
     )
 
 

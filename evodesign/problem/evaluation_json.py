@@ -107,6 +107,7 @@ def evaluation_json(
         "reach": {
             "lowest_m": result.reach.lowest,
             "highest_m": result.reach.highest,
+            "or_lower": result.reach.or_lower,
             "status": str(result.reach.status),
             "reason": result.reach.reason,
         },

@@ -41,7 +41,10 @@ def inner_problems(
     names = [*(each.name for each in problem.objectives), *(each.name for each in problem.constraints)]
     timed = any(name.endswith(LEAST_TIME) for name in names)
     scenes = [with_meetings(scene, known.meetings) for scene in problem.scenes]
-    settings = [Setting(scene, problem.space, problem.weights, problem.options) for scene in scenes]
+    settings = [
+        Setting(scene, problem.space, problem.weights, problem.options, problem.lowest_asked)
+        for scene in scenes
+    ]
     return InnerProblems(
         postures={
             setting.scene.pair: PostureProblem(setting, problem.symmetry, known, solvers)

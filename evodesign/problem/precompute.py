@@ -53,6 +53,7 @@ def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
         problem.options,
         problem.symmetry,
         problem.holds,
+        problem.lowest_asked,
     )
 
 

@@ -208,6 +208,7 @@ def _holds(problem: DesignProblem) -> str:
         scenes=(replace(scene, robot=bare, human=replace(scene.human, collisions=None)),),
         options=options,
         start_portfolio=False,
+        whole_reach=True,
     )
     unscaled = problem.space.unscaled(robot.tree)
     middle = problem.holds[len(problem.holds) // 2]

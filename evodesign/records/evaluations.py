@@ -25,18 +25,21 @@ __all__ = [
 ]
 
 
-class ReachOutcome(Record, frozen=True):
+class ReachOutcome(Record, frozen=True, omit_defaults=True):
     """Interval of load heights [m] that the robot can hold; bounds are None when not solved.
+
+    `or_lower` says that loads below the lowest may be held, too: it is the lowest that is asked for.
 
     Example:
         >>> design.reach.highest_m, design.reach.reason
-        (1.343..., 'holds loads from 0.193 to 1.343 m')
+        (1.343..., 'holds loads from 0.700 m or lower to 1.343 m')
     """
 
     lowest_m: float | None
     highest_m: float | None
     status: Status
     reason: str
+    or_lower: bool = False
 
 
 class CaseOutcome(Record, frozen=True, omit_defaults=True):

@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.text import Text
 
 from evodesign.analysis.people_spread import PeopleSpread
-from evodesign.cli.output import heading, rounded
+from evodesign.cli.output import heading, interval, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
@@ -89,7 +89,9 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, A
 
 def _reach(assessment: Assessment) -> str:
     reach = assessment.reach
-    return f"{rounded(reach.lowest_m)} to {rounded(reach.highest_m)} m" if reach else "unknown"
+    if reach is None:
+        return "unknown"
+    return f"{interval(reach.lowest_m, reach.highest_m, or_lower=reach.or_lower)} m"
 
 
 def _title(opened: OpenedDesign) -> Text:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rich.markup import escape
 
-from evodesign.cli.output import heading, rounded
+from evodesign.cli.output import heading, interval, rounded
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
@@ -67,7 +67,8 @@ def _assessment_tables(
         value = assessment.objectives.get(objective.name)
         summary.add_row(escape(heading(objective)), rounded(value))
     summary.add_row(escape(violation_heading(problem.constraints)), rounded(assessment.violation))
-    summary.add_row(escape("reach [m]"), f"{rounded(result.reach.lowest)} to {rounded(result.reach.highest)}")
+    reach = result.reach
+    summary.add_row(escape("reach [m]"), interval(reach.lowest, reach.highest, or_lower=reach.or_lower))
     constraints = problem.constraints
     bounds = [constraints_table(constraints, "constraints", ("value", assessment))] if constraints else []
     if not any(outcome.case.label for outcome in assessment.cases):

@@ -38,16 +38,21 @@ class Setting:
         space: design parameters.
         weights: of the agents' efforts.
         options: of the solver.
+        lowest_asked: height of the load [m] below which nobody asks whether it can be held.
     """
 
     scene: Scene
     space: DesignSpace
     weights: EffortWeights
     options: SolverOptions
+    lowest_asked: float = 0.0
 
 
 NO_PART_OF_PROGRAMS: Exceptions = {
-    Setting: {"options": "say how a program is solved"},
+    Setting: {
+        "options": "say how a program is solved",
+        "lowest_asked": "is a bound of the reach program alone, whose key has it",
+    },
     Scene: {"human": "only hands stand in for a person who has no body in the program"},
     Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},
     Agent: {"label": "is a word for results"},

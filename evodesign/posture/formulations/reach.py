@@ -4,7 +4,9 @@
 
 with the person's hands free to push as they must: the robot's side alone decides. A share of the load that is
 given binds here too; where it is free, a robot with rigid grasps may leave the load to the person. A reach
-problem is cheaper than a posture, so it is solved first and spares the heights that are out of reach. It has
+problem is cheaper than a posture, so it is solved first and spares the heights that are out of reach. No load
+is sought lower than somebody asks for: at the lowest of all the robot folds up, bodies are in each other's
+way, and the best of dozens of optima, which no task needs, is hardly ever found. The problem has
 several optima (arms forward, arms raised sideways over the head), so it begins at a portfolio of starts
 as a posture does.
 
@@ -86,12 +88,14 @@ class Reach:
         lowest, highest: of the load's centre [m]; None when not solved.
         status: solved, or why not.
         reason: a sentence.
+        or_lower: whether loads below the lowest may be held, too: it is the lowest that is asked for.
     """
 
     lowest: float | None
     highest: float | None
     status: Status
     reason: str
+    or_lower: bool = False
 
     def distance(self, height: float) -> float | None:
         """How far a height [m] lies outside the interval [m]; None when the interval is not known."""
@@ -105,6 +109,11 @@ class Reach:
         return max((each for each in distances if each is not None), default=None)
 
 
+def interval_text(lowest: float, highest: float, *, or_lower: bool) -> str:
+    """Heights between which loads are held, in words."""
+    return f"{lowest:.3f} m{' or lower' if or_lower else ''} to {highest:.3f} m"
+
+
 def common_reach(reaches: Sequence[Reach]) -> Reach:
     """The interval that several loads have in common; the first that failed, if one did."""
     failed = [reach for reach in reaches if reach.lowest is None or reach.highest is None]
@@ -112,8 +121,9 @@ def common_reach(reaches: Sequence[Reach]) -> Reach:
         return (failed or reaches)[0]
     lowest = max(reach.lowest for reach in reaches if reach.lowest is not None)
     highest = min(reach.highest for reach in reaches if reach.highest is not None)
-    reason = f"holds every load from {lowest:.3f} to {highest:.3f} m"
-    return Reach(lowest, highest, Status.SOLVED, reason)
+    or_lower = all(reach.or_lower for reach in reaches)
+    reason = f"holds every load from {interval_text(lowest, highest, or_lower=or_lower)}"
+    return Reach(lowest, highest, Status.SOLVED, reason, or_lower)
 
 
 class ReachProblem:
@@ -145,7 +155,7 @@ class ReachProblem:
 
     @cached_property
     def _solver(self) -> Solver:
-        key = program_key(self.name, self._setting, self.form)
+        key = program_key(self.name, self._setting, self._setting.lowest_asked, self.form)
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
@@ -182,11 +192,12 @@ class ReachProblem:
         highest, high = self.extreme(design, HIGHEST)
         lowest, low = self.extreme(design, LOWEST)
         status = worst_status([high.status, low.status])
-        if status is not Status.SOLVED:
-            which = "highest" if high.status is not Status.SOLVED else "lowest"
-            reason = high.reason if high.status is not Status.SOLVED else low.reason
+        if highest is None or lowest is None:
+            which, reason = ("highest", high.reason) if highest is None else ("lowest", low.reason)
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
-        return Reach(lowest, highest, status, f"holds loads from {lowest:.3f} to {highest:.3f} m")
+        or_lower = lowest - self._setting.lowest_asked < DISTINCT
+        reason = f"holds loads from {interval_text(lowest, highest, or_lower=or_lower)}"
+        return Reach(lowest, highest, status, reason, or_lower)
 
     def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense; that of the latest design is at hand."""
@@ -302,11 +313,18 @@ def robot_reach_program(form: Form, setting: Setting, *, switched: bool = False)
     values = ca.vertsplit(design)
     tree = setting.space.resized(setting.scene.robot.tree, values)
     scene = shared_scene(setting.scene, setting.space, values)
-    return reach_program(form, tree, scene, {"design": design}, switched=switched)
+    asked = setting.lowest_asked
+    return reach_program(form, tree, scene, {"design": design}, switched=switched, lowest_asked=asked)
 
 
 def reach_program(
-    form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any], *, switched: bool = False
+    form: Form,
+    tree: Tree,
+    scene: Scene,
+    given: Mapping[str, Any],
+    *,
+    switched: bool = False,
+    lowest_asked: float = 0.0,
 ) -> Program:
     """The program of an agent's extreme heights; the other agent is a pair of free hands.
 
@@ -316,12 +334,13 @@ def reach_program(
         scene: load, ground and stance.
         given: parameters that the tree depends on; the program's are these, the load's mass and the sense.
         switched: whether it has the rows that are left out until they are violated.
+        lowest_asked: the least height of the load [m].
     """
     given_scene = scene
     scene, mass = any_load(scene)
     sense = ca.SX.sym("sense")
-    floor = scene.payload.size[2] / 2.0
-    height = Variable.column(HEIGHT, [floor], [5.0], [1.0], 1.0)
+    least = max(scene.payload.size[2] / 2.0, lowest_asked)
+    height = Variable.column(HEIGHT, [least], [5.0], [max(1.0, least)], 1.0)
     parties = (Embodied(form, tree), free_hands_beside(form))
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)), switched=switched)
     load_case = assembly.undisturbed
@@ -333,7 +352,8 @@ def reach_program(
         cost=sense * height.value + WEIGHT_OF_REGULARISATION * disliked,
         parameters={**given, "mass": mass, "sense": sense, **assembly.given},
         switches=parted(
-            assembly.parted, lambda: reach_program(form, tree, given_scene, given, switched=True)
+            assembly.parted,
+            lambda: reach_program(form, tree, given_scene, given, switched=True, lowest_asked=lowest_asked),
         ),
     )
 

@@ -38,6 +38,7 @@ NO_PART_OF_A_PERSONS: Exceptions = {
     PrecomputeSetting: {
         **NO_PART_OF_PIECES[PrecomputeSetting],
         "space": "a person stands behind the load, whatever the robot's hardware",
+        "lowest_asked": "says what is asked of robots",
     },
     Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
 }

@@ -22,7 +22,6 @@ from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import USUAL, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
-from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem
@@ -41,6 +40,9 @@ __all__ = ["compute_piece", "encoded_piece", "with_piece"]
 LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many
 are looked at, at most, as many cannot be built."""
+
+BESIDE_MEASURED = replace(USUAL, random=0)
+"""Beside a person who is drawn to measured postures the same portfolios are found without random starts."""
 
 TRIED = 3
 """From how many universal starts a design that none leads anywhere is begun in the middle of its reach."""
@@ -61,7 +63,7 @@ def compute_piece(
     found: HumanValue | PersonReach | StartPortfolio | list[HeldLoads] | None
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
-        own = Setting(scene, setting.space, setting.weights, setting.options)
+        own = setting.of(scene)
         pairs = [each.pair for each in setting.scenes]
         part, parts, symmetric = pairs.index(piece.pair), len(pairs), setting.symmetric
         extreme = piece.pair == setting.middle.pair
@@ -134,7 +136,7 @@ def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
     """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
     space, built = setting.space, can_be_built(scene.robot, setting.space)
-    own = Setting(scene, space, setting.weights, _briefly(setting))
+    own = setting.of(scene, _briefly(setting))
     reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
     every = spread_designs(
         len(space.parameters),
@@ -162,13 +164,13 @@ def _briefly(setting: PrecomputeSetting) -> SolverOptions:
 def _portfolio(
     setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache
 ) -> StartPortfolio:
-    scene, space, task = scene_of(setting.scenes, piece.pair), setting.space, piece.task
-    own, designs = Setting(scene, space, setting.weights, _briefly(setting)), known.designs_for(task)
+    scene, task = scene_of(setting.scenes, piece.pair), piece.task
+    own, designs = setting.of(scene, _briefly(setting)), known.designs_for(task)
     if task is None:
         sense = HIGHEST if piece.subject is Subject.HIGHEST else LOWEST
         reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
         return start_portfolio(reach.landscape(sense), designs)
-    checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, space).of
+    checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, setting.space).of
     problem = PostureProblem(own, setting.symmetry, known, solvers)
     reaches = {design: (lowest, highest) for design, lowest, highest in known.designs}
 
@@ -179,5 +181,7 @@ def _portfolio(
         return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
     drawn = scene.human.measured is not None
-    training = replace(USUAL, random=0) if drawn else USUAL  # where all random starts end, if anywhere: as others
+    training = (
+        replace(USUAL, random=0) if drawn else USUAL
+    )  # where all random starts end, if anywhere: as others
     return start_portfolio(problem.landscape(task, checker_of), designs, training, in_the_middle)

@@ -11,6 +11,7 @@ from evodesign.human.measured_posture import MEAN_PERSON
 from evodesign.mechanics.scene import Grasp, Scene
 from evodesign.nlp.solver import SolverOptions
 from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import Symmetry
 from evodesign.records import Hold, Lift, Task
 
@@ -73,6 +74,7 @@ class PrecomputeSetting:
     Args:
         scenes: every person with every load.
         middle: the scene that portfolios are made in.
+        lowest_asked: below which no robot's reach is asked for [m].
     """
 
     scenes: tuple[Scene, ...]
@@ -82,6 +84,11 @@ class PrecomputeSetting:
     options: SolverOptions
     symmetry: Symmetry
     tasks: tuple[Hold, ...]
+    lowest_asked: float
+
+    def of(self, scene: Scene, options: SolverOptions | None = None) -> Setting:
+        """What the programs of a scene follow from, with these or other options."""
+        return Setting(scene, self.space, self.weights, options or self.options, self.lowest_asked)
 
     @property
     def symmetric(self) -> bool:

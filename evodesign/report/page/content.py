@@ -71,6 +71,7 @@ class Points(Part, frozen=True):
     violation: list[float | None]
     lowest_m: list[float | None]
     highest_m: list[float | None]
+    or_lower: list[bool]
     reason: list[str]
 
 

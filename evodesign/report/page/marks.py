@@ -127,6 +127,7 @@ def points(header: RunHeader, shown: Sequence[Evaluation], front: Collection[int
         violation=[each.violation for each in worth],
         lowest_m=[None if each.reach is None else each.reach.lowest_m for each in worth],
         highest_m=[None if each.reach is None else each.reach.highest_m for each in worth],
+        or_lower=[each.reach is not None and each.reach.or_lower for each in worth],
         reason=[
             "" if each.feasible else reason_of_infeasibility(header.constrained, each.assessment)
             for each in shown
