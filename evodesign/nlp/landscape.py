@@ -103,7 +103,6 @@ class Landscape:
         starts: fixed ones, for any design.
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
             and in the cost's unit.
-        parted: whether rows that are switched off at first elsewhere are on from the beginning.
         begun: where a solve begins for a start and the parameters; left out, at the start as it is.
         accepted: whether a solution of a design counts; left out, each does.
         universal: starts all over the program's variables, from which optima are sought.
@@ -114,7 +113,6 @@ class Landscape:
     starts: tuple[Start, ...]
     relative: float
     absolute: float
-    parted: bool = False
     begun: Callable[[Start, Mapping[str, Any]], Start] | None = None
     accepted: Callable[[Design, RawSolution], bool] | None = None
     universal: tuple[Start, ...] = ()
@@ -124,12 +122,10 @@ class Landscape:
         return self.finished(design, self.settled(design, self.free(design, start)))
 
     def free(self, design: Design, start: Start) -> RawSolution:
-        """The optimum from a start; bodies pass through each other, unless they are always parted."""
+        """The optimum from a start; bodies pass through each other, but for those that it parts."""
         parameters = {"design": design, **self.beside}
         if self.begun is not None:
             start = self.begun(start, parameters)
-        if self.parted:
-            start = self.solver.parted_start(parameters, start)
         return self.solver.solve(parameters, start)
 
     def settled(self, design: Design, end: RawSolution) -> RawSolution:
@@ -154,7 +150,7 @@ class Landscape:
     def size(self, start: Start) -> float:
         """Variables and rows of the program that is solved from a start."""
         switches, program = self.solver.program.switches, self.solver.program
-        if switches is not None and (self.parted or has_any(switches.names, start)):
+        if switches is not None and has_any(switches.names, start):
             program = switches.program
         return float(program.symbols.numel() + program.rows.numel())
 

@@ -183,7 +183,6 @@ class ReachProblem:
             FIXED,
             0.0,
             NEAR_HEIGHT,
-            parted=sense == LOWEST,
             universal=universal,
         )
 
@@ -208,12 +207,9 @@ class ReachProblem:
         return known
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
-        """The lowest loads are held in a fold, out of which bodies are hardly parted: rows are on at once."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
         solver, ways = self._solver, [starts, [*FIXED]] if self._starts[sense] else [starts]
-        if sense == LOWEST and self.program.switches is not None:
-            ways = [[solver.parted_start(parameters, start) for start in way] for way in ways] + [starts]
         for way in ways:
             found = _best_settled(solver, parameters, way, sense)
             if any(raw.status is Status.SOLVED for raw in found):

@@ -7,9 +7,9 @@ in which another pair overlaps is refused by the check.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice
+from itertools import islice, product
 
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
@@ -49,9 +49,6 @@ LOOKED_AT = 8
 NEAR, APART = 0.03, 0.002
 """Distances [m] below which bodies are near each other, and hardly apart."""
 
-ROUNDS = 16
-"""How often the pairs that overlap most at the lowest load are added, at most."""
-
 
 def found_meetings(
     setting: Setting,
@@ -65,9 +62,8 @@ def found_meetings(
     """Pairs that meet, by agent name or `REACH`, in the order of the check.
 
     Bodies pass through everything in the postures that are looked at. What is near each other there at the
-    tasks' heights, or in each other, is kept apart, and what overlaps at the highest load. In the fold of the
-    lowest a few rows part everything: there the pair that overlaps most in each posture is kept apart, then
-    the one that does so still, and so on.
+    tasks' heights, or in each other, is kept apart, and what of the robot overlaps at the highest and the
+    lowest load that are asked for.
 
     Args:
         setting: of one person and load.
@@ -132,51 +128,16 @@ class _Finder:
         return found
 
     def at_extremes(self) -> set[_Met]:
-        """What of the robot is to be kept apart at the highest and the lowest load."""
-        found = {met for pairs in self._at_reach(HIGHEST, ()) for met in pairs}
-        for _ in range(ROUNDS):
-            overlaps = self._at_reach(LOWEST, found)
-            more = {min(pairs, key=lambda met: (pairs[met], met)) for pairs in overlaps if pairs}
-            if more <= found:
-                break
-            found |= more
-        return found
-
-    def _at_reach(self, sense: float, parted: Collection[_Met]) -> list[_Near]:
-        """What of the robot overlaps in the extreme posture of each design.
-
-        Args:
-            sense: of the reach problem.
-            parted: pairs that are kept apart.
-        """
-        scene = self._parting(parted)
-        problem = ReachProblem(replace(self._setting, scene=scene), symmetric=self._symmetric)
-        found: list[_Near] = []
-        for values in self._designs:
+        """What of the robot overlaps in each design's postures at the highest and the lowest load."""
+        problem = ReachProblem(self._setting, symmetric=self._symmetric)
+        found: set[_Met] = set()
+        for values, sense in product(self._designs, (HIGHEST, LOWEST)):
             height, raw = problem.extreme(values, sense)
             if height is not None:
                 parts = {name.partition(".")[2]: value for name, value in raw.values.items()}
                 near = self._near(values, {ROBOT: self.forms[0].expand(parts)}, height)
-                found.append({(REACH, pair): apart for (_, pair), apart in near.items() if apart < APART})
+                found |= {(REACH, pair) for (_, pair), apart in near.items() if apart < APART}
         return found
-
-    def _parting(self, pairs: Collection[_Met]) -> Scene:
-        """The scene without collisions but for some pairs."""
-
-        def parted(agent: Agent, form: Form) -> Agent:
-            own, reach = (
-                tuple(_in_order(agent, {pair for of, pair in pairs if of == name}, form))
-                for name in (agent.name, REACH)
-            )
-            if agent.collisions is None or not (own or reach):
-                return replace(agent, collisions=None)
-            return replace(agent, collisions=replace(agent.collisions, parted=own, parted_at_reach=reach))
-
-        robot, human = (
-            parted(agent, form)
-            for agent, form in zip((self.scene.robot, self.scene.human), self.forms, strict=True)
-        )
-        return replace(self._setting.scene, robot=robot, human=human)
 
     def _near(self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float) -> _Near:
         """The pairs that are near, with their distances [m]."""
