@@ -143,7 +143,7 @@ class JointPostures:
             self._fixed(task),
             *NEAR,
             begun=self._begun,
-            universal=universal_starts(program, people),
+            universal=universal_starts(program, people[:1]),
         )
 
     @cached_property

@@ -44,9 +44,6 @@ are looked at, at most, as many cannot be built."""
 BESIDE_MEASURED = replace(USUAL, random=0)
 """Beside a person who is drawn to measured postures the same portfolios are found without random starts."""
 
-TRIED = 3
-"""From how many universal starts a design that none leads anywhere is begun in the middle of its reach."""
-
 
 def compute_piece(
     setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache | None = None
@@ -177,7 +174,7 @@ def _portfolio(
     def in_the_middle(design: Design) -> Start | None:
         """How a design holds the load in the middle of its reach, where that is easiest."""
         middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
-        ends = (middle.solve(design, start) for start in middle.universal[:TRIED])
+        ends = (middle.solve(design, start) for start in middle.universal)
         return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
     drawn = scene.human.measured is not None
