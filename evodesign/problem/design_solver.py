@@ -315,14 +315,13 @@ class _OneDesign:
             self._checker(values, case, check),
             self._neighbour(found, case),
             self._elsewhere(found, case),
-            self._at_end_of_reach(values, case, reach),
+            self._at_ends_of_reach(values, case),
         )
 
-    def _at_end_of_reach(self, values: Sequence[float], case: Case, reach: Reach) -> tuple[Start, ...]:
-        """How the robot holds the load at the nearer end of its reach; nothing if that is not known."""
-        low, high = (abs(case.task.heights[0] - (end or 0.0)) for end in (reach.lowest, reach.highest))
+    def _at_ends_of_reach(self, values: Sequence[float], case: Case) -> list[Start]:
+        """How the robot holds the highest and the lowest load that are asked for, where that is known."""
         reached = self._solver.inner.reaches[case.payload]
-        return reached.extreme_posture(values, HIGHEST if high < low else LOWEST)
+        return [start for sense in (HIGHEST, LOWEST) for start in reached.extreme_posture(values, sense)]
 
     def _elsewhere(self, found: Sequence[CaseSolution], case: Case) -> list[Neighbour]:
         """Solutions of other tasks, those at the nearest heights first."""

@@ -222,3 +222,22 @@ def test_a_design_that_no_start_leads_anywhere_begins_elsewhere() -> None:
     found = start_portfolio(one, designs(), TRAINING, elsewhere)
     assert asked == [lost]
     assert {well_of(start) for start in found.starts} == {-2.0, own}
+
+
+def test_ends_of_one_cost_are_settled_once() -> None:
+    """Fifteen starts end in four wells: no two ends of one design that are settled cost the same."""
+    asked: dict[tuple[float, ...], list[float]] = {}
+
+    class Counting(Landscape):
+        def settled(self, design: tuple[float, ...], end: RawSolution) -> RawSolution:
+            asked.setdefault(design, []).append(end.cost)
+            return Landscape.settled(self, design, end)
+
+    counting = Counting(landscape().solver, {}, FIXED, 0.01, 1e-6, universal=UNIVERSAL)
+    found = start_portfolio(counting, designs(), TRAINING)
+    plain = start_portfolio(landscape(), designs(), TRAINING)
+    assert [well_of(start) for start in found.starts] == [well_of(start) for start in plain.starts]
+    assert len(asked) == TRAINING.designs
+    for costs in asked.values():
+        assert len(costs) <= len(WELLS)
+        assert np.all(np.abs(np.diff(np.sort(costs))) > 1e-3 * np.abs(costs).min())

@@ -24,7 +24,7 @@ from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.human_value import human_program
-from evodesign.posture.formulations.reach import HEIGHT, LOWEST, ReachProblem, reach_program
+from evodesign.posture.formulations.reach import HEIGHT, LEAST, LOWEST, ReachProblem, reach_program
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
 from evodesign.posture.postures import Symmetry
@@ -315,7 +315,7 @@ def test_a_solution_stays_without_the_rows_that_do_not_hold_it(apart: DesignProb
     solver = ReachProblem(setting, symmetric=True)._solver
     (name,) = solver.program.switches.names
     values = apart.space.unscaled(apart.scene.robot.tree)
-    parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST}
+    parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST, LEAST: 0.0}
     start = solver.parted_start(parameters, {HEIGHT: [1.0]})
     found = solver.settled(parameters, solver.solve(parameters, start))
     assert found.status is Status.SOLVED
@@ -409,7 +409,7 @@ def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem
     switches = reach.program.switches
     assert isinstance(switches, Parted)
     prices = switches._meetings.prices(best.multipliers.constraints)
-    parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST}
+    parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST, LEAST: 0.0}
     (name,) = switches.names
     costs = []
     for loosened in (-1e-4, 1e-4):  # by less or more than the 10 m that switch a row off
@@ -441,7 +441,10 @@ def test_signs_are_those_of_coal_in_random_postures(name: str, apart: DesignProb
     for _ in range(1_000):
         values = {each.name: rng.uniform(each.lower, each.upper) for each in program.variables}
         height = float(values[HEIGHT][0])
-        numbers = program.packed(values), program.packed_parameters({"mass": 1.0, "sense": 1.0}, zeros)
+        numbers = (
+            program.packed(values),
+            program.packed_parameters({"mass": 1.0, "sense": 1.0, LEAST: 0.0}, zeros),
+        )
         pairs = meetings.shapes(*numbers)[0].reshape(-1, 2, SHAPE)
         ways = ways_of([pairs[meetings.places == place] for place in range(len(labels))])
         parts = {part.partition(".")[2]: value for part, value in values.items()}

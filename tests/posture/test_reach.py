@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import msgspec
 import pytest
 
 from evodesign.posture.check import AgentModel, Checker
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.file import DescriptorTable
 from evodesign.records import Hold, Status
 
 
@@ -80,3 +86,48 @@ def test_longer_arms_reach_higher(problem: DesignProblem, evaluator: Evaluator) 
     assert before is not None
     assert after is not None
     assert after > before + 0.03
+
+
+def test_no_load_is_sought_lower_than_is_asked_for(problem: DesignProblem) -> None:
+    """A tenth of a metre below the lowest task, and just below the highest load of who holds none of them."""
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    lowest = min(height for task in problem.tasks for height in task.heights)
+    asked = Evaluator(problem).solve(values).reach
+    whole = Evaluator(replace(problem, whole_reach=True)).solve(values).reach
+    assert problem.lowest_asked == pytest.approx(lowest - 0.1)
+    assert asked.lowest == pytest.approx(lowest - 0.1, abs=1e-6)
+    assert asked.or_lower
+    assert "or lower" in asked.reason
+    assert whole.lowest is not None
+    assert whole.lowest < lowest - 0.3
+    assert not whole.or_lower
+    assert asked.highest == pytest.approx(whole.highest, abs=1e-6)
+    beyond = Evaluator(replace(problem, tasks=(Hold(height_m=1.9),))).solve(values).reach
+    assert beyond.highest == pytest.approx(whole.highest, abs=1e-6)
+    assert beyond.lowest == pytest.approx(whole.highest - 0.01, abs=1e-6)
+
+
+def test_the_lowest_load_that_is_asked_for_moves_with_no_design(problem: DesignProblem) -> None:
+    """But that of a design which holds none of the tasks moves with its highest load."""
+    values = problem.space.unscaled(problem.scene.robot.tree)
+    (asked,), (beyond,) = (
+        Evaluator(each).inner.reaches.values()
+        for each in (problem, replace(problem, tasks=(Hold(height_m=1.9),)))
+    )
+    still = asked.derivative(values, LOWEST)
+    highest, lowest = (beyond.derivative(values, sense) for sense in (HIGHEST, LOWEST))
+    assert isinstance(still, ReachDerivative)
+    assert not still.slope.any()
+    assert isinstance(highest, ReachDerivative)
+    assert isinstance(lowest, ReachDerivative)
+    assert lowest.slope.any()
+    assert lowest.slope.tolist() == highest.slope.tolist()
+
+
+@pytest.mark.parametrize("name", ["lowest_reach", "lowest_reach+highest_reach"])
+def test_a_search_that_tells_designs_apart_by_their_lowest_load_asks_for_it(
+    name: str, problem: DesignProblem
+) -> None:
+    table = DescriptorTable(name=name, lower=0.0, upper=1.0)
+    search = msgspec.structs.replace(problem.search, descriptor=(table,))
+    assert replace(problem, search=search).lowest_asked == 0.0

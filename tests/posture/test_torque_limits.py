@@ -90,11 +90,17 @@ def test_limits_that_nothing_meets_change_nothing(problem: DesignProblem, free: 
 
 def test_reach_is_what_the_joints_can_hold(problem: DesignProblem, free: DesignResult) -> None:
     weak = limited(problem, dict.fromkeys(problem.scene.robot.joints, 5.0))
-    found = Evaluator(weak).solve(unscaled(problem)).reach
+    found, strong = (
+        Evaluator(replace(each, whole_reach=True)).solve(unscaled(problem)).reach
+        for each in (weak, limited(problem, {}))
+    )
     assert found.lowest is not None
-    assert found.highest is not None
-    assert free.reach.lowest is not None
-    assert found.lowest > free.reach.lowest + 0.1, "a robot that squats needs more than 5 N m in its legs"
+    assert strong.lowest is not None
+    assert found.lowest > strong.lowest + 0.1, "a robot that squats needs more than 5 N m in its legs"
+    asked = Evaluator(weak).solve(unscaled(problem)).reach
+    assert free.reach.highest is not None
+    assert found.highest == pytest.approx(asked.highest, abs=1e-6)
+    assert found.highest < free.reach.highest - 0.1
 
 
 def test_gradients_know_a_limit_that_is_met(problem: DesignProblem) -> None:

@@ -51,7 +51,7 @@ class Setting:
 NO_PART_OF_PROGRAMS: Exceptions = {
     Setting: {
         "options": "say how a program is solved",
-        "lowest_asked": "is a bound of the reach program alone, whose key has it",
+        "lowest_asked": "is a parameter of the reach program",
     },
     Scene: {"human": "only hands stand in for a person who has no body in the program"},
     Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},

@@ -26,7 +26,7 @@ import numpy as np
 from evodesign.mechanics.scene import ROBOT, Scene
 from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.optimality import NotDifferentiable
-from evodesign.nlp.program import Program, Start, Variable
+from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
 from evodesign.posture.allocation import shared_scene
@@ -46,6 +46,7 @@ from evodesign.tree.model import Tree
 __all__ = [
     "HEIGHT",
     "HIGHEST",
+    "LEAST",
     "LOWEST",
     "Reach",
     "ReachProblem",
@@ -60,6 +61,12 @@ WEIGHT_OF_REGULARISATION = 1e-4
 
 HEIGHT = "height"
 """Name of the variable that is the load's height."""
+
+LEAST = "least_height"
+"""Name of the parameter that is the least height of the load [m], and of its row."""
+
+THIN = 0.01
+"""How much lower than the highest load the lowest one may always be [m]."""
 
 HIGHEST, LOWEST = -1.0, 1.0
 """Sense in which the height is extreme: the sign with which it is minimised."""
@@ -155,7 +162,7 @@ class ReachProblem:
 
     @cached_property
     def _solver(self) -> Solver:
-        key = program_key(self.name, self._setting, self._setting.lowest_asked, self.form)
+        key = program_key(self.name, self._setting, self.form)
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
@@ -167,12 +174,19 @@ class ReachProblem:
 
     @property
     def program(self) -> Program:
-        """What is solved; its parameters are the design, the load's mass and the sense."""
+        """What is solved; its parameters are the design, the load's mass and least height, and the sense."""
         return self._solver.program
 
     def _beside(self, sense: float) -> Mapping[str, float]:
-        """The parameters beside the design."""
-        return {"mass": self._setting.scene.payload.mass, "sense": sense}
+        """The parameters beside the design, of one that holds the load at the lowest height that is asked."""
+        least = self._setting.lowest_asked if sense == LOWEST else 0.0
+        return {"mass": self._setting.scene.payload.mass, "sense": sense, LEAST: least}
+
+    def _parameters(self, design: Sequence[float], sense: float) -> dict[str, Any]:
+        """Those of a design, whose lowest load is no higher than its highest one."""
+        given, least = {"design": design, **self._beside(sense)}, self._beside(sense)[LEAST]
+        highest = self.extreme(design, HIGHEST)[0] if least else None
+        return given if highest is None else {**given, LEAST: min(least, highest - THIN)}
 
     def landscape(self, sense: float) -> Landscape:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
@@ -208,7 +222,7 @@ class ReachProblem:
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
-        parameters = {"design": design, **self._beside(sense)}
+        parameters = self._parameters(design, sense)
         solver, ways = self._solver, [starts, [*FIXED]] if self._starts[sense] else [starts]
         for way in ways:
             found = _best_settled(solver, parameters, way, sense)
@@ -249,9 +263,14 @@ class ReachProblem:
         if not heights:
             return NotDifferentiable("no posture was found")
         start = min(heights, key=lambda number: sense * heights[number])
-        if self._at_end(heights[start]):
+        parameters, asked = self._parameters(design, sense), self._beside(sense)[LEAST]
+        if parameters[LEAST] < asked:
+            highest = self.derivative(design, HIGHEST, exact=exact)
+            if isinstance(highest, NotDifferentiable):
+                return highest
+            return replace(highest, height=highest.height - THIN)
+        if self._at_end(heights[start], asked):
             return ReachDerivative(heights[start], np.zeros(len(design)), start, len(solves), None, ())
-        parameters = {"design": design, **self._beside(sense)}
         found = self._sensitivity.at(parameters, solves[start].values, exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
@@ -269,10 +288,11 @@ class ReachProblem:
             limits=own.limits,
         )
 
-    def _at_end(self, height: float) -> bool:
-        """Whether a height ends the range that is looked at, whatever the design: a load on the ground."""
+    def _at_end(self, height: float, least: float) -> bool:
+        """Whether a height ends the range that is asked for, whatever the design: a load on the ground."""
         block = next(v for v in self.program.variables if v.name == HEIGHT)
-        return bool(min(height - block.lower[0], block.upper[0] - height) < DISTINCT)
+        lower = max(block.lower[0], least)
+        return bool(min(height - lower, block.upper[0] - height) < DISTINCT)
 
 
 def _with_own_rows(setting: Setting) -> Setting:
@@ -309,18 +329,11 @@ def robot_reach_program(form: Form, setting: Setting, *, switched: bool = False)
     values = ca.vertsplit(design)
     tree = setting.space.resized(setting.scene.robot.tree, values)
     scene = shared_scene(setting.scene, setting.space, values)
-    asked = setting.lowest_asked
-    return reach_program(form, tree, scene, {"design": design}, switched=switched, lowest_asked=asked)
+    return reach_program(form, tree, scene, {"design": design}, switched=switched)
 
 
 def reach_program(
-    form: Form,
-    tree: Tree,
-    scene: Scene,
-    given: Mapping[str, Any],
-    *,
-    switched: bool = False,
-    lowest_asked: float = 0.0,
+    form: Form, tree: Tree, scene: Scene, given: Mapping[str, Any], *, switched: bool = False
 ) -> Program:
     """The program of an agent's extreme heights; the other agent is a pair of free hands.
 
@@ -328,15 +341,15 @@ def reach_program(
         form: of the agent.
         tree: of the agent.
         scene: load, ground and stance.
-        given: parameters that the tree depends on; the program's are these, the load's mass and the sense.
+        given: parameters that the tree depends on; the program's are these, the load's mass and least
+            height, and the sense.
         switched: whether it has the rows that are left out until they are violated.
-        lowest_asked: the least height of the load [m].
     """
     given_scene = scene
     scene, mass = any_load(scene)
-    sense = ca.SX.sym("sense")
-    least = max(scene.payload.size[2] / 2.0, lowest_asked)
-    height = Variable.column(HEIGHT, [least], [5.0], [max(1.0, least)], 1.0)
+    sense, least = ca.SX.sym("sense"), ca.SX.sym(LEAST)
+    floor = scene.payload.size[2] / 2.0
+    height = Variable.column(HEIGHT, [floor], [5.0], [1.0], 1.0)
     parties = (Embodied(form, tree), free_hands_beside(form))
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)), switched=switched)
     load_case = assembly.undisturbed
@@ -344,12 +357,11 @@ def reach_program(
     return Program(
         name="reach",
         variables=(height, *assembly.variables),
-        constraints=assembly.constraints,
+        constraints=(*assembly.constraints, ConstraintBlock(LEAST, height.value - least, 0.0, np.inf)),
         cost=sense * height.value + WEIGHT_OF_REGULARISATION * disliked,
-        parameters={**given, "mass": mass, "sense": sense, **assembly.given},
+        parameters={**given, "mass": mass, "sense": sense, LEAST: least, **assembly.given},
         switches=parted(
-            assembly.parted,
-            lambda: reach_program(form, tree, given_scene, given, switched=True, lowest_asked=lowest_asked),
+            assembly.parted, lambda: reach_program(form, tree, given_scene, given, switched=True)
         ),
     )
 
@@ -366,7 +378,7 @@ def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> Pe
     solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}
     for sense in (LOWEST, HIGHEST):
-        parameters = {"mass": scene.payload.mass, "sense": sense}
+        parameters = {"mass": scene.payload.mass, "sense": sense, LEAST: 0.0}
         people = person_starts(solver.program)
         starts = [{**start, HEIGHT: [height]} for height in FIXED_HEIGHTS for start in people]
         solves = [solver.solve(parameters, start) for start in starts]
