@@ -14,7 +14,7 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.file import DescriptorTable
-from evodesign.records import Hold, Status
+from evodesign.records import SUM, Hold, Status
 
 
 def design(problem: DesignProblem, name: str) -> tuple[float, ...]:
@@ -124,7 +124,7 @@ def test_the_lowest_load_that_is_asked_for_moves_with_no_design(problem: DesignP
     assert lowest.slope.tolist() == highest.slope.tolist()
 
 
-@pytest.mark.parametrize("name", ["lowest_reach", "lowest_reach+highest_reach"])
+@pytest.mark.parametrize("name", ["lowest_reach", f"lowest_reach{SUM}highest_reach"])
 def test_a_search_that_tells_designs_apart_by_their_lowest_load_asks_for_it(
     name: str, problem: DesignProblem
 ) -> None:
