@@ -250,13 +250,6 @@ class Solver:
         on = switches.needed(raw.values, raw.multipliers.constraints, FREE * abs(raw.cost))
         return {**raw.values, **on}
 
-    def parted_start(self, parameters: Mapping[str, Any], start: Start) -> Start:
-        """A start with all rows on, unless it has some on already."""
-        switches = self.program.switches
-        if switches is None or has_any(switches.names, start):
-            return start
-        return {**start, **switches.begun(start, parameters)}
-
     def bettered(self, parameters: Mapping[str, Any], found: RawSolution, gain: float) -> RawSolution:
         """A solution whose rows are kept in better ways, as long as it gains more by them than `gain`."""
         switches = self.program.switches

@@ -31,13 +31,13 @@ from evodesign.records import Lift
 __all__ = ["precompute_setting", "precomputed", "staged_pieces"]
 
 WORK: Mapping[Subject, float] = {
-    Subject.MEETINGS: 0.3,
-    Subject.DESIGNS: 1.0,
-    Subject.HIGHEST: 1.0,
-    Subject.LOWEST: 1.0,
+    Subject.MEETINGS: 0.5,
+    Subject.DESIGNS: 0.6,
+    Subject.HIGHEST: 0.6,
+    Subject.LOWEST: 0.6,
     Subject.POSTURE: 1.7,
     Subject.PERSON: 0.3,
-    Subject.PERSON_REACH: 0.3,
+    Subject.PERSON_REACH: 0.15,
     Subject.LIFT: 2.5,
 }
 """How much work a piece is, by its subject: medians of public robots. It serves until one of them is done."""

@@ -316,7 +316,7 @@ def test_a_solution_stays_without_the_rows_that_do_not_hold_it(apart: DesignProb
     (name,) = solver.program.switches.names
     values = apart.space.unscaled(apart.scene.robot.tree)
     parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST, LEAST: 0.0}
-    start = solver.parted_start(parameters, {HEIGHT: [1.0]})
+    start = {HEIGHT: [1.0], **solver.program.switches.begun({HEIGHT: [1.0]}, parameters)}
     found = solver.settled(parameters, solver.solve(parameters, start))
     assert found.status is Status.SOLVED
     needed = solver.needed(found)
