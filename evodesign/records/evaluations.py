@@ -32,7 +32,7 @@ class ReachOutcome(Record, frozen=True, omit_defaults=True):
 
     Example:
         >>> design.reach.highest_m, design.reach.reason
-        (1.343..., 'holds loads from 0.700 m or lower to 1.343 m')
+        (1.343..., 'holds loads from 0.193 to 1.343 m')
     """
 
     lowest_m: float | None

@@ -49,7 +49,7 @@ def test_after_a_case_without_posture_no_refuge_is_sought_in_others(
     assert [LESS in reason for reason in reasons] == [False, True, True]
 
 
-def test_a_hold_that_is_not_found_begins_at_the_nearest_others_and_at_the_end_of_reach(
+def test_a_hold_that_is_not_found_begins_at_the_nearest_others_and_at_the_ends_of_reach(
     problem: DesignProblem, known: Precomputed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     three = replace(problem, tasks=tuple(Hold(height_m=height) for height in (0.8, 1.0, 1.2)))
@@ -78,9 +78,9 @@ def test_a_hold_that_is_not_found_begins_at_the_nearest_others_and_at_the_end_of
     result = Evaluator(three, known).solve(problem.space.unscaled(problem.scene.robot.tree))
     assert all(solution.solved for solution in result.cases)
     assert [solution.case.task.heights[0] for solution in result.cases] == [0.8, 1.0, 1.2]
-    [(heights, [end])] = given
+    [(heights, ends)] = given
     assert heights == [1.0, 1.2]
-    assert {name.split(".")[0] for name in end} == {"robot"}
+    assert [{name.split(".")[0] for name in end} for end in ends] == [{"robot"}, {"robot"}]
 
 
 def test_a_posture_near_the_end_of_reach_is_found_from_there(

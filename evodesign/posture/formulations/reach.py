@@ -65,9 +65,6 @@ HEIGHT = "height"
 LEAST = "least_height"
 """Name of the parameter that is the least height of the load [m], and of its row."""
 
-THIN = 0.01
-"""How much lower than the highest load the lowest one may always be [m]."""
-
 HIGHEST, LOWEST = -1.0, 1.0
 """Sense in which the height is extreme: the sign with which it is minimised."""
 
@@ -182,12 +179,6 @@ class ReachProblem:
         least = self._setting.lowest_asked if sense == LOWEST else 0.0
         return {"mass": self._setting.scene.payload.mass, "sense": sense, LEAST: least}
 
-    def _parameters(self, design: Sequence[float], sense: float) -> dict[str, Any]:
-        """Those of a design, whose lowest load is no higher than its highest one."""
-        given, least = {"design": design, **self._beside(sense)}, self._beside(sense)[LEAST]
-        highest = self.extreme(design, HIGHEST)[0] if least else None
-        return given if highest is None else {**given, LEAST: min(least, highest - THIN)}
-
     def landscape(self, sense: float) -> Landscape:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
         universal = tuple({**start, **height} for height in FIXED for start in universal_starts(self.program))
@@ -208,7 +199,7 @@ class ReachProblem:
         if highest is None or lowest is None:
             which, reason = ("highest", high.reason) if highest is None else ("lowest", low.reason)
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
-        or_lower = lowest - self._setting.lowest_asked < DISTINCT
+        or_lower = lowest - self._setting.lowest_asked < DISTINCT and self._setting.lowest_asked > 0.0
         reason = f"holds loads from {interval_text(lowest, highest, or_lower=or_lower)}"
         return Reach(lowest, highest, status, reason, or_lower)
 
@@ -221,9 +212,13 @@ class ReachProblem:
         return known
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
+        """From the portfolio, or fixed starts; a load as low as is asked for is held where the highest is."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
-        parameters = self._parameters(design, sense)
+        parameters = {"design": design, **self._beside(sense)}
         solver, ways = self._solver, [starts, [*FIXED]] if self._starts[sense] else [starts]
+        height, highest = self.extreme(design, HIGHEST) if sense == LOWEST else (None, None)
+        if highest is not None and height is not None:
+            ways.append([highest.values])
         for way in ways:
             found = _best_settled(solver, parameters, way, sense)
             if any(raw.status is Status.SOLVED for raw in found):
@@ -231,13 +226,24 @@ class ReachProblem:
         return _best_settled(solver.by_ipopt, parameters, starts, sense) if solver.native else found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
-        """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it."""
+        """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it.
+
+        The lowest load of a design that holds none as high as is asked for is its highest one.
+        """
+        if sense == LOWEST and self._holds_none(design):
+            return self.extreme(design, HIGHEST)
         solves = self.solves(design, sense)
         solved = [raw for raw in solves if raw.status is Status.SOLVED]
         if not solved:
             return None, solves[0]
         best = min(solved, key=lambda raw: sense * _height(raw))
         return _height(best), best
+
+    def _holds_none(self, design: Sequence[float]) -> bool:
+        """Whether the highest load is lower than any that is asked for."""
+        asked = self._setting.lowest_asked
+        highest = self.extreme(design, HIGHEST)[0] if asked else None
+        return highest is not None and highest <= asked
 
     def extreme_posture(self, design: Sequence[float], sense: float) -> tuple[Start, ...]:
         """The robot's posture at the extreme height, for other programs to begin at; none if it is not known.
@@ -258,19 +264,16 @@ class ReachProblem:
         itself; the one that counts is differentiated, and the next best other optimum is where another one
         may win; `exact` is that of `SolutionSensitivity.at`.
         """
+        if sense == LOWEST and self._holds_none(design):
+            return self.derivative(design, HIGHEST, exact=exact)
         solves = self.solves(design, sense)
         heights = {start: _height(raw) for start, raw in enumerate(solves) if raw.status is Status.SOLVED}
         if not heights:
             return NotDifferentiable("no posture was found")
         start = min(heights, key=lambda number: sense * heights[number])
-        parameters, asked = self._parameters(design, sense), self._beside(sense)[LEAST]
-        if parameters[LEAST] < asked:
-            highest = self.derivative(design, HIGHEST, exact=exact)
-            if isinstance(highest, NotDifferentiable):
-                return highest
-            return replace(highest, height=highest.height - THIN)
-        if self._at_end(heights[start], asked):
+        if self._at_end(heights[start], self._beside(sense)[LEAST]):
             return ReachDerivative(heights[start], np.zeros(len(design)), start, len(solves), None, ())
+        parameters = {"design": design, **self._beside(sense)}
         found = self._sensitivity.at(parameters, solves[start].values, exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
