@@ -41,6 +41,7 @@ def residuals(body):
 tables = tomllib.loads(evodesign.open_problem("point-grasp").source.text)
 tables["task"]["heights_m"] = [1.0]
 tables["solver"] = {"start_portfolio": False, "compile": False}
+tables["search"]["descriptor"] = [{"name": "lowest_reach"}]  # or no lower load is sought than tasks need
 for words, term in {"without": None, "with": BodyTerm("mass_height", rows=rows, residuals=residuals)}.items():
     if term is not None:
         TERMS[term.name] = term
