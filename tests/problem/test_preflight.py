@@ -49,6 +49,13 @@ def with_joint(tree: Tree, name: str, change: Callable[[Joint], Joint]) -> Tree:
     return replace(tree, joints=tuple(change(each) if name in each.name else each for each in tree.joints))
 
 
+def with_limits(tree: Tree, **limits: tuple[float, float]) -> Tree:
+    """The tree whose joints of these names have these limits."""
+    for name, (lower, upper) in limits.items():
+        tree = with_joint(tree, name, functools.partial(replace, lower=lower, upper=upper))
+    return tree
+
+
 def exchanged(key: str, name: str) -> Change:
     left, right = (f'{side} = "{side}_{name}"' for side in ("left", "right"))
     return put(f"{key} = {{ {left}, {right}", f'{key} = {{ left = "right_{name}", right = "left_{name}"')
@@ -163,17 +170,13 @@ LYING = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0))
             r"robot\.hands\.left: wanted a hand with at least 3 of robot\.joints .*, found 0 before 'chest'",
         ),
         (
-            with_joint(humanoid(Build()), "wrist", lambda joint: replace(joint, lower=0.1, upper=0.1)),
+            with_limits(humanoid(Build()), wrist=(0.1, 0.1)),
             lambda text: text,
             r"robot\.joints: wanted joints that can move; .*, found 'left_wrist', whose limits are both 0\.1",
         ),
         (
-            with_joint(
-                with_joint(
-                    humanoid(Build()), "shoulder_pitch", lambda joint: replace(joint, lower=1.2, upper=1.6)
-                ),
-                "waist",
-                lambda joint: replace(joint, lower=-0.1, upper=0.1),
+            with_limits(
+                humanoid(Build()), shoulder_pitch=(1.2, 1.6), shoulder_roll=(-0.1, 0.1), waist=(-0.1, 0.1)
             ),
             lambda text: text,
             r"robot\.hands: wanted hands that can hold the load in front of the robot .*, found none",
